@@ -1,0 +1,52 @@
+# What a person needs: make setup, make heart, make test. ARGS="..." is handed on.
+
+PYTHON ?= python3
+VENV := .venv
+VENV_PYTHON := $(VENV)/bin/python
+STAMP := $(VENV)/.installed
+ARGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help setup heart test coverage lint format types clean
+
+help:  ## list what can be made
+	@echo 'usage: make TARGET [PYTHON=python3.12] [ARGS="..."]'
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
+
+setup: $(STAMP)  ## make .venv and install the package in it, with everything that was tested
+
+# The stamp comes last, so that a setup cut short is done again.
+$(STAMP): pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null || \
+		{ echo 'setup: $(PYTHON) not found; name a Python >= 3.10: make setup PYTHON=...' >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "setup: Python >= 3.10 is needed, $(PYTHON) is $$($(PYTHON) -c 'import platform; print(platform.python_version())'); name another: make setup PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+		{ echo 'setup: $(PYTHON) lacks its venv module; on Debian and Ubuntu: apt-get install python3-venv' >&2; exit 1; }
+	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
+	$(VENV_PYTHON) -m pip install --disable-pip-version-check -c constraints.txt -e '.[robots,dev]'
+	@touch $@
+
+heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart
+	$(VENV_PYTHON) scripts/track_heart.py $(ARGS)
+
+test: $(STAMP)  ## run the tests
+	$(VENV_PYTHON) -m pytest $(ARGS)
+
+coverage: $(STAMP)  ## run the tests and show which lines of the package they reach
+	$(VENV_PYTHON) -m pytest --cov --cov-report=term-missing $(ARGS)
+
+lint: $(STAMP)  ## look for slips and for untidy layout
+	$(VENV_PYTHON) -m ruff check .
+	$(VENV_PYTHON) -m ruff format --check .
+
+format: $(STAMP)  ## mend what can be mended by itself
+	$(VENV_PYTHON) -m ruff check --fix .
+	$(VENV_PYTHON) -m ruff format .
+
+types: $(STAMP)  ## check the types of the package
+	$(VENV_PYTHON) -m mypy
+
+clean:  ## remove .venv, caches and what was built; runs/ stays
+	rm -rf $(VENV) build dist htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find iiwa_dnn tests scripts -name __pycache__ -prune -exec rm -rf {} +

@@ -1,0 +1,66 @@
+"""Dynamic neural networks that resolve the redundancy of robot arms, checked at every step."""
+
+from importlib.metadata import version
+
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.controller import Command, Controller
+from iiwa_dnn.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.exceptions import (
+    FileError,
+    IiwaDnnError,
+    InvalidInputError,
+    NoSolutionError,
+    NotFoundError,
+)
+from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler
+from iiwa_dnn.metrics import compute_metrics, failures
+from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.qp import QP, Residuals, Solution, Status
+from iiwa_dnn.record import Record
+from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
+from iiwa_dnn.robot import Robot, available_robots, load_robot
+from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
+from iiwa_dnn.simulation import Simulation, simulate
+from iiwa_dnn.solver import DNNSolver, solve_problem
+
+__version__ = version("iiwa-dnn")
+
+__all__ = [
+    "QP",
+    "Agreement",
+    "Circle",
+    "Command",
+    "Configuration",
+    "Controller",
+    "CrossCheck",
+    "DNNSolver",
+    "DoubleIndicator",
+    "ExplicitEuler",
+    "FileError",
+    "Heart",
+    "IiwaDnnError",
+    "ImplicitEuler",
+    "InvalidInputError",
+    "Line",
+    "Lissajous",
+    "NoSolutionError",
+    "NotFoundError",
+    "ProjectionNetwork",
+    "PseudoInverse",
+    "Record",
+    "Reference",
+    "Residuals",
+    "Robot",
+    "Scheme",
+    "Simulation",
+    "Solution",
+    "Status",
+    "Target",
+    "Waypoints",
+    "available_robots",
+    "compute_metrics",
+    "failures",
+    "load_robot",
+    "simulate",
+    "solve_problem",
+]

@@ -1,0 +1,89 @@
+"""The package's errors: one tree, and every error carries the evidence it speaks of."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import qpsolvers
+
+
+class IiwaDnnError(Exception):
+    """Base of every error that this package raises on purpose."""
+
+
+class InvalidInputError(IiwaDnnError, ValueError):
+    """An argument is outside what the function accepts.
+
+    Attributes:
+        argument: Name of the argument, as the caller wrote it.
+        value: What was given.
+    """
+
+    def __init__(self, argument: str, problem: str, value: object = None) -> None:
+        super().__init__(f"{argument}: {problem}")
+        self.argument = argument
+        self.value = value
+
+
+class NotFoundError(IiwaDnnError, LookupError):
+    """A name is not among those that exist.
+
+    Attributes:
+        kind: What was looked for, for example ``"robot"`` or ``"frame"``.
+        name: The name that was given.
+        available: The names that exist.
+    """
+
+    def __init__(self, kind: str, name: str, available: Iterable[str]) -> None:
+        self.kind = kind
+        self.name = name
+        self.available = tuple(available)
+        near = get_close_matches(name, self.available, n=3)
+        listed = ", ".join(near or self.available[:12])
+        label = "did you mean" if near else "there are"
+        hint = f"; {label}: {listed}" if listed else ""
+        super().__init__(f"no {kind} {name!r}{hint}")
+
+    def __str__(self) -> str:
+        # LookupError's own __str__ is Exception's; KeyError's would add quotes.
+        return str(self.args[0])
+
+
+class FileError(IiwaDnnError, OSError):
+    """A file cannot be read, written or understood.
+
+    Attributes:
+        path: The file.
+        reason: What is wrong with it, in a few words.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
+        self.path = os.fspath(path)
+        self.reason = reason
+        super().__init__(f"{self.path}: {reason}")
+
+
+class NoSolutionError(IiwaDnnError):
+    """A quadratic program was not solved.
+
+    Attributes:
+        problem: The quadratic program.
+        solution: The solver's last word on it, with its residuals; its ``found`` is False.
+        step: Index of the control step, when there is one.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        problem: qpsolvers.Problem | None = None,
+        solution: qpsolvers.Solution | None = None,
+        step: int | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.problem = problem
+        self.solution = solution
+        self.step = step

@@ -1,0 +1,122 @@
+"""Files that are either the old one or the whole new one, never half of it."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import secrets
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from iiwa_dnn.exceptions import FileError
+
+
+def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], object]) -> None:
+    """Write a file under a temporary name beside it, then rename it into place.
+
+    A reader sees the old file or the new one. Whatever stops the writing (a full disk, an error
+    in ``write``, Ctrl-C), the old file stays and the temporary one is removed.
+
+    Args:
+        path: The file to write; its folder must exist.
+        write: Called once with the open binary file.
+
+    Raises:
+        FileError: If the file cannot be written. What ``write`` raises of its own is passed on.
+    """
+    path = Path(path)
+    # In the same folder, because a rename is atomic only inside one file system.
+    temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        try:
+            with temporary.open("xb") as file:
+                write(file)
+                file.flush()
+                # Without it, a power cut may leave the new name on an empty file.
+                os.fsync(file.fileno())
+            temporary.replace(path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+    except FileError:
+        raise
+    except OSError as error:
+        raise FileError(path, f"cannot be written ({one_line(error)})") from error
+
+
+def prepare_folder(folder: str | os.PathLike[str]) -> Path:
+    """Make a folder, its parents too, and see that files can be written in it.
+
+    Meant to be called before a long run, so that it does not end with nowhere to put its record.
+
+    Args:
+        folder: The folder; it may exist already.
+
+    Returns:
+        The folder.
+
+    Raises:
+        FileError: If it cannot be made or written to.
+    """
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / f".{secrets.token_hex(8)}.tmp"
+        probe.touch(exist_ok=False)
+        probe.unlink()
+    except OSError as error:
+        raise FileError(folder, f"cannot be written to ({one_line(error)})") from error
+    return folder
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a UTF-8 text file atomically, with Unix line ends on every system.
+
+    Raises:
+        FileError: If the file cannot be written.
+    """
+    write_atomically(path, lambda file: file.write(text.encode("utf-8")))
+
+
+def write_json(path: str | os.PathLike[str], value: object) -> None:
+    """Write plain JSON types atomically; see `plain`.
+
+    Raises:
+        FileError: If the file cannot be written.
+        TypeError: If the value is not made of JSON types.
+        ValueError: If the value holds NaN or an infinity.
+    """
+    write_text(path, json.dumps(value, indent=2, allow_nan=False) + "\n")
+
+
+def plain(value: object) -> Any:
+    """Return a value in the types that JSON has, as it would come back from a JSON file.
+
+    NumPy arrays and scalars become lists and numbers, tuples become lists. JSON has neither NaN
+    nor infinity: both become None, so an unlimited joint reads as "no limit".
+
+    Raises:
+        TypeError: If the value has no such form.
+    """
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if value is None or isinstance(value, str | int):
+        return value
+    raise TypeError(f"{type(value).__name__} is not a JSON type")
+
+
+def one_line(error: BaseException) -> str:
+    """Say in one line what an exception says; an OSError without its path and number."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return " ".join(str(error).split()) or type(error).__name__

@@ -1,0 +1,57 @@
+"""What every integrator does: advance a network by a time, or until it has settled."""
+
+from __future__ import annotations
+
+from typing import ClassVar, NamedTuple, Protocol
+
+from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.qp import QP, Vector
+
+
+class Settled(NamedTuple):
+    """How far a network was advanced, and the residuals of the point it stands for.
+
+    Attributes:
+        iterations: Linear systems solved (implicit) or steps taken (explicit).
+        network_time: Time that passed, in units of rho.
+        primal: Primal residual of the point.
+        dual: Dual residual.
+        gap: Duality gap.
+    """
+
+    iterations: int
+    network_time: float
+    primal: float
+    dual: float
+    gap: float
+
+
+class Integrator(Protocol):
+    """One way to integrate a network.
+
+    Attributes:
+        order: Order of the method in its step length.
+    """
+
+    order: ClassVar[int]
+
+    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
+        """Advance `state` in place by `duration` [rho]; returns the iterations it took."""
+        ...
+
+    def settle(
+        self, network: ProjectionNetwork, qp: QP, state: Vector, point: Vector, tol: float
+    ) -> Settled:
+        """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
+
+        Args:
+            network: The network.
+            qp: The program, which does not change meanwhile.
+            state: Where to start; holds the last state afterwards.
+            point: Output ``[x | y | z | z_box]`` of size n + p + m + n.
+            tol: Absolute tolerance on each residual.
+
+        Returns:
+            What was reached, above `tol` if the budget of steps ended first.
+        """
+        ...

@@ -1,0 +1,103 @@
+r"""The paper's projection network.
+
+With the Lagrangian's gradient :math:`g = P x + q + A^T y + G^T z + u - l`,
+
+.. math::
+
+    \rho\,\dot x &= -x + \Pi_{[lb,\,ub]}(x - g) \\
+    \rho\,\dot y &= A x - b \\
+    \rho\,\dot z &= -z + [z + G x - h]_+ \\
+    \rho\,\dot u &= -u + [u + x - ub]_+ \\
+    \rho\,\dot l &= -l + [l + lb - x]_+
+
+where u and l are the paper's :math:`\mu` for :math:`\Omega = [I; -I]`, :math:`\chi = [ub; -lb]`:
+the bounds act twice, in the projection and in the multipliers. At rest the first line reads
+``x = proj(x - g)`` and the others are feasibility and complementarity, so the equilibria are
+exactly the KKT points of the program (docs/theory.md).
+
+Source: "Enhanced Orientation Tracking for Redundant Manipulators via DNN-Based Double Control",
+section III, its slips corrected (docs/errata.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iiwa_dnn import kernels
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import QP, Vector
+
+
+@dataclass(frozen=True)
+class ProjectionNetwork:
+    """The paper's network for one quadratic program after another.
+
+    Attributes:
+        rho: Time constant [s].
+        primal_projection: Whether x goes through its bounds, as in the paper. Without it the
+            bounds act through their multipliers alone; the equilibria are the same, and a
+            backward Euler step becomes a convex problem (`iiwa_dnn.integrators.implicit`).
+    """
+
+    rho: float = 9e-5
+    primal_projection: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the time constant."""
+        if not (np.isfinite(self.rho) and self.rho > 0):
+            raise InvalidInputError("rho", f"must be a positive time in s, not {self.rho}")
+
+    def state_size(self, qp: QP) -> int:
+        """Number of states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
+        return 3 * qp.q.size + qp.b.size + qp.h.size
+
+    def initial_state(self, qp: QP) -> Vector:
+        """The state at rest before any problem was seen: zero."""
+        return np.zeros(self.state_size(qp))
+
+    def rates(self, qp: QP, state: Vector) -> Vector:
+        """The right-hand side, rho ds/dt, of shape (state_size,)."""
+        rates = np.empty(state.size)
+        kernels.field(
+            qp.arrays(), self.primal_projection, state, rates, np.empty(state.size, np.bool_)
+        )
+        return rates
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        r"""A step, in units of rho, below which explicit Euler is stable.
+
+        On a fixed active set the network is linear. For an eigenvalue with eigenvector (v, w),
+        \|v\| = 1, :math:`\lambda^2 + \pi\lambda + s = 0` with :math:`\pi = v^*Pv` and
+        :math:`s = \|Cv\|^2`, C being the equality rows and the active inequality rows. Euler
+        stays inside its circle where the step is below 2/pi (real pair) and pi/s (complex pair),
+        so below ``min(2/max eig P, min eig P / max eig C^T C)``.
+
+        Args:
+            qp: The program.
+            state: Where given, only the rows active at this state are counted; otherwise every
+                inequality row is, and the bound holds on every active set.
+
+        Returns:
+            The bound; zero where P is singular, since then no step is known to be stable.
+        """
+        n, m = qp.q.size, qp.h.size
+        if state is None:
+            active = np.concatenate([np.ones(m, bool), qp.ub < np.inf, qp.lb > -np.inf])
+            # Both bounds of one variable are active together only if they coincide.
+            active[m : m + n] |= active[m + n :]
+            active[m + n :] = qp.lb == qp.ub
+        else:
+            active = np.empty(state.size, np.bool_)
+            kernels.multiplier_field(qp.arrays(), state, np.empty(state.size), active)
+            active = active[: m + 2 * n]
+        rows = np.vstack([qp.A, qp.G[active[:m]]]) if m else qp.A
+        gram = rows.T @ rows
+        gram[np.diag_indices(n)] += active[m : m + n].astype(float) + active[m + n :]
+        eigenvalues = np.linalg.eigvalsh(qp.P)
+        smallest, largest = max(float(eigenvalues[0]), 0.0), max(float(eigenvalues[-1]), 1.0)
+        coupling = float(np.linalg.eigvalsh(gram)[-1])
+        # Passive multipliers and clipped variables decay at rate one: never more than 2.
+        bound = 2.0 / largest
+        return min(bound, smallest / coupling) if coupling > 0.0 else bound

@@ -1,0 +1,230 @@
+"""The record of one run: what was asked, what came out, and how each step was judged."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn.exceptions import FileError, InvalidInputError
+from iiwa_dnn.files import one_line, plain, write_atomically
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+MODES = ("converged", "continuous")
+
+# N steps, n joints, k reference solvers. `t`, `q` and `solution_gap` set these sizes.
+_SHAPES: dict[str, tuple[str | int, ...]] = {
+    "t": ("N+1",),
+    "q": ("N+1", "n"),
+    "dq": ("N", "n"),
+    "dq_solver": ("N", "n"),
+    "position": ("N+1", 3),
+    "rotation": ("N+1", 3, 3),
+    "position_desired": ("N+1", 3),
+    "rotation_desired": ("N+1", 3, 3),
+    "kinetic_index": ("N",),
+    "kkt_residual": ("N",),
+    "iterations": ("N",),
+    "solution_gap": ("N", "k"),
+    "objective_gap": ("N", "k"),
+    "reference_residual": ("N", "k"),
+}
+
+# What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
+_DAMAGE = (
+    ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
+    NotImplementedError, RuntimeError,
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
+
+    The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
+    sample i to sample i + 1. In the last three arrays NaN means that the reference was not asked
+    at that step and inf that it gave no answer.
+
+    Attributes:
+        t: Time [s], (N+1,), increasing.
+        q: Joint positions [rad], (N+1, n).
+        dq: Joint velocities that moved the robot [rad/s], (N, n).
+        dq_solver: Joint velocities that the network answered [rad/s], (N, n).
+        position: Tip position [m], (N+1, 3).
+        rotation: Tip orientation, tip axes to world axes, (N+1, 3, 3).
+        position_desired: Desired tip position [m], (N+1, 3).
+        rotation_desired: Desired tip orientation, (N+1, 3, 3).
+        kinetic_index: dqᵀ G(q) dq of each step, (N,): [rad²/s²] with G = I, [J] with G the
+            inertia matrix.
+        kkt_residual: Largest KKT residual of the network's answer, (N,).
+        iterations: Network iterations (sub-steps) spent on each step, (N,), integers.
+        solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
+        objective_gap: Difference in the objective to each reference, (N, k).
+        reference_residual: Largest KKT residual of each reference's own answer, (N, k).
+        settings: What was asked for, in JSON types; an infinite limit reads None.
+        wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
+        crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
+            was asked.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    dq_solver: FloatArray
+    position: FloatArray
+    rotation: FloatArray
+    position_desired: FloatArray
+    rotation_desired: FloatArray
+    kinetic_index: FloatArray
+    kkt_residual: FloatArray
+    iterations: IntArray
+    solution_gap: FloatArray
+    objective_gap: FloatArray
+    reference_residual: FloatArray
+    settings: dict[str, Any]
+    wall_time_s: float | None = None
+    crosscheck_gap: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        for name, shape in _SHAPES.items():
+            array = _read_only_copy(name, getattr(self, name), len(shape))
+            object.__setattr__(self, name, array)
+        sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
+        for name, shape in _SHAPES.items():
+            expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
+            if getattr(self, name).shape != expected:
+                symbols = ", ".join(str(size) for size in shape)
+                raise InvalidInputError(
+                    name,
+                    f"shape {getattr(self, name).shape}, expected ({symbols}) = {expected}",
+                    getattr(self, name),
+                )
+        if sizes["N"] < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+            raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
+        object.__setattr__(self, "settings", _checked(self.settings, self.dof, self.references))
+        object.__setattr__(self, "crosscheck_gap", _largest_gap(self.solution_gap))
+
+    @property
+    def steps(self) -> int:
+        """N, the number of steps taken."""
+        return len(self.t) - 1
+
+    @property
+    def dof(self) -> int:
+        """n, the number of joints."""
+        return int(self.q.shape[1])
+
+    @property
+    def references(self) -> int:
+        """k, the number of reference solvers; their names are in the settings."""
+        return int(self.solution_gap.shape[1])
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the record as an uncompressed .npz file, atomically and without pickles.
+
+        The same record gives the same bytes.
+
+        Args:
+            path: The file; ``.npz`` is not appended.
+
+        Raises:
+            FileError: If the file cannot be written.
+        """
+        arrays = {name: getattr(self, name) for name in (*_SHAPES, "crosscheck_gap")}
+        text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
+        # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
+        write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Record:
+        """Read a record written by `save`.
+
+        Args:
+            path: The file.
+
+        Returns:
+            The record; its `wall_time_s` is None, since the file does not hold it.
+
+        Raises:
+            FileError: If the file is missing, damaged or not a record.
+        """
+        try:
+            with Path(path).open("rb") as file:
+                arrays = np.load(file, allow_pickle=False)
+                if not isinstance(arrays, np.lib.npyio.NpzFile):
+                    raise FileError(path, "not a record: not an .npz archive")
+                stored: dict[str, Any] = {
+                    key: arrays[key] for key in (*_SHAPES, "crosscheck_gap", "settings")
+                }
+            stored_gap = stored.pop("crosscheck_gap")
+            settings = json.loads(str(stored.pop("settings")))
+            record = cls(settings=settings, **stored)
+        except FileError:
+            raise
+        except OSError as error:
+            raise FileError(path, f"cannot be read ({one_line(error)})") from error
+        except KeyError as error:
+            raise FileError(path, f"not a record: {one_line(error)}") from error
+        except _DAMAGE as error:
+            raise FileError(path, f"not a record, or damaged: {one_line(error)}") from error
+        if not np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True):
+            raise FileError(path, "crosscheck_gap is not the largest solution_gap of each step")
+        return record
+
+
+def _read_only_copy(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
+    """Copy an array, so that nothing done to the original later can change the record."""
+    array = np.asarray(value)
+    kinds, target = ("iu", np.int64) if name == "iterations" else ("fiu", np.float64)
+    # An empty list is an array of floats to NumPy, whatever it was meant to hold.
+    if array.dtype.kind not in kinds and array.size:
+        raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
+    if array.ndim != dimensions:
+        raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
+    copy = np.array(array, dtype=target, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
+def _largest_gap(solution_gap: FloatArray) -> FloatArray:
+    """Largest gap of each step, (N,): one solver's NaN does not hide another's answer."""
+    gap: FloatArray = np.fmax.reduce(solution_gap, axis=1, initial=np.nan)
+    gap.flags.writeable = False
+    return gap
+
+
+def _checked(settings: Mapping[str, Any], n: int, k: int) -> dict[str, Any]:
+    """Return the settings in JSON types, once all that the metrics need is seen to be there."""
+    if not isinstance(settings, Mapping):
+        raise InvalidInputError("settings", "must be a dict", settings)
+    try:
+        checked: dict[str, Any] = plain(settings)
+        for key in ("q_lower", "q_upper", "dq_max"):
+            if len(checked[key]) != n:
+                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", checked[key])
+        if len(checked["check"]["solvers"]) != k:
+            problem = f"must name {k} solvers, one for each column of solution_gap"
+            raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
+        check, times = checked["check"], (checked["dt"], checked["duration"])
+        tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
+        if not (min(times) > 0 and min(tolerances) >= 0):
+            problem = "dt and duration must be positive, and no tolerance negative"
+            raise InvalidInputError("settings", problem, (*times, *tolerances))
+        if checked["mode"] not in MODES or not isinstance(checked["status"], str):
+            problem = f"mode must be one of {MODES}, status a text"
+            raise InvalidInputError("settings", problem, checked["mode"])
+    except KeyError as error:
+        raise InvalidInputError("settings", f"{error} is missing", settings) from error
+    except TypeError as error:
+        raise InvalidInputError("settings", str(error), settings) from error
+    return checked

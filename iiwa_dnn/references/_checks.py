@@ -1,0 +1,46 @@
+"""Checks of the parameters that references are made of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn.exceptions import InvalidInputError
+
+Vector3 = tuple[float, float, float]
+
+
+def positive(argument: str, value: object) -> float:
+    """The value as a float, or an InvalidInputError unless it is a finite number above zero."""
+    if not isinstance(value, Real) or not math.isfinite(value) or float(value) <= 0.0:
+        raise InvalidInputError(argument, f"must be a finite number above 0, not {value!r}", value)
+    return float(value)
+
+
+def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:
+    """The value as a tuple of three floats, or an InvalidInputError unless it is three numbers."""
+    x, y, z = finite_array(argument, value, (3,)).tolist()
+    return x, y, z
+
+
+def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """A read-only copy of the value, or an InvalidInputError unless it is finite and of this shape.
+
+    An entry of -1 in ``shape`` leaves that length open.
+    """
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidInputError(argument, "must be numbers", value) from error
+    fits = array.ndim == len(shape)
+    if not fits or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
+        wanted = str(shape).replace("-1", "m")
+        raise InvalidInputError(argument, f"must have shape {wanted}, not {array.shape}", value)
+    if not np.isfinite(array).all():
+        raise InvalidInputError(argument, "must be finite", value)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,195 @@
+"""A smooth path through points, given in code or in a CSV file."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn.exceptions import FileError, InvalidInputError
+from iiwa_dnn.references._checks import finite_array
+from iiwa_dnn.references.base import Reference
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
+
+Ends = Literal["clamped", "natural", "closed"]
+
+_SCIPY_ENDS = {"clamped": "clamped", "natural": "natural", "closed": "periodic"}
+_COLUMNS = ["t", "x", "y", "z"]
+_CLOSED_WITHIN = 1e-9  # [m]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Waypoints(Reference):
+    """A cubic spline through points: position, velocity and acceleration are continuous.
+
+    Time counts from the first row and displacement from the first point. Before the start and
+    after the end the path rests at its first and last point; a closed path repeats instead.
+
+    Attributes:
+        times: Times of the points [s], shape (m,), increasing, m >= 2.
+        points: The points [m], shape (m, 3).
+        ends: "clamped": at rest at both ends. "natural": without acceleration at both ends, where
+            the velocity may then jump. "closed": ends as it begins and repeats; the last point
+            must be the first one, and m >= 3.
+
+    Raises:
+        InvalidInputError: If a parameter is not as said above.
+    """
+
+    name: ClassVar[str] = "waypoints"
+    times: NDArray[np.float64]
+    points: NDArray[np.float64]
+    ends: Ends = "clamped"
+    _spline: CubicSpline = field(init=False)
+
+    def __post_init__(self) -> None:
+        times = finite_array("times", self.times, (-1,))
+        points = finite_array("points", self.points, (len(times), 3))
+        if self.ends not in _SCIPY_ENDS:
+            raise InvalidInputError("ends", f"must be one of {', '.join(_SCIPY_ENDS)}", self.ends)
+        least = 3 if self.ends == "closed" else 2
+        if len(times) < least:
+            raise InvalidInputError("times", f"at least {least} points are needed", times)
+        if not (times[1:] > times[:-1]).all():
+            raise InvalidInputError("times", "must increase from point to point", times)
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "points", points)
+        object.__setattr__(self, "_spline", self._fit())
+
+    def _fit(self) -> CubicSpline:
+        from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
+
+        with np.errstate(over="ignore"):  # the result is looked at below
+            times, displacements = self.times - self.times[0], self.points - self.points[0]
+        if self.ends == "closed":
+            if np.abs(displacements[-1]).max() > _CLOSED_WITHIN:
+                problem = "the last one of a closed path must be the first one"
+                raise InvalidInputError("points", problem, self.points)
+            displacements[-1] = 0.0  # scipy asks for the very same numbers
+        with np.errstate(all="ignore"):
+            try:
+                spline = CubicSpline(times, displacements, bc_type=_SCIPY_ENDS[self.ends])
+                fine = bool(np.isfinite(spline.c).all())
+            except (ValueError, np.linalg.LinAlgError):
+                fine = False
+        if not fine:
+            problem = "no spline fits: too close together, or the points too far apart"
+            raise InvalidInputError("times", problem, self.times)
+        return spline
+
+    @classmethod
+    def from_csv(cls, path: str | os.PathLike[str], ends: Ends = "clamped") -> Waypoints:
+        """Read the points from a CSV file with the header ``t,x,y,z``, in [s] and [m].
+
+        Args:
+            path: The file. Empty lines in it are skipped.
+            ends: What the path does at its ends; see :class:`Waypoints`.
+
+        Returns:
+            The path.
+
+        Raises:
+            FileError: If the file cannot be read or is not as said above, naming the line.
+            InvalidInputError: If ``ends`` is not one of its values.
+        """
+        path = Path(path)
+        try:
+            with path.open(encoding="utf-8-sig", newline="") as file:
+                rows = np.array(list(_rows(path, file)))
+        except OSError as error:
+            if isinstance(error, FileError):
+                raise
+            raise FileError(path, error.strerror or str(error)) from error
+        except UnicodeDecodeError as error:
+            raise FileError(path, "not UTF-8 text") from error
+        except ValueError as error:  # a NUL in the path
+            raise FileError(path, str(error)) from error
+        if len(rows) < 2:
+            raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
+        try:
+            return cls(rows[:, 0], rows[:, 1:], ends)
+        except InvalidInputError as error:
+            if error.argument == "ends":
+                raise
+            raise FileError(path, str(error)) from error
+
+    def __repr__(self) -> str:
+        return f"Waypoints({len(self.times)} points, {self.duration:g} s, ends={self.ends!r})"
+
+    @property
+    def period(self) -> float:
+        """Time after which a closed path repeats [s]; inf for an open one."""
+        return self.duration if self.ends == "closed" else math.inf
+
+    @property
+    def duration(self) -> float:
+        """Time from the first point to the last [s]."""
+        return float(self.times[-1] - self.times[0])
+
+    def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
+        """See :meth:`Reference.displacement`."""
+        inside, _ = self._inside(t)
+        return np.asarray(self._spline(inside))
+
+    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """See :meth:`Reference.velocity`. Zero where the path rests, before and after."""
+        inside, moving = self._inside(t)
+        return np.asarray(self._spline(inside, 1)) * moving[..., np.newaxis]
+
+    def _inside(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Times folded or clipped into the spline's, and whether the path moves at them."""
+        t = np.asarray(t, dtype=np.float64)
+        if self.ends == "closed":
+            return np.mod(t, self.duration), np.ones(t.shape, dtype=np.bool_)
+        inside = np.clip(t, 0.0, self.duration)
+        return inside, inside == t
+
+
+def _rows(path: Path, file: Iterator[str]) -> Iterator[list[float]]:
+    """Rows of t, x, y, z; each complaint names its line."""
+    reader = csv.reader(file)
+    header: list[str] | None = None
+    last = -math.inf
+    try:
+        for row in reader:
+            cells = [cell.strip() for cell in row]
+            if not any(cells):
+                continue
+            if header is None:
+                header = [cell.lower() for cell in cells]
+                if header != _COLUMNS:
+                    raise FileError(path, f"line {reader.line_num}: the header must be t,x,y,z")
+                continue
+            values = _numbers(path, reader.line_num, cells)
+            if values[0] <= last:
+                raise FileError(path, f"line {reader.line_num}: t does not increase")
+            last = values[0]
+            yield values
+    except csv.Error as error:
+        raise FileError(path, f"line {reader.line_num}: {error}") from error
+    if header is None:
+        raise FileError(path, "line 1: the header must be t,x,y,z")
+
+
+def _numbers(path: Path, line: int, cells: list[str]) -> list[float]:
+    if len(cells) != len(_COLUMNS):
+        raise FileError(path, f"line {line}: 4 columns are needed, it has {len(cells)}")
+    values = []
+    for column, cell in zip(_COLUMNS, cells, strict=True):
+        try:
+            value = float(cell)
+        except ValueError:
+            raise FileError(path, f"line {line}: {column} is {cell!r}, not a number") from None
+        if not math.isfinite(value):
+            raise FileError(path, f"line {line}: {column} is {cell}, not finite")
+        values.append(value)
+    return values

@@ -1,0 +1,130 @@
+r"""The paper's scheme: minimum kinetic energy and cyclic motion, blended by one weight.
+
+.. math::
+
+    \min_{\dot q} \; \tfrac12 \bigl(\xi\,\dot q^T G(q)\,\dot q
+        + (1-\xi)\,\|\dot q + m\,(q - q_0)\|^2\bigr)
+
+subject to the position rows, the orientation rows and the velocity bounds. Expanded, and without
+its constant, that is a quadratic program with
+
+.. math::
+
+    P = \xi\,G(q) + (1-\xi)\,I, \qquad q_{\text{QP}} = (1-\xi)\,m\,(q - q_0).
+
+With G = I, as in the paper, P = I whatever the weight, which then acts through the linear term
+alone. Source: equations (6) and (7) of the paper.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import QP
+from iiwa_dnn.references import Target
+from iiwa_dnn.schemes.base import check_gain, position_rows
+from iiwa_dnn.schemes.bounds import velocity_bounds
+from iiwa_dnn.schemes.orientation import Orientation, check_orientation, orientation_rows
+
+Kinetic = Literal["identity", "inertia"]
+
+
+@dataclass(frozen=True)
+class DoubleIndicator:
+    """Minimum kinetic energy blended with cyclic motion generation.
+
+    Attributes:
+        weight: The paper's xi in [0, 1]; 1 is minimum kinetic energy, 0 cyclic motion.
+        drift_gain: The paper's m [1/s], how strongly the posture is drawn back.
+        position_gain: The paper's delta [1/s].
+        orientation_gain: The paper's nu as a feedback gain [1/s].
+        limit_gain: The paper's kappa [1/s], for the bounds near a joint limit.
+        orientation: ``"so3"``, ``"block"`` (the paper's) or ``"none"``.
+        kinetic: G(q): ``"identity"`` (the paper's) or ``"inertia"``, the joint-space inertia
+            matrix, which makes the index twice the true kinetic energy [J].
+        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is;
+            `simulate` anchors it at the start of the run.
+    """
+
+    weight: float = 0.2
+    drift_gain: float = 10.2
+    position_gain: float = 10.2
+    orientation_gain: float = 10.2
+    limit_gain: float = 20.0
+    orientation: Orientation = "so3"
+    kinetic: Kinetic = "identity"
+    home: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        """Check every parameter; raises InvalidInputError naming it."""
+        if not (math.isfinite(self.weight) and 0.0 <= self.weight <= 1.0):
+            raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
+        for name in ("drift_gain", "position_gain", "orientation_gain", "limit_gain"):
+            check_gain(name, getattr(self, name))
+        check_orientation(self.orientation)
+        if self.kinetic not in ("identity", "inertia"):
+            raise InvalidInputError(
+                "kinetic", f"must be identity or inertia, not {self.kinetic!r}", self.kinetic
+            )
+        if self.home is not None:
+            home = tuple(float(value) for value in self.home)
+            if not all(math.isfinite(value) for value in home):
+                raise InvalidInputError("home", "must be finite", self.home)
+            object.__setattr__(self, "home", home)
+
+    def anchored(self, conf: Configuration) -> DoubleIndicator:
+        """The same scheme with `conf` as home, unless it has a home already."""
+        return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
+
+    def build_qp(self, conf: Configuration, target: Target) -> QP:
+        """The program of this instant; its solution is the joint velocity [rad/s].
+
+        Args:
+            conf: Where the robot is, n joints.
+            target: Where it should be.
+
+        Returns:
+            A QP in n variables with 3 position rows and 3 (so3), 4 (block) or 0 orientation rows.
+
+        Raises:
+            InvalidInputError: `home` has another length than the robot has joints.
+        """
+        n = conf.q.size
+        position, position_rhs = position_rows(conf, target, self.position_gain)
+        angular, angular_rhs = orientation_rows(
+            self.orientation, conf, target, self.orientation_gain
+        )
+        P = (1.0 - self.weight) * np.eye(n) + self.weight * self._kinetic_matrix(conf)
+        linear = np.zeros(n)
+        if self.home is not None:
+            if len(self.home) != n:
+                raise InvalidInputError("home", f"has {len(self.home)} values for {n} joints")
+            linear = (1.0 - self.weight) * self.drift_gain * (conf.q - np.array(self.home))
+        lb, ub = velocity_bounds(conf, self.limit_gain)
+        return QP(
+            P,
+            linear,
+            A=np.concatenate([position, angular]),
+            b=np.concatenate([position_rhs, angular_rhs]),
+            lb=lb,
+            ub=ub,
+        )
+
+    def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
+        """dq^T G(q) dq: [rad^2/s^2] with G = I, [J] (twice the energy) with the inertia."""
+        velocity = np.asarray(dq, dtype=np.float64)
+        return float(velocity @ self._kinetic_matrix(conf) @ velocity)
+
+    def settings(self) -> dict[str, Any]:
+        """Name and parameters, as values that JSON can hold."""
+        return {"name": "double-indicator", **asdict(self)}
+
+    def _kinetic_matrix(self, conf: Configuration) -> Any:
+        return conf.inertia if self.kinetic == "inertia" else np.eye(conf.q.size)

@@ -1,0 +1,77 @@
+r"""The baseline that the paper argues against: the pseudo-inverse of the task's rows.
+
+.. math::  \dot q = A^{+} b = \arg\min \tfrac12 \|\dot q\|^2 \quad \text{s.t.} \quad A \dot q = b
+
+It knows no limits and does not draw the posture back, so it drifts on closed paths.
+
+Source: D. E. Whitney, "Resolved motion rate control of manipulators and human prostheses", IEEE
+Transactions on Man-Machine Systems 10 (1969).
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.schemes.base import check_gain, position_rows
+from iiwa_dnn.schemes.orientation import Orientation, check_orientation, orientation_rows
+
+
+@dataclass(frozen=True)
+class PseudoInverse:
+    """Least joint velocity that fulfils the task, without limits.
+
+    Attributes:
+        position_gain: Feedback gain [1/s].
+        orientation_gain: Feedback gain [1/s].
+        orientation: ``"so3"``, ``"block"`` or ``"none"``.
+    """
+
+    position_gain: float = 10.2
+    orientation_gain: float = 10.2
+    orientation: Orientation = "so3"
+
+    def __post_init__(self) -> None:
+        """Check every parameter; raises InvalidInputError naming it."""
+        check_gain("position_gain", self.position_gain)
+        check_gain("orientation_gain", self.orientation_gain)
+        check_orientation(self.orientation)
+
+    def anchored(self, conf: Configuration) -> PseudoInverse:
+        """The scheme itself: it has no posture to come back to."""
+        return self
+
+    def build_qp(self, conf: Configuration, target: Target) -> QP:
+        """The least-norm problem as a QP in n variables, without bounds."""
+        position, position_rhs = position_rows(conf, target, self.position_gain)
+        angular, angular_rhs = orientation_rows(
+            self.orientation, conf, target, self.orientation_gain
+        )
+        n = conf.q.size
+        return QP(
+            np.eye(n),
+            np.zeros(n),
+            A=np.concatenate([position, angular]),
+            b=np.concatenate([position_rhs, angular_rhs]),
+        )
+
+    def velocity(self, conf: Configuration, target: Target) -> Vector:
+        """The closed form A^+ b [rad/s], (n,), through numpy's singular value decomposition."""
+        qp = self.build_qp(conf, target)
+        velocity: Vector = np.linalg.pinv(qp.A) @ qp.b
+        return velocity
+
+    def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
+        """The squared norm of dq [rad^2/s^2]."""
+        velocity = np.asarray(dq, dtype=np.float64)
+        return float(velocity @ velocity)
+
+    def settings(self) -> dict[str, Any]:
+        """Name and parameters, as values that JSON can hold."""
+        return {"name": "pseudo-inverse", **asdict(self)}

@@ -1,0 +1,8 @@
+"""The controller closed around a robot that moves as it is told, with noise and a filter."""
+
+from iiwa_dnn.simulation.filters import MovingAverage
+from iiwa_dnn.simulation.loop import Simulation, simulate
+from iiwa_dnn.simulation.motion import MOTIONS
+from iiwa_dnn.simulation.noise import gaussian_noise
+
+__all__ = ["MOTIONS", "MovingAverage", "Simulation", "gaussian_noise", "simulate"]

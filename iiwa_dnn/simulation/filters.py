@@ -1,0 +1,47 @@
+r"""Filters of the joint velocity.
+
+The moving average is the paper's anti-noise mechanism, equation (9):
+
+.. math::
+
+    w_{\text{filtered}}(t) = \frac1N \sum_{i=0}^{N-1} w_{\text{noisy}}(t - i\,\Delta t)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import Vector
+
+
+class MovingAverage:
+    """Mean of the last samples; before the window is full, of those that there are.
+
+    Attributes:
+        window: Number of samples N; 1 passes every sample unchanged.
+    """
+
+    def __init__(self, window: int) -> None:
+        """Start empty.
+
+        Raises:
+            InvalidInputError: `window` is below 1.
+        """
+        if window < 1:
+            raise InvalidInputError("filter_window", f"must be at least 1, not {window}", window)
+        self.window = window
+        self._count = 0
+        self._samples = np.empty((0, 0))
+
+    def __call__(self, sample: Vector) -> Vector:
+        """Take one sample (n,) [rad/s] and return the mean of the window (n,)."""
+        if self.window == 1:
+            return sample
+        if self._count == 0:
+            self._samples = np.zeros((self.window, sample.size))
+        self._samples[self._count % self.window] = sample
+        self._count += 1
+        # A running sum would be quicker and would drift by its rounding.
+        mean: Vector = self._samples.sum(axis=0) / min(self._count, self.window)
+        return mean

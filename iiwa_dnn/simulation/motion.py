@@ -1,0 +1,42 @@
+r"""How the robot moves in one control step of length dt.
+
+Tracking is the ODE :math:`\dot q = w(q, t)`, w being the controller's answer. Each method gives
+the mean velocity of the step, so that the robot moves to ``q + dt * mean`` whatever happens to
+that velocity on its way (noise, a filter).
+
+Sources: Euler is the paper's equation (10). Midpoint and the classical fourth-order method:
+E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+from iiwa_dnn.qp import Vector
+
+Motion = Literal["euler", "midpoint", "rk4"]
+VelocityField = Callable[[Vector, float], Vector]
+Step = Callable[[VelocityField, Vector, float, float], Vector]
+
+
+def euler(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
+    """Order 1: the velocity at the start of the step [rad/s], (n,)."""
+    return velocity(q, t)
+
+
+def midpoint(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
+    """Order 2: the velocity half a step ahead [rad/s], (n,)."""
+    return velocity(q + 0.5 * dt * velocity(q, t), t + 0.5 * dt)
+
+
+def rk4(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
+    """Order 4: the classical weighted mean of four velocities [rad/s], (n,)."""
+    k1 = velocity(q, t)
+    k2 = velocity(q + 0.5 * dt * k1, t + 0.5 * dt)
+    k3 = velocity(q + 0.5 * dt * k2, t + 0.5 * dt)
+    k4 = velocity(q + dt * k3, t + dt)
+    return (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
+
+
+MOTIONS: dict[str, Step] = {"euler": euler, "midpoint": midpoint, "rk4": rk4}

@@ -1,0 +1,134 @@
+"""The program's container, its checks and its judgement of a solution."""
+
+import numpy as np
+import pytest
+import qpsolvers
+import scipy.sparse as spa
+
+from helpers_qp import known_qp
+from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Solution, Status, kernels
+
+
+def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
+    qp = QP(np.eye(3), np.zeros(3))
+    assert qp.G.shape == (0, 3)
+    assert qp.A.shape == (0, 3)
+    assert (qp.lb == -np.inf).all()
+    assert (qp.ub == np.inf).all()
+    problem = qp.to_qpsolvers()
+    assert problem.is_unconstrained
+
+
+def test_round_trip_through_qpsolvers_keeps_every_array() -> None:
+    qp, _ = known_qp(np.random.default_rng(0), 5, 2, 2, inequalities=3)
+    again = QP.from_qpsolvers(qp.to_qpsolvers())
+    for one, other in zip(qp.arrays(), again.arrays(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_sparse_and_single_row_problems_are_taken() -> None:
+    problem = qpsolvers.Problem(
+        spa.eye(3, format="csc"), np.ones(3), np.ones(3), np.array([2.0]), lb=np.zeros(3)
+    )
+    qp = QP.from_qpsolvers(problem)
+    np.testing.assert_array_equal(qp.P, np.eye(3))
+    assert qp.G.shape == (1, 3)
+
+
+def test_fields_are_views_of_one_array_and_copies_of_what_was_given() -> None:
+    qp, _ = known_qp(np.random.default_rng(0), 4, 2, 1, inequalities=3)
+    assert sum(array.size for array in qp.arrays()) == qp.data.size
+    assert all(np.shares_memory(array, qp.data) for array in qp.arrays())
+    # Read-only arrays would be another type to numba: a compilation in the middle of a run.
+    given = np.zeros(2)
+    given.setflags(write=False)
+    made = QP(np.eye(2), given, lb=given)
+    assert made.data.flags.writeable
+    assert not np.shares_memory(made.data, given)
+    again = QP.from_data(qp.data.copy(), qp.sizes)
+    for one, other in zip(qp.arrays(), again.arrays(), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"q": []}, "q"),
+        ({"q": "text"}, "q"),
+        ({"P": np.eye(2)}, "P"),
+        ({"P": np.ones((2, 3))}, "P"),
+        ({"A": np.ones((2, 3)), "b": np.ones(3)}, "b"),
+        ({"A": np.ones((2, 2)), "b": np.ones(2)}, "A"),
+        ({"A": np.ones((1, 3))}, "b"),
+        ({"h": np.ones(1)}, "G"),
+        ({"G": np.ones((1, 3)), "h": [[1.0, 2.0]]}, "h"),
+        ({"lb": np.zeros(2)}, "lb"),
+        ({"ub": "text"}, "ub"),
+    ],
+)
+def test_wrong_shapes_name_the_argument(arguments: dict, name: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        QP(**{"P": np.eye(3), "q": np.zeros(3), **arguments})
+    assert caught.value.argument == name
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"P": np.diag([1.0, np.nan, 1.0])}, "P"),
+        ({"q": [0.0, np.inf, 0.0]}, "q"),
+        ({"P": np.array([[1.0, 1.0, 0], [0, 1.0, 0], [0, 0, 1.0]])}, "P"),
+        ({"P": np.diag([1.0, -1e-3, 1.0])}, "P"),
+        ({"lb": [0.0, 0.0, 2.0], "ub": [1.0, 1.0, 1.0]}, "lb"),
+        ({"ub": [np.nan, 1.0, 1.0]}, "ub"),
+        ({"lb": [np.inf, 1.0, 1.0]}, "lb"),
+        ({"G": np.ones((1, 3)), "h": [np.nan]}, "h"),
+        ({"A": np.full((1, 3), np.inf), "b": [0.0]}, "A"),
+        ({"A": np.ones((1, 3)), "b": [np.nan]}, "b"),
+    ],
+)
+def test_impossible_values_name_the_argument(arguments: dict, name: str) -> None:
+    qp = QP(**{"P": np.eye(3), "q": np.zeros(3), **arguments})
+    with pytest.raises(InvalidInputError) as caught:
+        qp.check_values()
+    assert caught.value.argument == name
+
+
+def test_residuals_are_those_of_qpsolvers() -> None:
+    rng = np.random.default_rng(1)
+    for case in range(50):
+        qp, _ = known_qp(rng, 6, 2, case % 6, inequalities=4)
+        n, p, m = 6, 2, 4
+        state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
+        point = np.empty(n + p + m + n)
+        ours = kernels.kkt_point(qp.arrays(), state, point)
+        judged = qpsolvers.Solution(
+            qp.to_qpsolvers(),
+            found=True,
+            x=point[:n],
+            y=point[n : n + p],
+            z=point[n + p : n + p + m],
+            z_box=point[n + p + m :],
+        )
+        theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
+        np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-13)
+        assert (point[:n] >= qp.lb).all()
+        assert (point[:n] <= qp.ub).all()
+        assert (point[n + p : n + p + m] >= 0).all()
+
+
+def test_largest_residual_does_not_lose_a_nan() -> None:
+    assert Residuals(1e-9, 3e-9, 2e-9).largest == 3e-9
+    assert np.isnan(Residuals(1.0, float("nan"), 0.0).largest)
+
+
+def test_a_solution_that_was_not_found_carries_no_x() -> None:
+    qp, _ = known_qp(np.random.default_rng(2), 4, 1, 1)
+    good = DNNSolver().solve(qp)
+    bad = Solution(
+        good.x, good.y, good.z, good.z_box, Status.NOT_SETTLED, 1, 1.0, Residuals(1.0, 1.0, 1.0)
+    ).to_qpsolvers(qp.to_qpsolvers())
+    assert bad.found is False
+    assert bad.x is None
+    assert bad.primal_residual() == np.inf
+    np.testing.assert_array_equal(bad.extras["last_x"], good.x)

@@ -1,0 +1,143 @@
+"""The network as a solver: against known solutions, two other solvers, and its own promises."""
+
+import numpy as np
+import pytest
+import qpsolvers
+import scipy.sparse as spa
+
+import iiwa_dnn
+from helpers_qp import known_qp
+from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Status
+
+REFERENCES = CrossCheck(("proxqp", "osqp"))
+
+
+@pytest.mark.parametrize("active", range(8))
+@pytest.mark.parametrize(("equalities", "dependent"), [(0, False), (3, False), (4, True)])
+def test_equilibrium_agrees_with_two_solvers(active: int, equalities: int, dependent: bool) -> None:
+    rng = np.random.default_rng([active, equalities])
+    believed = np.zeros(2, dtype=int)
+    for _ in range(5):
+        qp, x = known_qp(rng, 7, equalities, active, dependent)
+        solution = DNNSolver().solve(qp)
+        assert solution.found
+        assert solution.residuals.largest <= 1e-9
+        assert np.abs(solution.x - x).max() < 1e-6
+        agreement = REFERENCES.check(qp, solution.x)
+        answered = agreement.reference_residual <= 1e-8
+        assert (agreement.solution_gap[answered] < 1e-6).all()
+        believed += answered
+    # ProxQP calls about one of a thousand such problems infeasible, wrongly; OSQP none.
+    assert believed[0] >= 4
+    assert believed[1] == 5
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_general_problems_with_everything_active(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(2, 20))
+    qp, x = known_qp(
+        rng, n, int(rng.integers(0, n // 2 + 1)), int(rng.integers(0, n + 1)),
+        inequalities=int(rng.integers(0, 2 * n)),
+    )  # fmt: skip
+    solution = iiwa_dnn.solve_problem(qp)
+    assert solution.found
+    assert solution.is_optimal(1e-8)
+    assert np.abs(solution.x - x).max() < 1e-5
+
+
+def test_multipliers_have_qpsolvers_signs() -> None:
+    # min (x - t)^2/2: pushed against ub, against lb, against G, and free.
+    problem = qpsolvers.Problem(
+        np.eye(3), np.array([-5.0, 5.0, -5.0]), G=np.array([[0.0, 0.0, 1.0]]), h=np.array([2.0]),
+        lb=np.full(3, -1.0), ub=np.full(3, 3.0),
+    )  # fmt: skip
+    solution = iiwa_dnn.solve_problem(problem)
+    np.testing.assert_allclose(solution.x, [3.0, -1.0, 2.0], atol=1e-9)
+    np.testing.assert_allclose(solution.z_box, [2.0, -4.0, 0.0], atol=1e-9)
+    np.testing.assert_allclose(solution.z, [3.0], atol=1e-9)
+    assert solution.obj == pytest.approx(0.5 * (9 + 1 + 4) - 15 - 5 - 10)
+
+
+def test_sparse_problem_and_extras() -> None:
+    problem = qpsolvers.Problem(
+        spa.eye(4, format="csc"), -np.ones(4), A=spa.csc_matrix(np.ones((1, 4))), b=np.array([1.0])
+    )
+    solution = iiwa_dnn.solve_problem(problem)
+    np.testing.assert_allclose(solution.x, np.full(4, 0.25), atol=1e-9)
+    assert solution.z is None
+    assert solution.z_box is None
+    assert solution.extras["status"] == "solved"
+    assert solution.extras["primal_residual"] <= 1e-9
+
+
+def test_tolerance_is_kept_or_not_claimed() -> None:
+    qp, _ = known_qp(np.random.default_rng(7), 8, 3, 3, inequalities=4)
+    for tol in (1e-3, 1e-6, 1e-9):
+        solution = iiwa_dnn.solve_problem(qp, tol=tol)
+        assert solution.found
+        assert solution.is_optimal(tol * (1 + 1e-12))
+    # Below rounding nothing can be promised, and nothing is.
+    impossible = iiwa_dnn.solve_problem(qp, tol=1e-30)
+    assert impossible.found is False
+    assert impossible.x is None
+
+
+def test_contradictory_equalities_are_not_found() -> None:
+    qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 1.0], [1.0, 1.0]], b=[0.0, 1.0])
+    assert iiwa_dnn.solve_problem(qp).found is False
+
+
+def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
+    rng = np.random.default_rng(8)
+    qp, _ = known_qp(rng, 7, 3, 3)
+    solver = DNNSolver()
+    cold = solver.solve(qp).iterations
+    warm = solver.solve(qp).iterations
+    assert warm == 0
+    solver.reset()
+    assert solver.solve(qp).iterations == cold
+    other, _ = known_qp(rng, 5, 1, 1)
+    assert solver.solve(other).found  # another shape starts anew
+    assert solver.state.size == 3 * 5 + 1
+
+
+def test_bounds_are_kept_exactly() -> None:
+    for seed in range(20):
+        qp, _ = known_qp(np.random.default_rng(seed), 7, 3, 4)
+        x = DNNSolver().solve(qp).x
+        assert (x >= qp.lb).all()
+        assert (x <= qp.ub).all()
+
+
+def test_advance_moves_by_the_time_given_and_says_how_far_it_is() -> None:
+    qp, x = known_qp(np.random.default_rng(9), 5, 2, 1)
+    solver = DNNSolver()
+    first = solver.advance(qp, 1e-4)
+    assert first.status is Status.ADVANCED
+    assert not first.found
+    assert first.network_time == pytest.approx(1e-4 / 9e-5)
+    gaps = [np.abs(solver.advance(qp, 1e-4).x - x).max() for _ in range(3000)]
+    assert gaps[-1] < 1e-3 < gaps[0]
+
+
+def test_a_state_that_is_not_a_number_is_reported_and_forgotten() -> None:
+    good, x = known_qp(np.random.default_rng(10), 4, 1, 1)
+    bad = QP(good.P, np.full(4, np.nan), A=good.A, b=good.b, lb=good.lb, ub=good.ub)
+    solver = DNNSolver()
+    assert solver.solve(bad).status is Status.NOT_FINITE
+    assert solver.advance(bad, 1e-4).status is Status.NOT_FINITE
+    after = solver.solve(good)
+    assert after.found
+    assert np.abs(after.x - x).max() < 1e-6
+
+
+@pytest.mark.parametrize("tol", [0.0, -1.0, float("nan"), float("inf")])
+def test_tolerance_must_be_positive(tol: float) -> None:
+    with pytest.raises(InvalidInputError, match="tol"):
+        DNNSolver(tol=tol)
+
+
+def test_bad_problem_names_the_argument() -> None:
+    with pytest.raises(InvalidInputError, match=r"^P:"):
+        iiwa_dnn.solve_problem(qpsolvers.Problem(-np.eye(2), np.zeros(2)))
