@@ -23,8 +23,11 @@ $(STAMP): pyproject.toml constraints.txt
 		{ echo "setup: Python >= 3.10 is needed, $(PYTHON) is $$($(PYTHON) -c 'import platform; print(platform.python_version())'); name another: make setup PYTHON=..." >&2; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
 		{ echo 'setup: $(PYTHON) lacks its venv module; on Debian and Ubuntu: apt-get install python3-venv' >&2; exit 1; }
+	@$(PYTHON) -c 'import ctypes, sys; sys.platform == "linux" and ctypes.CDLL("libgomp.so.1")' 2>/dev/null || \
+		{ echo 'setup: the OpenMP library that Pinocchio and ProxQP load is missing; on Debian and Ubuntu: apt-get install libgomp1' >&2; exit 1; }
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
-	$(VENV_PYTHON) -m pip install --disable-pip-version-check -c constraints.txt -e '.[robots,dev]'
+	@echo 'setup: installing into $(VENV), 1.6 GB on disk in the end; the first time takes some minutes'
+	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,dask,dev]'
 	@touch $@
 
 heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart

@@ -7,10 +7,11 @@ Exit code 0: done, and every check agreed. 1: a step disagreed, was not solved, 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from tqdm import tqdm
@@ -19,6 +20,7 @@ from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import MODES
 from iiwa_dnn.crosscheck import CrossCheck
 from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError
+from iiwa_dnn.experiments import paper
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.metrics import failures
 from iiwa_dnn.qp import Vector
@@ -27,19 +29,23 @@ from iiwa_dnn.report import save_run, summary
 from iiwa_dnn.robot import Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.schemes.orientation import ORIENTATIONS
-from iiwa_dnn.simulation import MOTIONS, Simulation
+from iiwa_dnn.simulation import MOTIONS, NOISE_ENTRIES, Simulation
 
-PAPER_START = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
-"""The paper's theta(0) [rad], for the iiwa 7."""
-
-PAPER_LIMIT = 2.5
-"""The paper's position limit on every joint [rad]: of its experiment, not of the robot."""
+PAPER_START = paper.START
+PAPER_LIMIT = paper.JOINT_LIMIT
 
 CHECKS = {"proxqp": ("proxqp",), "osqp": ("osqp",), "both": ("proxqp", "osqp"), "none": ()}
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong with an argument in one line, and exits with code 2."""
+
+    def __init__(self, **options: Any) -> None:
+        """Take "-1e-3" for a number, as Python itself does from 3.14 on."""
+        super().__init__(**options)
+        self._negative_number_matcher = re.compile(r"^-(\d|\.\d)")
+
+    def error(self, message: str) -> NoReturn:  # noqa: D102
         # argparse would print the whole usage first; the promise is one clear line.
         self.exit(2, f"{self.prog}: error: {message} (--help lists the options)\n")
 
@@ -70,7 +76,8 @@ def track_heart(arguments: Sequence[str] | None = None) -> int:
             record = simulation.run(bar.update)
         metrics = save_run(record, folder, plots=options.plots)
     except IiwaDnnError as error:
-        print(f"{parser.prog}: error: {error}", file=sys.stderr)
+        # One line, whatever stands in a file's name.
+        print(f"{parser.prog}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     reasons = failures(record)
     if not options.quiet:
@@ -82,7 +89,7 @@ def track_heart(arguments: Sequence[str] | None = None) -> int:
 
 
 def _track_parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = Parser(
         prog="track_heart",
         description="Draw the paper's heart with a robot arm; the network solves every step's "
         "quadratic program and other solvers check it. Defaults: the paper's experiment.",
@@ -107,6 +114,12 @@ def _track_parser() -> argparse.ArgumentParser:
     add("--scale", type=float, default=3.45e-3, metavar="M", help="heart's a (%(default)s)")
     add("--motion", choices=tuple(MOTIONS), default="euler", help="integration (%(default)s)")
     add("--noise", type=float, default=0.0, metavar="RAD/S", help="std. deviation (%(default)s)")
+    add(
+        "--noise-at",
+        choices=NOISE_ENTRIES,
+        default="velocity",
+        help="where it enters; at measurement, --noise is in rad (%(default)s)",
+    )
     add("--filter-window", type=int, default=1, metavar="N", help="moving average (%(default)s)")
     add("--seed", type=int, default=0, help="of the noise (%(default)s)")
     add("--check", choices=tuple(CHECKS), default="proxqp", help="reference (%(default)s)")
@@ -136,6 +149,7 @@ def _simulation(options: argparse.Namespace) -> Simulation:
         mode=options.mode,
         motion=options.motion,
         noise=options.noise,
+        noise_at=options.noise_at,
         filter_window=options.filter_window,
         seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),

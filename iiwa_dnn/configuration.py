@@ -31,10 +31,9 @@ class Configuration:
     """
 
     # Built at every control step, so: slots, and no numpy call that is not needed.
-    __slots__ = ("_data", "_inertia", "_jacobian", "_position", "_q", "_robot", "_rotation")
+    __slots__ = ("_data", "_inertia", "_jacobian", "_pose", "_q", "_robot")
     _jacobian: NDArray[np.float64]
-    _position: NDArray[np.float64]
-    _rotation: NDArray[np.float64]
+    _pose: NDArray[np.float64]
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
         self._q = q = _joint_vector(q, robot.q_lower.shape)
@@ -44,14 +43,12 @@ class Configuration:
         model, tip_id = robot.model, robot.tip_id
         if data is None:
             data = model.createData()
+        # Both are new arrays, not views of the scratch memory.
         self._jacobian = pin.computeFrameJacobian(model, data, q, tip_id, _WORLD_AXES)
         # The call above has placed the joints, so this one need not run over the chain again.
-        pose = pin.updateFramePlacement(model, data, tip_id)
-        self._position = pose.translation.copy()
-        self._rotation = pose.rotation.copy()
+        self._pose = pin.updateFramePlacement(model, data, tip_id).homogeneous
         self._jacobian.setflags(write=False)
-        self._position.setflags(write=False)
-        self._rotation.setflags(write=False)
+        self._pose.setflags(write=False)
 
     @property
     def robot(self) -> Robot:
@@ -64,14 +61,19 @@ class Configuration:
         return self._q
 
     @property
+    def pose(self) -> NDArray[np.float64]:
+        """Pose of the tip in the world as a homogeneous matrix, shape (4, 4)."""
+        return self._pose
+
+    @property
     def position(self) -> NDArray[np.float64]:
         """Position of the tip in the world [m], shape (3,)."""
-        return self._position
+        return self._pose[:3, 3]
 
     @property
     def rotation(self) -> NDArray[np.float64]:
         """Orientation of the tip, shape (3, 3): columns are the tip's axes in the world."""
-        return self._rotation
+        return self._pose[:3, :3]
 
     @property
     def jacobian(self) -> NDArray[np.float64]:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
+from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import QP, Solution, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.schemes import Scheme
@@ -16,19 +15,21 @@ Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(NamedTuple):
     """What a control step decided, and why.
 
     Attributes:
-        dq: Joint velocity [rad/s], (n,), inside the velocity bounds.
         qp: The program that was solved.
         solution: The network's answer to it.
     """
 
-    dq: Vector
     qp: QP
     solution: Solution
+
+    @property
+    def dq(self) -> Vector:
+        """Joint velocity [rad/s], (n,), inside the velocity bounds."""
+        return self.solution.x
 
 
 class Controller:
@@ -48,10 +49,10 @@ class Controller:
         """Bring the parts together.
 
         Raises:
-            InvalidInputError: `mode` is not one of ``MODES``.
+            InvalidInputError: `mode` is not one of ``MODES``, or `dt` is not a positive time.
         """
-        if mode not in MODES:
-            raise InvalidInputError("mode", f"must be one of {', '.join(MODES)}, not {mode!r}")
+        checks.one_of("mode", mode, MODES)
+        checks.positive("dt", dt)
         self.scheme = scheme
         self.solver = solver
         self.mode = mode
@@ -64,4 +65,4 @@ class Controller:
             solution = self.solver.solve(qp)
         else:
             solution = self.solver.advance(qp, self.dt)
-        return Command(solution.x, qp, solution)
+        return Command(qp, solution)

@@ -6,16 +6,17 @@ nothing of the network's state. Its own residuals are looked at before it is bel
 
 from __future__ import annotations
 
-import math
+import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import qpsolvers
 import scipy.sparse as spa
 
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn import checks
+from iiwa_dnn.qp import QP, Matrix, Vector
 
 # Tight enough that a gap of 1e-6 rad/s says something about the network and not about the
 # reference. OSQP at its defaults (1e-3) would not do; polishing takes it to machine precision.
@@ -27,42 +28,44 @@ _SOLVER_OPTIONS: dict[str, dict[str, Any]] = {
         # Off by default, and the gap of an answer called solved was then seen at 1e-4.
         "check_duality_gap": True,
         "eps_duality_gap_abs": 1e-9,
+        # Ten are enough for a program that has a solution; on one that has none, as the paper's
+        # rows once the tool lags, the default of 10,000 takes 0.1 s a program.
+        "max_iter": 100,
     },
     "osqp": {
         "eps_abs": 1e-9,
         "eps_rel": 0.0,
         "polishing": True,
-        "max_iter": 50_000,
+        "max_iter": 10_000,
         "raise_error": False,
     },
 }
 SOLVERS = tuple(_SOLVER_OPTIONS)
 
 
-@dataclass(frozen=True)
-class Agreement:
-    """What k reference solvers say of one answer; NaN gaps where a reference failed.
+class Agreement(NamedTuple):
+    """What k reference solvers say of answers to N programs; NaN gaps where a reference failed.
 
     Attributes:
-        solution_gap: Largest difference in x, (k,); joint velocities in [rad/s].
-        objective_gap: Absolute difference in the objective, (k,).
-        reference_residual: Largest KKT residual of each reference, (k,); inf without an answer.
+        solution_gap: Largest difference in x, (N, k); joint velocities in [rad/s].
+        objective_gap: Absolute difference in the objective, (N, k).
+        reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
     """
 
-    solution_gap: Vector
-    objective_gap: Vector
-    reference_residual: Vector
+    solution_gap: Matrix
+    objective_gap: Matrix
+    reference_residual: Matrix
 
     @classmethod
-    def worst(cls, agreements: list[Agreement]) -> Agreement:
-        """The largest gaps and residuals of several, as for the stages of one control step."""
-        if len(agreements) == 1:
-            return agreements[0]
-        return cls(
-            np.maximum.reduce([a.solution_gap for a in agreements]),
-            np.maximum.reduce([a.objective_gap for a in agreements]),
-            np.maximum.reduce([a.reference_residual for a in agreements]),
-        )
+    def joined(cls, parts: Sequence[Agreement], solvers: int) -> Agreement:
+        """The agreements of several blocks, one after the other, for k = `solvers`."""
+        nothing = [np.empty((0, solvers))]
+        return cls(*(np.concatenate(nothing + [part[i] for part in parts]) for i in range(3)))
+
+    def worst_of(self, group: int) -> Agreement:
+        """The largest of each `group` of consecutive programs, as for the stages of a step."""
+        steps, k = len(self.solution_gap) // group, self.solution_gap.shape[1]
+        return Agreement(*(array.reshape(steps, group, k).max(axis=1) for array in self))
 
 
 @dataclass(frozen=True)
@@ -85,42 +88,52 @@ class CrossCheck:
     def __post_init__(self) -> None:
         """Check the names and the tolerances; raises InvalidInputError naming the argument."""
         for name in self.solvers:
-            if name not in SOLVERS:
-                known = ", ".join(SOLVERS)
-                raise InvalidInputError("solvers", f"{name!r} is not one of {known}", name)
+            checks.one_of("solvers", name, SOLVERS)
         for name in ("tolerance", "reference_tolerance"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise InvalidInputError(name, f"must be a positive number, not {value}", value)
+            checks.positive(name, getattr(self, name))
 
     def check(self, qp: QP, x: Vector) -> Agreement:
-        """Ask every reference for the program's solution and compare.
+        """Ask every reference for one program's solution and compare; N = 1.
 
         Args:
             qp: The program, n variables.
             x: The answer to be judged, (n,).
+        """
+        return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(x)[np.newaxis])
+
+    def check_block(self, programs: Matrix, sizes: tuple[int, int, int], x: Matrix) -> Agreement:
+        """Ask every reference for the solutions of N programs of one shape and compare.
+
+        Args:
+            programs: One `QP.data` a row.
+            sizes: Their `QP.sizes`.
+            x: The answers to be judged, (N, n).
 
         Returns:
-            Gaps and residuals, one entry per reference.
+            Gaps and residuals, one row a program and one column a reference.
         """
-        count = len(self.solvers)
-        solution_gap, objective_gap = np.full(count, np.nan), np.full(count, np.nan)
-        residual = np.full(count, np.inf)
-        problem = qp.to_qpsolvers()
-        for i, name in enumerate(self.solvers):
-            reference = self._solve(name, problem)
-            if reference is None or reference.x is None:
-                continue
-            residual[i] = max(
-                reference.primal_residual(), reference.dual_residual(), reference.duality_gap()
-            )
-            if residual[i] <= self.reference_tolerance:
-                best = reference.x
-                solution_gap[i] = np.abs(x - best).max()
-                # As a difference of points: subtracting two objectives would cancel.
-                step = x - best
-                objective_gap[i] = abs(step @ (qp.P @ (x + best)) / 2.0 + qp.q @ step)
-        return Agreement(solution_gap, objective_gap, residual)
+        count, k = len(x), len(self.solvers)
+        verdict = Agreement(*(np.full((count, k), fill) for fill in (np.nan, np.nan, np.inf)))
+        # Solvers may take minutes over one NaN.
+        askable = np.flatnonzero(~np.isnan(programs).any(axis=1)) if k else ()
+        for i in askable:
+            row = programs[i]
+            qp = QP.from_data(row, sizes)
+            problem = qp.to_qpsolvers()
+            for j, name in enumerate(self.solvers):
+                reference = self._solve(name, problem)
+                if reference is None or reference.x is None:
+                    continue
+                residual = qp.residuals(reference.x, reference.y, reference.z, reference.z_box)
+                verdict.reference_residual[i, j] = residual.largest
+                if residual.largest <= self.reference_tolerance:
+                    step = x[i] - reference.x
+                    verdict.solution_gap[i, j] = np.abs(step).max()
+                    # As a difference of points: subtracting two objectives would cancel.
+                    verdict.objective_gap[i, j] = abs(
+                        step @ (qp.P @ (x[i] + reference.x)) / 2.0 + qp.q @ step
+                    )
+        return verdict
 
     def settings(self) -> dict[str, Any]:
         """What the record says of the check."""
@@ -132,19 +145,30 @@ class CrossCheck:
 
     def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
         """The reference's solution, or None where it has none."""
-        if name == "osqp":  # takes sparse matrices only, and qpsolvers warns when it converts
-            problem = qpsolvers.Problem(
-                spa.csc_matrix(problem.P),
-                problem.q,
-                None if problem.G is None else spa.csc_matrix(problem.G),
-                problem.h,
-                None if problem.A is None else spa.csc_matrix(problem.A),
-                problem.b,
-                problem.lb,
-                problem.ub,
-            )
+        options = self._options[name]
         try:
-            solution = qpsolvers.solve_problem(problem, solver=name, **self._options[name])
+            if name == "osqp":
+                solution = _solve_sparse(problem, options)
+            else:
+                solution = qpsolvers.solve_problem(problem, solver=name, **options)
         except qpsolvers.exceptions.QPError:
             return None
         return solution if solution.found else None
+
+
+def _solve_sparse(problem: qpsolvers.Problem, options: dict[str, Any]) -> qpsolvers.Solution:
+    """OSQP's answer: it takes sparse matrices only, and qpsolvers warns when it converts."""
+    sparse = qpsolvers.Problem(
+        spa.csc_matrix(problem.P),
+        problem.q,
+        None if problem.G is None else spa.csc_matrix(problem.G),
+        problem.h,
+        None if problem.A is None else spa.csc_matrix(problem.A),
+        problem.b,
+        problem.lb,
+        problem.ub,
+    )
+    with warnings.catch_warnings():
+        # It also warns of every program that is not solved; the residual says so, too.
+        warnings.simplefilter("ignore", UserWarning)
+        return qpsolvers.solve_problem(sparse, solver="osqp", **options)

@@ -68,7 +68,7 @@ def prepare_folder(folder: str | os.PathLike[str]) -> Path:
         probe = folder / f".{secrets.token_hex(8)}.tmp"
         probe.touch(exist_ok=False)
         probe.unlink()
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a name with a NUL in it
         raise FileError(folder, f"cannot be written to ({one_line(error)})") from error
     return folder
 

@@ -1,117 +1,213 @@
 """The inner loops that are compiled with numba; nothing is compiled elsewhere.
 
-A quadratic program travels as the tuple ``qp = (P, q, G, h, A, b, lb, ub)`` of `QP.arrays`. The
-state of the projection network is one flat array ``s = [x | y | z | u | l]`` with
+First the assembly of a control step's program, then the network that answers it. A quadratic
+program travels as `QP.data` with its sizes n, m, p, and is read in place:
+
+    P[i, k]  data[i n + k]          G[j, i]  data[at_G + j n + i]     lb[i]  data[at_lb + i]
+    q[i]     data[at_q + i]         A[j, i]  data[at_A + j n + i]     ub[i]  data[at_lb + n + i]
+    h[j]     data[at_G + m n + j]   b[j]     data[at_lb - p + j]
+
+The state of the projection network is one flat array, ``s = [x | y | z | u | l]``, with
 
     x (n)  the decision variables          z (m)  multipliers of G x <= h
     y (p)  multipliers of A x = b          u, l (n each)  multipliers of x <= ub and lb <= x
 
 so u and l are the paper's mu for Omega = [I; -I]. Time is in units of the time constant rho.
-The mathematics stands in `iiwa_dnn.networks.projection` and `iiwa_dnn.integrators.implicit`.
+The mathematics stands in `iiwa_dnn.schemes`, `iiwa_dnn.networks.projection` and
+`iiwa_dnn.integrators.implicit`.
 """
 
-# The kernels are plain loops on purpose: for seven joints a BLAS call costs more than its work.
+# The kernels are plain loops over flat arrays on purpose. For seven joints a BLAS call costs more
+# than its work, and so does every view: numba counts its references.
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
 
-@njit(cache=True, error_model="numpy")
-def unpack(data, n, m, p):
-    """The tuple qp as views of `QP.data`."""
-    end_p = n * n
-    end_g = end_p + n + m * n
-    end_a = end_g + m + p * n
-    end = end_a + p
-    return (
-        data[:end_p].reshape(n, n),
-        data[end_p : end_p + n],
-        data[end_p + n : end_g].reshape(m, n),
-        data[end_g : end_g + m],
-        data[end_g + m : end_a].reshape(p, n),
-        data[end_a:end],
-        data[end : end + n],
-        data[end + n :],
-    )
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def offsets(n, m, p):
+    """``(at_q, at_G, at_A, at_lb)``: where the parts of `QP.data` begin."""
+    at_q = n * n
+    at_G = at_q + n
+    at_A = at_G + m * n + m
+    return at_q, at_G, at_A, at_A + p * n + p
 
 
-@njit(cache=True, error_model="numpy")
-def multiplier_field(qp, s, out, active):
-    """Write the rates of y, z, u, l into `out`; flag the multipliers with mu + Omega x - chi > 0.
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def larger(largest, value):
+    """The larger of two; unlike with max(), a NaN once seen stays."""
+    return value if value > largest or value != value else largest
 
-    Returns:
-        The largest absolute rate; NaN if one is NaN.
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def rotation_log(R, out):
+    """Write the rotation vector of R, of length at most pi, into `out`.
+
+    Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
     """
-    _, q, G, h, A, b, lb, ub = qp
-    n, p, m = q.size, b.size, h.size
-    largest = 0.0
-    for j in range(p):
-        rate = -b[j]
-        for i in range(n):
-            rate += A[j, i] * s[i]
-        out[n + j] = rate
-        # max() would drop a NaN, a failed comparison keeps it.
-        largest = largest if abs(rate) <= largest else abs(rate)
-    for k in range(m + 2 * n):
-        if k < m:
-            slack = -h[k]
-            for i in range(n):
-                slack += G[k, i] * s[i]
-        elif k < m + n:
-            slack = s[k - m] - ub[k - m]
-        else:
-            slack = lb[k - m - n] - s[k - m - n]
-        multiplier = s[n + p + k]
-        active[k] = multiplier + slack > 0.0
-        rate = slack if active[k] else -multiplier
-        out[n + p + k] = rate
-        largest = largest if abs(rate) <= largest else abs(rate)
-    return largest
+    trace = R[0, 0] + R[1, 1] + R[2, 2]
+    if trace > 0.0:
+        w = 0.5 * np.sqrt(1.0 + trace)
+        out[0] = (R[2, 1] - R[1, 2]) / (4.0 * w)
+        out[1] = (R[0, 2] - R[2, 0]) / (4.0 * w)
+        out[2] = (R[1, 0] - R[0, 1]) / (4.0 * w)
+    else:
+        i = 0
+        if R[1, 1] > R[0, 0]:
+            i = 1
+        if R[2, 2] > R[i, i]:
+            i = 2
+        j, k = (i + 1) % 3, (i + 2) % 3
+        largest = 0.5 * np.sqrt(max(1.0 + R[i, i] - R[j, j] - R[k, k], 0.0))
+        w = (R[k, j] - R[j, k]) / (4.0 * largest)
+        sign = 1.0 if w >= 0.0 else -1.0
+        w *= sign
+        out[i] = sign * largest
+        out[j] = sign * (R[i, j] + R[j, i]) / (4.0 * largest)
+        out[k] = sign * (R[i, k] + R[k, i]) / (4.0 * largest)
+    sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+    # angle / sin(angle / 2), whose limit at 0 is 2
+    scale = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
+    for i in range(3):
+        out[i] *= scale
 
 
-@njit(cache=True, error_model="numpy")
-def lagrangian_gradient(qp, s, out):
-    """Write P x + q + A^T y + G^T z + u - l into out[:n]."""
-    P, q, G, h, A, b, _, _ = qp
-    n, p, m = q.size, b.size, h.size
-    for i in range(n):
-        value = q[i] + s[n + p + m + i] - s[n + p + m + n + i]
-        for k in range(n):
-            value += P[i, k] * s[k]
-        out[i] = value
-    for j in range(p):
-        y = s[n + j]
-        for i in range(n):
-            out[i] += A[j, i] * y
-    for j in range(m):
-        z = s[n + p + j]
-        if z != 0.0:
-            for i in range(n):
-                out[i] += G[j, i] * z
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def block_map(R, out):
+    """Write W(R) (4, 3): the rate of [R11 R12 R21 R22] is W(R) times the angular velocity."""
+    out[:] = 0.0
+    for column in range(2):
+        out[column, 1] = R[2, column]
+        out[column, 2] = -R[1, column]
+        out[2 + column, 0] = -R[2, column]
+        out[2 + column, 2] = R[0, column]
 
 
-@njit(cache=True, error_model="numpy")
-def field(qp, project, s, out, active):
-    """Write the network's rates rho ds/dt into `out`; with `project`, x goes through its bounds.
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def orientation_rows(mode, pose, jacobian, target, gain, rows, rhs):
+    """Write the orientation task's rows (k, n) and right-hand side (k,).
 
-    Returns:
-        The largest absolute rate: zero exactly at a KKT point.
+    Mode 1 is so3 with k = 3, mode 2 the paper's block with k = 4, mode 0 nothing.
     """
-    _, q, _, _, _, _, lb, ub = qp
-    lagrangian_gradient(qp, s, out)
-    largest = multiplier_field(qp, s, out, active)
+    n = jacobian.shape[1]
+    R = pose[:3, :3]
+    desired = target[3:12].reshape(3, 3)
+    omega = target[15:]
+    if mode == 1:
+        relative = np.empty((3, 3))
+        for i in range(3):
+            for j in range(3):
+                value = 0.0
+                for k in range(3):
+                    value += desired[i, k] * R[j, k]
+                relative[i, j] = value
+        rotation_log(relative, rhs)
+        for i in range(3):
+            rhs[i] = omega[i] + gain * rhs[i]
+            for j in range(n):
+                rows[i, j] = jacobian[3 + i, j]
+    elif mode == 2:
+        here, there = np.empty((4, 3)), np.empty((4, 3))
+        block_map(R, here)
+        block_map(desired, there)
+        for i in range(4):
+            rhs[i] = gain * (desired[i // 2, i % 2] - R[i // 2, i % 2])
+            for k in range(3):
+                rhs[i] += there[i, k] * omega[k]
+            for j in range(n):
+                value = 0.0
+                for k in range(3):
+                    value += here[i, k] * jacobian[3 + k, j]
+                rows[i, j] = value
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def velocity_bounds(q, limits, gain, lb, ub):
+    """Write the velocity bounds of joint positions q; limits are the rows of `Robot.limits`."""
     for i in range(q.size):
-        rate = -out[i]
+        fastest = limits[2, i]
+        lb[i] = min(max(gain * (limits[0, i] - q[i]), -fastest), fastest)
+        ub[i] = min(max(gain * (limits[1, i] - q[i]), -fastest), fastest)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def velocity_program(
+    data, p, mode, q, pose, jacobian, target, limits, home, kinetic,
+    weight, drift_gain, position_gain, orientation_gain, limit_gain,
+):  # fmt: skip
+    """Write the program of `iiwa_dnn.schemes.DoubleIndicator` into `data`, with p equality rows."""
+    n = q.size
+    at_q, _, at_A, at_lb = offsets(n, 0, p)
+    at_b = at_lb - p
+    for i in range(n):
+        for j in range(n):
+            data[i * n + j] = weight * kinetic[i, j]
+        data[i * n + i] += 1.0 - weight
+        data[at_q + i] = (1.0 - weight) * drift_gain * (q[i] - home[i])
+    for i in range(3):
+        data[at_b + i] = target[12 + i] + position_gain * (target[i] - pose[i, 3])
+        for j in range(n):
+            data[at_A + i * n + j] = jacobian[i, j]
+    rows = data[at_A + 3 * n : at_b].reshape(p - 3, n)
+    orientation_rows(mode, pose, jacobian, target, orientation_gain, rows, data[at_b + 3 : at_lb])
+    velocity_bounds(q, limits, limit_gain, data[at_lb : at_lb + n], data[at_lb + n :])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def field(data, n, m, p, project, s, rates, active):
+    """Write the network's rates rho ds/dt; with `project`, x goes through its bounds.
+
+    `active` (m + 2n) becomes 1 for the multipliers with mu + Omega x - chi > 0, else 0.
+
+    Returns:
+        The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
+    """
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    at_z, at_u = n + p, n + p + m
+    largest = 0.0
+    for i in range(n):
+        gradient = data[at_q + i] + s[at_u + i] - s[at_u + n + i]
+        for k in range(n):
+            gradient += data[i * n + k] * s[k]
+        for j in range(p):
+            gradient += data[at_A + j * n + i] * s[n + j]
+        for j in range(m):
+            gradient += data[at_G + j * n + i] * s[at_z + j]
+        rate = -gradient
         if project:
-            rate = min(max(s[i] + rate, lb[i]), ub[i]) - s[i]
-        out[i] = rate
-        largest = largest if abs(rate) <= largest else abs(rate)
+            rate = min(max(s[i] + rate, data[at_lb + i]), data[at_ub + i]) - s[i]
+        rates[i] = rate
+        largest = larger(largest, abs(rate))
+        for side in range(2):
+            slack = s[i] - data[at_ub + i] if side == 0 else data[at_lb + i] - s[i]
+            multiplier = s[at_u + side * n + i]
+            is_active = multiplier + slack > 0.0
+            rate = slack if is_active else -multiplier
+            active[m + side * n + i] = is_active
+            rates[at_u + side * n + i] = rate
+            largest = larger(largest, abs(rate))
+    for j in range(p):
+        rate = -data[at_b + j]
+        for i in range(n):
+            rate += data[at_A + j * n + i] * s[i]
+        rates[n + j] = rate
+        largest = larger(largest, abs(rate))
+    for j in range(m):
+        slack = -data[at_h + j]
+        for i in range(n):
+            slack += data[at_G + j * n + i] * s[i]
+        is_active = s[at_z + j] + slack > 0.0
+        rate = slack if is_active else -s[at_z + j]
+        active[j] = is_active
+        rates[at_z + j] = rate
+        largest = larger(largest, abs(rate))
     return largest
 
 
-@njit(cache=True, error_model="numpy")
-def explicit_euler(qp, project, s, step, count, tol):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def explicit_euler(data, n, m, p, project, s, step, count, tol):
     """Advance `s` in place by up to `count` explicit Euler steps.
 
     Stops early once the largest rate is at most `tol`.
@@ -119,11 +215,10 @@ def explicit_euler(qp, project, s, step, count, tol):
     Returns:
         ``(steps, rate)``: steps taken, and the largest rate at the last point evaluated.
     """
-    rates = np.empty(s.size)
-    active = np.empty(s.size, np.bool_)
+    rates, active = np.empty(s.size), np.empty(m + 2 * n)
     rate = np.inf
     for done in range(count):
-        rate = field(qp, project, s, rates, active)
+        rate = field(data, n, m, p, project, s, rates, active)
         if not rate > tol:
             return done, rate
         for i in range(s.size):
@@ -131,148 +226,142 @@ def explicit_euler(qp, project, s, step, count, tol):
     return count, rate
 
 
-@njit(cache=True, error_model="numpy")
-def cholesky_solve(K, rhs, out):
-    """Solve K out = rhs, K symmetric positive definite in its lower half, which is overwritten.
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def cholesky_solve(K, n, rhs, out):
+    """Solve K out = rhs for the leading n entries; K's lower half (row stride n) is overwritten.
 
     Returns:
         False if K is not positive definite to working precision; `out` is then meaningless.
     """
-    n = rhs.size
     for i in range(n):
         for j in range(i):
-            value = K[i, j]
+            value = K[i * n + j]
             for k in range(j):
-                value -= K[i, k] * K[j, k]
-            K[i, j] = value * K[j, j]
-        value = K[i, i]
+                value -= K[i * n + k] * K[j * n + k]
+            K[i * n + j] = value * K[j * n + j]
+        value = K[i * n + i]
         for k in range(i):
-            value -= K[i, k] * K[i, k]
+            value -= K[i * n + k] * K[i * n + k]
         if not value > 0.0:
             return False
-        K[i, i] = 1.0 / np.sqrt(value)  # the inverse: divisions cost more than products
+        K[i * n + i] = 1.0 / np.sqrt(value)  # the inverse: a division costs many products
     for i in range(n):
         value = rhs[i]
         for k in range(i):
-            value -= K[i, k] * out[k]
-        out[i] = value * K[i, i]
+            value -= K[i * n + k] * out[k]
+        out[i] = value * K[i * n + i]
     for i in range(n - 1, -1, -1):
         value = out[i]
         for k in range(i + 1, n):
-            value -= K[k, i] * out[k]
-        out[i] = value * K[i, i]
+            value -= K[k * n + i] * out[k]
+        out[i] = value * K[i * n + i]
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def condensed_matrix(qp, step, active, K):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def condensed_matrix(data, n, m, p, step, active, K):
     """Write the lower half of P + I/step + step (A^T A + active rows^T active rows) into K."""
-    P, q, G, h, A, b, _, _ = qp
-    n, p, m = q.size, b.size, h.size
+    _, at_G, at_A, _ = offsets(n, m, p)
     for i in range(n):
         for k in range(i + 1):
-            K[i, k] = P[i, k]
-        K[i, i] += 1.0 / step
-        if active[m + i]:
-            K[i, i] += step
-        if active[m + n + i]:
-            K[i, i] += step
+            K[i * n + k] = data[i * n + k]
+        K[i * n + i] += 1.0 / step + step * (active[m + i] + active[m + n + i])
     for j in range(p):
+        row = at_A + j * n
         for i in range(n):
-            scaled = step * A[j, i]
+            scaled = step * data[row + i]
             for k in range(i + 1):
-                K[i, k] += scaled * A[j, k]
+                K[i * n + k] += scaled * data[row + k]
     for j in range(m):
-        if active[j]:
+        if active[j] != 0.0:
+            row = at_G + j * n
             for i in range(n):
-                scaled = step * G[j, i]
+                scaled = step * data[row + i]
                 for k in range(i + 1):
-                    K[i, k] += scaled * G[j, k]
+                    K[i * n + k] += scaled * data[row + k]
 
 
-@njit(cache=True, error_model="numpy")
-def linearly_implicit_step(qp, s, rates, active, step, new):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
     """One linearly implicit Euler step of the network without its primal projection.
 
-    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated.
+    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n) and
+    `rhs` (n) are scratch.
 
     Returns:
         False if the condensed matrix is not positive definite; `new` is then meaningless.
     """
-    _, q, G, h, A, b, _, _ = qp
-    n, p, m = q.size, b.size, h.size
+    _, at_G, at_A, _ = offsets(n, m, p)
+    at_z, at_u = n + p, n + p + m
     decay = step / (1.0 + step)
-    K = np.empty((n, n))
-    rhs = np.empty(n)
     # With dx = 0 the multipliers would change by `new`; the rest follows from dx below.
-    for k in range(n, n + p):
-        new[k] = step * rates[k]
-    for k in range(m + 2 * n):
-        new[n + p + k] = (step if active[k] else decay) * rates[n + p + k]
-    for i in range(n):
-        rhs[i] = rates[i] - new[n + p + m + i] + new[n + p + m + n + i]
     for j in range(p):
-        for i in range(n):
-            rhs[i] -= A[j, i] * new[n + j]
-    for j in range(m):
-        if new[n + p + j] != 0.0:
-            for i in range(n):
-                rhs[i] -= G[j, i] * new[n + p + j]
-    condensed_matrix(qp, step, active, K)
-    if not cholesky_solve(K, rhs, new[:n]):
+        new[n + j] = step * rates[n + j]
+    for k in range(m + 2 * n):
+        new[at_z + k] = rates[at_z + k] * (step if active[k] != 0.0 else decay)
+    for i in range(n):
+        value = rates[i] - new[at_u + i] + new[at_u + n + i]
+        for j in range(p):
+            value -= data[at_A + j * n + i] * new[n + j]
+        for j in range(m):
+            value -= data[at_G + j * n + i] * new[at_z + j]
+        rhs[i] = value
+    condensed_matrix(data, n, m, p, step, active, K)
+    if not cholesky_solve(K, n, rhs, new):
         return False
     for j in range(p):
+        value = 0.0
         for i in range(n):
-            new[n + j] += step * A[j, i] * new[i]
-    for k in range(m + 2 * n):
-        if active[k]:
-            if k < m:
-                for i in range(n):
-                    new[n + p + k] += step * G[k, i] * new[i]
-            elif k < m + n:
-                new[n + p + k] += step * new[k - m]
-            else:
-                new[n + p + k] -= step * new[k - m - n]
+            value += data[at_A + j * n + i] * new[i]
+        new[n + j] += step * value
+    for j in range(m):
+        if active[j] != 0.0:
+            value = 0.0
+            for i in range(n):
+                value += data[at_G + j * n + i] * new[i]
+            new[at_z + j] += step * value
+    for i in range(n):
+        new[at_u + i] += step * active[m + i] * new[i]
+        new[at_u + n + i] -= step * active[m + n + i] * new[i]
     for k in range(s.size):
         new[k] += s[k]
     return True
 
 
-@njit(cache=True, error_model="numpy")
-def _implicit_multipliers(qp, s, step, slacks, new):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _implicit_multipliers(data, n, m, p, s, step, slacks, new):
     """Multipliers after a backward Euler step to new[:n]; fills slacks (p + m + 2n)."""
-    _, q, G, h, A, b, lb, ub = qp
-    n, p, m = q.size, b.size, h.size
+    _, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
     keep = 1.0 / (1.0 + step)
     for j in range(p):
-        value = -b[j]
+        value = -data[at_b + j]
         for i in range(n):
-            value += A[j, i] * new[i]
+            value += data[at_A + j * n + i] * new[i]
         slacks[j] = value
         new[n + j] = s[n + j] + step * value
     for k in range(m + 2 * n):
         if k < m:
-            value = -h[k]
+            value = -data[at_h + k]
             for i in range(n):
-                value += G[k, i] * new[i]
+                value += data[at_G + k * n + i] * new[i]
         elif k < m + n:
-            value = new[k - m] - ub[k - m]
+            value = new[k - m] - data[at_ub + k - m]
         else:
-            value = lb[k - m - n] - new[k - m - n]
+            value = data[at_lb + k - m - n] - new[k - m - n]
         slacks[p + k] = value
         old = s[n + p + k]
         new[n + p + k] = max(old * keep, old + step * value)
 
 
-@njit(cache=True, error_model="numpy")
-def _line_search(qp, s, step, slacks, change, direction, gradient):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _line_search(data, n, m, p, s, step, slacks, change, direction, gradient):
     """Minimise the convex piecewise quadratic of `backward_euler` along `direction`.
 
     Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
     inside a bracket ends at the root.
     """
-    P, q, G, h, A, b, _, _ = qp
-    n, p, m = q.size, b.size, h.size
+    _, at_G, at_A, _ = offsets(n, m, p)
     keep = 1.0 / (1.0 + step)
     start = 0.0
     curvature = 0.0
@@ -280,19 +369,19 @@ def _line_search(qp, s, step, slacks, change, direction, gradient):
         start += gradient[i] * direction[i]
         value = direction[i] / step
         for k in range(n):
-            value += P[i, k] * direction[k]
+            value += data[i * n + k] * direction[k]
         curvature += value * direction[i]
     for j in range(p):
         value = 0.0
         for i in range(n):
-            value += A[j, i] * direction[i]
+            value += data[at_A + j * n + i] * direction[i]
         curvature += step * value * value
     constant = start
     for k in range(m + 2 * n):
         if k < m:
             value = 0.0
             for i in range(n):
-                value += G[k, i] * direction[i]
+                value += data[at_G + k * n + i] * direction[i]
         elif k < m + n:
             value = direction[k - m]
         else:
@@ -324,8 +413,8 @@ def _line_search(qp, s, step, slacks, change, direction, gradient):
     return length
 
 
-@njit(cache=True, error_model="numpy")
-def backward_euler(qp, s, step, new, tol, max_newton):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def backward_euler(data, n, m, p, s, step, new, tol, max_newton):
     """One backward Euler step of the network without its primal projection.
 
     new = s + step F(new). Eliminating the multipliers leaves the stationarity of a strongly
@@ -338,38 +427,43 @@ def backward_euler(qp, s, step, new, tol, max_newton):
     Returns:
         Newton iterations, or -1 where a matrix was not positive definite to working precision.
     """
-    _, q, _, h, _, b, _, _ = qp
-    n, p, m = q.size, b.size, h.size
+    at_q, at_G, at_A, _ = offsets(n, m, p)
+    at_z, at_u = n + p, n + p + m
     keep = 1.0 / (1.0 + step)
-    gradient, direction, rhs = np.empty(n), np.empty(n), np.empty(n)
-    K = np.empty((n, n))
+    gradient, direction, rhs, K = np.empty(n), np.empty(n), np.empty(n), np.empty(n * n)
     slacks, change = np.empty(p + m + 2 * n), np.empty(m + 2 * n)
-    active = np.empty(m + 2 * n, np.bool_)
+    active = np.empty(m + 2 * n)
     for iteration in range(max_newton):
-        _implicit_multipliers(qp, s, step, slacks, new)
-        lagrangian_gradient(qp, new, gradient)
+        _implicit_multipliers(data, n, m, p, s, step, slacks, new)
         size = 0.0
         for i in range(n):
-            gradient[i] += (new[i] - s[i]) / step
-            rhs[i] = -gradient[i]
-            size = size if abs(rhs[i]) <= size else abs(rhs[i])
+            value = data[at_q + i] + new[at_u + i] - new[at_u + n + i] + (new[i] - s[i]) / step
+            for k in range(n):
+                value += data[i * n + k] * new[k]
+            for j in range(p):
+                value += data[at_A + j * n + i] * new[n + j]
+            for j in range(m):
+                value += data[at_G + j * n + i] * new[at_z + j]
+            gradient[i] = value
+            rhs[i] = -value
+            size = larger(size, abs(value))
         if not size > tol:
             return iteration
         for k in range(m + 2 * n):
-            old = s[n + p + k]
+            old = s[at_z + k]
             active[k] = old + step * slacks[p + k] > old * keep
-        condensed_matrix(qp, step, active, K)
-        if not cholesky_solve(K, rhs, direction):
+        condensed_matrix(data, n, m, p, step, active, K)
+        if not cholesky_solve(K, n, rhs, direction):
             return -1
-        length = _line_search(qp, s, step, slacks, change, direction, gradient)
+        length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient)
         for i in range(n):
             new[i] += length * direction[i]
-    _implicit_multipliers(qp, s, step, slacks, new)
+    _implicit_multipliers(data, n, m, p, s, step, slacks, new)
     return max_newton
 
 
-@njit(cache=True, error_model="numpy")
-def advance_implicit(qp, s, step, count, tol):
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def advance_implicit(data, n, m, p, s, step, count, tol):
     """Advance `s` in place by `count` backward Euler steps of fixed length, solved to `tol`.
 
     Returns:
@@ -378,7 +472,7 @@ def advance_implicit(qp, s, step, count, tol):
     new = s.copy()
     total = 0
     for _ in range(count):
-        systems = backward_euler(qp, s, step, new, tol, 100)
+        systems = backward_euler(data, n, m, p, s, step, new, tol, 100)
         if systems < 0:
             return -1
         total += systems
@@ -386,64 +480,78 @@ def advance_implicit(qp, s, step, count, tol):
     return total
 
 
-@njit(cache=True, error_model="numpy")
-def kkt_point(qp, s, point):
-    """The primal-dual point that a state stands for, and its residuals.
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def point_residuals(data, n, m, p, point):
+    """``(primal, dual, gap)`` of a point [x | y | z | z_box], as qpsolvers defines them."""
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    at_z, at_box = n + p, n + p + m
+    primal, dual, gap = 0.0, 0.0, 0.0
+    for j in range(p):
+        value = -data[at_b + j]
+        for i in range(n):
+            value += data[at_A + j * n + i] * point[i]
+        primal = larger(primal, abs(value))
+        gap += data[at_b + j] * point[n + j]
+    for j in range(m):
+        value = -data[at_h + j]
+        for i in range(n):
+            value += data[at_G + j * n + i] * point[i]
+        primal = larger(primal, value)
+        if point[at_z + j] != 0.0:
+            gap += data[at_h + j] * point[at_z + j]
+    for i in range(n):
+        x, lb, ub, multiplier = point[i], data[at_lb + i], data[at_ub + i], point[at_box + i]
+        primal = larger(primal, x - ub)
+        primal = larger(primal, lb - x)
+        value = data[at_q + i]
+        for k in range(n):
+            value += data[i * n + k] * point[k]
+        gap += x * value
+        value += multiplier
+        for j in range(p):
+            value += data[at_A + j * n + i] * point[n + j]
+        for j in range(m):
+            value += data[at_G + j * n + i] * point[at_z + j]
+        dual = larger(dual, abs(value))
+        if multiplier > 0.0 and ub < np.inf:
+            gap += ub * multiplier
+        elif multiplier < 0.0 and lb > -np.inf:
+            gap += lb * multiplier
+    return primal, dual, abs(gap)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def kkt_point(data, n, m, p, s, point):
+    """The primal-dual point that a state stands for, and its residuals ``(primal, dual, gap)``.
 
     x is put inside its bounds and z made nonnegative. z_box is what the projection of
     x - (P x + q + A^T y + G^T z) cuts off: at an equilibrium that is u - l plus the part of the
     multiplier that the primal projection carries. All of it shows in the residuals, which are
     those of the point that is handed out. `point` is the output, [x | y | z | z_box] of size
     n + p + m + n.
-
-    Returns:
-        ``(primal, dual, gap)`` as qpsolvers defines them.
     """
-    P, q, G, h, A, b, lb, ub = qp
-    n, p, m = q.size, b.size, h.size
-    primal, dual, gap = 0.0, 0.0, 0.0
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_ub, at_z = at_lb + n, n + p
     for i in range(n):
-        point[i] = min(max(s[i], lb[i]), ub[i])
+        point[i] = min(max(s[i], data[at_lb + i]), data[at_ub + i])
     for j in range(p):
-        value = -b[j]
-        for i in range(n):
-            value += A[j, i] * point[i]
-        primal = primal if abs(value) <= primal else abs(value)
         point[n + j] = s[n + j]
-        gap += b[j] * s[n + j]
     for j in range(m):
-        value = -h[j]
-        for i in range(n):
-            value += G[j, i] * point[i]
-        primal = primal if value <= primal else value
-        multiplier = max(s[n + p + j], 0.0)
-        point[n + p + j] = multiplier
-        if multiplier > 0.0:
-            gap += h[j] * multiplier
+        point[at_z + j] = max(s[at_z + j], 0.0)
     for i in range(n):
-        value = q[i]
-        curvature = 0.0
+        aim = point[i] - data[at_q + i]
         for k in range(n):
-            curvature += P[i, k] * point[k]
-        gap += point[i] * (curvature + q[i])
-        value += curvature
+            aim -= data[i * n + k] * point[k]
         for j in range(p):
-            value += A[j, i] * point[n + j]
+            aim -= data[at_A + j * n + i] * point[n + j]
         for j in range(m):
-            value += G[j, i] * point[n + p + j]
-        aim = point[i] - value
-        multiplier = aim - min(max(aim, lb[i]), ub[i])
-        if multiplier > 0.0:
-            gap += ub[i] * multiplier
-        elif multiplier < 0.0:
-            gap += lb[i] * multiplier
-        point[n + p + m + i] = multiplier
-        value += multiplier
-        dual = dual if abs(value) <= dual else abs(value)
-    return primal, dual, abs(gap)
+            aim -= data[at_G + j * n + i] * point[at_z + j]
+        point[at_z + m + i] = aim - min(max(aim, data[at_lb + i]), data[at_ub + i])
+    return point_residuals(data, n, m, p, point)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def settle_implicit(data, n, m, p, s, point, tol, max_steps, long_step):
     """Advance `s` in place, with growing implicit steps, until its KKT residuals are below `tol`.
 
@@ -455,26 +563,28 @@ def settle_implicit(data, n, m, p, s, point, tol, max_steps, long_step):
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
-    qp = unpack(data, n, m, p)
-    size = s.size
-    rates, new_rates, new = np.empty(size), np.empty(size), np.empty(size)
-    active, new_active = np.empty(size, np.bool_), np.empty(size, np.bool_)
+    size, flags = s.size, m + 2 * n
+    work = np.empty(3 * size + 2 * flags + n * n + n)
+    rates, new_rates, new = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
+    active = work[3 * size : 3 * size + flags]
+    new_active = work[3 * size + flags : 3 * size + 2 * flags]
+    K, rhs = work[3 * size + 2 * flags : -n], work[-n:]
     step = 10.0
     systems, time, stalled = 0, 0.0, 0
     primal, dual, gap = np.inf, np.inf, np.inf
-    rate = field(qp, False, s, rates, active)
+    rate = field(data, n, m, p, False, s, rates, active)
     for _ in range(max_steps):
         if not rate > tol:
-            primal, dual, gap = kkt_point(qp, s, point)
-            if not max(primal, dual, gap) > tol:
+            primal, dual, gap = kkt_point(data, n, m, p, s, point)
+            if primal <= tol and dual <= tol and gap <= tol:
                 return systems, time, primal, dual, gap
             # Small rates and a large gap: large multipliers. Go on, but not for ever.
             stalled += 1
             if stalled > 10 or rate != rate:
                 break
         systems += 1
-        if linearly_implicit_step(qp, s, rates, active, long_step, new):
-            new_rate = field(qp, False, new, new_rates, new_active)
+        if linearly_implicit_step(data, n, m, p, s, rates, active, long_step, K, rhs, new):
+            new_rate = field(data, n, m, p, False, new, new_rates, new_active)
             if new_rate <= 0.5 * rate:
                 s[:] = new
                 rates, new_rates = new_rates, rates
@@ -483,7 +593,7 @@ def settle_implicit(data, n, m, p, s, point, tol, max_steps, long_step):
                 time += long_step
                 continue
         new[:] = s
-        solved = backward_euler(qp, s, step, new, min(1e-2, 0.1 * rate), 100)
+        solved = backward_euler(data, n, m, p, s, step, new, min(1e-2, 0.1 * rate), 100)
         if solved < 0:
             step *= 0.1
             continue
@@ -491,6 +601,6 @@ def settle_implicit(data, n, m, p, s, point, tol, max_steps, long_step):
         s[:] = new
         time += step
         step = min(step * 10.0, 1e6)
-        rate = field(qp, False, s, rates, active)
-    primal, dual, gap = kkt_point(qp, s, point)
+        rate = field(data, n, m, p, False, s, rates, active)
+    primal, dual, gap = kkt_point(data, n, m, p, s, point)
     return systems, time, primal, dual, gap

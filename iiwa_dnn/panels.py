@@ -117,16 +117,21 @@ def _draw_limits(axes: Axes, limits: list[float | None]) -> None:
         axes.axhline(limit, color="0.0", linewidth=0.8, linestyle=(0, (8, 3)), label=label)
 
 
-def draw_error(axes: Axes, record: Record) -> None:
-    """Draw the position error's components and norm over time, in the unit that suits its size."""
+def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None:
+    """Draw the position error's components and norm over time, in the unit that suits its size.
+
+    With `largest` [m] the unit and the axis suit that size instead: panels to be compared.
+    """
     error = position_error(record)
     norm = np.linalg.norm(error, axis=1)
-    unit, scale = _length_unit(float(np.nanmax(norm, initial=0.0)))
+    unit, scale = _length_unit(float(np.nanmax(norm, initial=0.0)) if largest is None else largest)
     styles = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
     for (label, colour, dashes), curve in zip(styles, error.T, strict=True):
         _draw_curve(axes, record.t, curve / scale, color=colour, linestyle=dashes, label=label)
     _draw_curve(axes, record.t, norm / scale, color="0.0", linestyle="-", label=r"$\|e\|$")
     time_axis(axes, record)
+    if largest:
+        axes.set_ylim(-1.05 * largest / scale, 1.05 * largest / scale)
     axes.set_ylabel(f"Position error [{unit}]")
     legend_above(axes, columns=4)
 

@@ -6,7 +6,7 @@ Matplotlib is imported only when a figure is drawn, and without pyplot: no globa
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -73,14 +73,32 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
     Raises:
         FileError: If the folder cannot be written.
     """
+    return write_figures({name: partial(draw, record) for name, draw in FIGURES.items()}, folder)
+
+
+def write_figures(
+    figures: Mapping[str, Callable[[], Figure]], folder: str | os.PathLike[str]
+) -> list[Path]:
+    """Draw figures in the style of this module and write each as PNG and PDF, atomically.
+
+    Args:
+        figures: What draws each figure, by the name of its files.
+        folder: Where to; made if need be.
+
+    Returns:
+        The files written, each PNG followed by its PDF.
+
+    Raises:
+        FileError: If the folder cannot be written.
+    """
     import matplotlib.style
 
     folder = prepare_folder(folder)
     written = []
     # From Matplotlib's own defaults, so that a personal matplotlibrc changes nothing.
     with matplotlib.style.context(["default", _STYLE]):
-        for name, draw in FIGURES.items():
-            figure = draw(record)
+        for name, draw in figures.items():
+            figure = draw()
             for suffix in ("png", "pdf"):
                 path = folder / f"{name}.{suffix}"
                 metadata = {"CreationDate": None} if suffix == "pdf" else None
@@ -94,7 +112,7 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
 
 def overview_figure(record: Record) -> Figure:
     """Path, joint angles, joint velocities and position error: the paper's Fig. 1 (a)–(d)."""
-    figure = _new_figure(DOUBLE_COLUMN, 5.6)
+    figure = new_figure(DOUBLE_COLUMN, 5.6)
     plane = plane_of(record.position_desired)
     projection = {"projection": "3d"} if plane is None else {}
     draw_path(figure.add_subplot(2, 2, 1, **projection), record)
@@ -111,7 +129,7 @@ def overview_figure(record: Record) -> Figure:
 
 def path_figure(record: Record) -> Figure:
     """Desired and actual path: in its plane if it lies in one of the world's, else in space."""
-    figure = _new_figure(COLUMN, 3.2)
+    figure = new_figure(COLUMN, 3.2)
     plane = plane_of(record.position_desired)
     draw_path(figure.add_subplot(**({"projection": "3d"} if plane is None else {})), record)
     return figure
@@ -120,7 +138,7 @@ def path_figure(record: Record) -> Figure:
 def convergence_figure(record: Record) -> Figure:
     """KKT residual and, if there were references, the gap to each; with their tolerances."""
     rows = 2 if record.references else 1
-    figure = _new_figure(COLUMN, 1.9 * rows)
+    figure = new_figure(COLUMN, 1.9 * rows)
     panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
     settings, judged = record.settings, record.settings["mode"] == "converged"
     draw_log(panels[0], record.t[:-1], record.kkt_residual[:, None], ["network"])
@@ -140,14 +158,15 @@ def convergence_figure(record: Record) -> Figure:
     return figure
 
 
-def _new_figure(width: float, height: float) -> Figure:
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure of this size [in] that keeps its parts from overlapping."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def _single(draw: Callable[[Axes, Record], None], record: Record) -> Figure:
-    figure = _new_figure(COLUMN, 2.6)
+    figure = new_figure(COLUMN, 2.6)
     draw(figure.add_subplot(), record)
     return figure
 

@@ -13,15 +13,15 @@ negative at ``lb``).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import qpsolvers
 import scipy.sparse as spa
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn import kernels
 from iiwa_dnn.exceptions import InvalidInputError
 
 Vector = NDArray[np.float64]
@@ -218,6 +218,22 @@ class QP:
         eye = np.eye(self.q.size)
         return np.vstack([eye, -eye]), np.concatenate([self.ub, -self.lb])
 
+    def residuals(
+        self, x: Vector, y: Vector | None, z: Vector | None, z_box: Vector | None
+    ) -> Residuals:
+        """Qpsolvers' residuals of a primal-dual point, by its formulas and without its checks.
+
+        Args:
+            x: Primal point, (n,).
+            y: Multipliers of the equalities, (p,).
+            z: Multipliers of the inequalities, (m,).
+            z_box: Multipliers of the bounds, (n,).
+        """
+        n, m, p = self.sizes
+        parts = ((x, n), (y, p), (z, m), (z_box, n))
+        point = np.concatenate([np.zeros(k) if part is None else part for part, k in parts])
+        return Residuals(*kernels.point_residuals(self.data, n, m, p, point))
+
     def check_values(self) -> None:
         """Check what no convex solver could make sense of.
 
@@ -260,8 +276,7 @@ class Status(str, Enum):
     """The data or the state is no longer a number."""
 
 
-@dataclass(frozen=True)
-class Residuals:
+class Residuals(NamedTuple):
     """qpsolvers' three residuals of a primal-dual point; all are zero exactly at a KKT point.
 
     Attributes:
@@ -277,34 +292,60 @@ class Residuals:
     @property
     def largest(self) -> float:
         """The largest of the three: the KKT residual that records and reports show."""
-        # A plain max() would let NaN pass.
-        values = (self.primal, self.dual, self.gap)
-        return float("nan") if any(v != v for v in values) else max(values)
+        total = self.primal + self.dual + self.gap
+        # max() would drop a NaN that does not come first.
+        return max(self) if total == total else total
 
 
-@dataclass(frozen=True)
-class Solution:
+class Solution(NamedTuple):
     """A primal-dual point and the evidence for it.
 
     Attributes:
-        x: Primal point, inside the bounds, (n,).
-        y: Multipliers of the equalities, (p,).
-        z: Multipliers of the inequalities, nonnegative, (m,).
-        z_box: Multipliers of the bounds, (n,).
+        point: ``[x | y | z | z_box]`` in one array, of size n + p + m + n.
+        sizes: ``(n, m, p)`` of the program.
         status: How the solve ended.
         iterations: Linear systems solved (implicit) or steps taken (explicit).
         network_time: How far the network was advanced, in units of its time constant rho.
-        residuals: Of this very point.
+        primal: Primal residual of this very point, as qpsolvers defines it.
+        dual: Dual residual.
+        gap: Duality gap.
     """
 
-    x: Vector
-    y: Vector
-    z: Vector
-    z_box: Vector
+    point: Vector
+    sizes: tuple[int, int, int]
     status: Status
     iterations: int
     network_time: float
-    residuals: Residuals
+    primal: float
+    dual: float
+    gap: float
+
+    @property
+    def x(self) -> Vector:
+        """Primal point, inside the bounds, (n,)."""
+        return self.point[: self.sizes[0]]
+
+    @property
+    def y(self) -> Vector:
+        """Multipliers of the equalities, (p,)."""
+        n, _, p = self.sizes
+        return self.point[n : n + p]
+
+    @property
+    def z(self) -> Vector:
+        """Multipliers of the inequalities, nonnegative, (m,)."""
+        n, m, p = self.sizes
+        return self.point[n + p : n + p + m]
+
+    @property
+    def z_box(self) -> Vector:
+        """Multipliers of the bounds, (n,)."""
+        return self.point[-self.sizes[0] :]
+
+    @property
+    def residuals(self) -> Residuals:
+        """The three residuals."""
+        return Residuals(self.primal, self.dual, self.gap)
 
     @property
     def found(self) -> bool:
@@ -321,9 +362,9 @@ class Solution:
             "status": self.status.value,
             "iterations": self.iterations,
             "network_time": self.network_time,
-            "primal_residual": self.residuals.primal,
-            "dual_residual": self.residuals.dual,
-            "duality_gap": self.residuals.gap,
+            "primal_residual": self.primal,
+            "dual_residual": self.dual,
+            "duality_gap": self.gap,
         }
         if not self.found:
             return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)

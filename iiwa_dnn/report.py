@@ -23,7 +23,8 @@ _SETTINGS = {
     "check": "cross-check",
     "tol": "KKT tolerance",
     "rho": "network time constant [s]",
-    "noise": "velocity noise [rad/s]",
+    "noise": "noise, standard deviation [rad/s, or rad if at measurement]",
+    "noise_at": "noise enters at",
     "filter_window": "filter window [steps]",
 }
 _CAPTIONS = {
@@ -90,15 +91,17 @@ def write_report(
         "## Verdict",
         "\n".join(f"- {line}" for line in (failures(record) or [_success(metrics)])),
         "## Results",
-        _table(("quantity", "value", "unit"), _results(metrics)),
+        markdown_table(("quantity", "value", "unit"), _results(metrics)),
         "## Cross-check",
-        _table(("quantity", "value", "unit"), _crosscheck(check)),
+        markdown_table(("quantity", "value", "unit"), _crosscheck(check)),
         *(["Continuous mode: the gap is the network's lag, reported and not judged."]
           if settings["mode"] == "continuous" else []),
         "## Settings",
-        _table(("setting", "value"), [(name, _text(value)) for name, value in named]),
+        markdown_table(("setting", "value"), [(name, _text(value)) for name, value in named]),
         "## Versions",
-        _table(("package", "version"), [(k, _text(v)) for k, v in metrics["versions"].items()]),
+        markdown_table(
+            ("package", "version"), [(k, _text(v)) for k, v in metrics["versions"].items()]
+        ),
     ]  # fmt: skip
     shown = [path for path in figures if path.suffix == ".png"]
     if shown:
@@ -161,7 +164,10 @@ def _success(metrics: Mapping[str, Any]) -> str:
     if check["solver"] == "none":
         return "completed within all limits; no reference solver was asked"
     if not check["judged"]:
-        return f"completed within all limits; the gap to {check['solver']} is a lag, not judged"
+        failed = check["reference_failures"]
+        doubt = f"; {failed:,} reference answers not to be believed" if failed else ""
+        lag = f"the gap to {check['solver']} is a lag, not judged"
+        return f"completed within all limits; {lag}{doubt}"
     return f"all {steps} steps solved, within all limits and in agreement with {check['solver']}"
 
 
@@ -207,7 +213,8 @@ def _kinetic_unit(settings: Mapping[str, Any]) -> str:
     return _KINETIC_UNITS.get(str(kinetic), "")
 
 
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table in Markdown, its cells made fit to stand in one."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
 

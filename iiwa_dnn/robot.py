@@ -32,6 +32,7 @@ class Robot:
         locked: Names of the URDF's joints that were frozen on loading.
         path: The URDF file, where the robot came from one.
         tip_id: Pinocchio's index of the tip frame.
+        limits: ``q_lower``, ``q_upper`` and ``dq_max`` as the rows of one array, shape (3, n).
 
     Raises:
         NotFoundError: If the model has no frame ``tip``.
@@ -47,6 +48,7 @@ class Robot:
     locked: tuple[str, ...] = ()
     path: Path | None = None
     tip_id: int = field(init=False)
+    limits: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         tip_id = _frame_id(self.model, self.tip)
@@ -57,6 +59,9 @@ class Robot:
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
         _check_order("q_lower", self.q_lower, self.q_upper)
         _check_positive("dq_max", self.dq_max)
+        limits = np.stack([self.q_lower, self.q_upper, self.dq_max])
+        limits.setflags(write=False)
+        object.__setattr__(self, "limits", limits)
 
     @property
     def dof(self) -> int:

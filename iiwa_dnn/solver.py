@@ -7,11 +7,10 @@ import math
 import numpy as np
 import qpsolvers
 
-from iiwa_dnn import kernels
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks import ProjectionNetwork
-from iiwa_dnn.qp import QP, Residuals, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Solution, Status, Vector
 
 
 class DNNSolver:
@@ -39,14 +38,14 @@ class DNNSolver:
         Raises:
             InvalidInputError: `tol` is not a positive number.
         """
-        if not (math.isfinite(tol) and tol > 0):
-            raise InvalidInputError("tol", f"must be a positive number, not {tol}")
+        checks.positive("tol", tol)
         self.network = network if network is not None else ProjectionNetwork()
         self.tol = tol
         self.settler: Integrator = settler if settler is not None else ImplicitEuler()
         self.follower: Integrator = follower if follower is not None else ExplicitEuler()
-        self._shape: tuple[int, int, int] | None = None
+        self._sizes: tuple[int, int, int] | None = None
         self._state: Vector = np.empty(0)
+        self._point_size = 0
 
     @property
     def state(self) -> Vector:
@@ -56,7 +55,15 @@ class DNNSolver:
 
     def reset(self) -> None:
         """Forget the warm start: the next call starts from the network's initial state."""
-        self._shape = None
+        self._sizes = None
+
+    def disturb(self, noise: Vector) -> None:
+        """Add noise (n,) [the unit of x] to x of the network's state; the next call starts there.
+
+        Before the first call there is no state yet, and nothing happens.
+        """
+        if self._sizes is not None:
+            self._state[: self._sizes[0]] += noise
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and say how well it has.
@@ -67,19 +74,17 @@ class DNNSolver:
         Returns:
             The solution; `found` only where every residual is at most `tol`.
         """
-        state, point = self._ready(qp)
-        settled = self.settler.settle(self.network, qp, state, point, self.tol)
-        residuals = Residuals(settled.primal, settled.dual, settled.gap)
-        largest = residuals.largest
-        if largest <= self.tol:
-            status = Status.SOLVED
-        else:
-            status = Status.NOT_SETTLED if math.isfinite(largest) else Status.NOT_FINITE
-            if status is Status.NOT_FINITE:
-                self.reset()  # a state that is not a number would spoil every later call
-        return self._solution(
-            qp, point, status, settled.iterations, settled.network_time, residuals
+        sizes = qp.sizes
+        if sizes != self._sizes:
+            self._begin(qp)
+        point, tol = np.empty(self._point_size), self.tol
+        iterations, network_time, primal, dual, gap = self.settler.settle(
+            self.network, qp, self._state, point, tol
         )
+        # No residual may be above the tolerance, and none NaN.
+        solved = primal <= tol and dual <= tol and gap <= tol
+        status = Status.SOLVED if solved else self._failed(primal + dual + gap)
+        return Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration` and no more, settled or not.
@@ -91,45 +96,28 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        state, point = self._ready(qp)
+        n, m, p = sizes = qp.sizes
+        if sizes != self._sizes:
+            self._begin(qp)
+        point = np.empty(self._point_size)
         network_time = duration / self.network.rho
-        iterations = self.follower.advance(self.network, qp, state, network_time)
-        residuals = Residuals(*kernels.kkt_point(qp.arrays(), state, point))
-        status = Status.ADVANCED
-        if not math.isfinite(residuals.largest):
-            status = Status.NOT_FINITE
-            self.reset()
-        return self._solution(qp, point, status, iterations, network_time, residuals)
+        iterations = self.follower.advance(self.network, qp, self._state, network_time)
+        primal, dual, gap = kernels.kkt_point(qp.data, n, m, p, self._state, point)
+        total = primal + dual + gap
+        status = Status.ADVANCED if math.isfinite(total) else self._failed(total)
+        return Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
 
-    def _ready(self, qp: QP) -> tuple[Vector, Vector]:
-        """The warm state for this shape of problem, and room for its answer."""
-        n, p, m = shape = (qp.q.size, qp.b.size, qp.h.size)
-        if shape != self._shape:
-            self._shape = shape
-            self._state = self.network.initial_state(qp)
-        return self._state, np.empty(2 * n + p + m)
+    def _begin(self, qp: QP) -> None:
+        """Start from the network's initial state, for programs of this shape."""
+        n, m, p = self._sizes = qp.sizes
+        self._point_size = 2 * n + m + p
+        self._state = self.network.initial_state(qp)
 
-    @staticmethod
-    def _solution(
-        qp: QP,
-        point: Vector,
-        status: Status,
-        iterations: int,
-        network_time: float,
-        residuals: Residuals,
-    ) -> Solution:
-        n, p = qp.q.size, qp.b.size
-        last = point.size - n
-        return Solution(
-            point[:n],
-            point[n : n + p],
-            point[n + p : last],
-            point[last:],
-            status,
-            iterations,
-            network_time,
-            residuals,
-        )
+    def _failed(self, residuals: float) -> Status:
+        if math.isfinite(residuals):
+            return Status.NOT_SETTLED
+        self.reset()  # a state that is not a number would spoil every later call
+        return Status.NOT_FINITE
 
 
 def solve_problem(

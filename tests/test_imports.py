@@ -13,6 +13,7 @@ PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 # A module, or a folder of modules, may import what stands before it. A new one gets its place here.
 ORDER = (
     "exceptions",
+    "checks",
     "files",
     "kernels",
     "urdf",
@@ -25,24 +26,32 @@ ORDER = (
     "integrators",
     "solver",
     "crosscheck",
+    "checkpool",
     "controller",
     "record",
     "metrics",
+    "statistics",
     "simulation",
     "sweeps",
+    "experiments",
     "decimation",
     "panels",
     "plots",
+    "paper_plots",
     "report",
+    "paper_report",
     "viewer",
     "cli",
+    "paper_cli",
     "__main__",
     "__init__",
 )
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
-AFTER_THE_RECORD = {"decimation", "panels", "plots", "report", "viewer"}
-SEEN_FROM_THERE = {"exceptions", "files", "record", "metrics"} | AFTER_THE_RECORD
+AFTER_THE_RECORD = {
+    "decimation", "panels", "plots", "paper_plots", "report", "paper_report", "viewer",
+}  # fmt: skip
+BEFORE_THEM = {"exceptions", "checks", "files", "record", "metrics", "statistics"}
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 
@@ -82,7 +91,7 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
             continue
         if ORDER.index(other) > ORDER.index(own):
             found.append(f"{where}, which points back: {other} stands after {own}")
-        elif own in AFTER_THE_RECORD and other not in SEEN_FROM_THERE:
+        elif own in AFTER_THE_RECORD and other not in BEFORE_THEM | AFTER_THE_RECORD:
             found.append(f"{where}, but {own} works from the record alone")
     return found
 

@@ -6,7 +6,7 @@ import qpsolvers
 import scipy.sparse as spa
 
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Solution, Status, kernels
+from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, kernels
 
 
 def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
@@ -101,7 +101,7 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         n, p, m = 6, 2, 4
         state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
         point = np.empty(n + p + m + n)
-        ours = kernels.kkt_point(qp.arrays(), state, point)
+        ours = kernels.kkt_point(qp.data, *qp.sizes, state, point)
         judged = qpsolvers.Solution(
             qp.to_qpsolvers(),
             found=True,
@@ -125,9 +125,7 @@ def test_largest_residual_does_not_lose_a_nan() -> None:
 def test_a_solution_that_was_not_found_carries_no_x() -> None:
     qp, _ = known_qp(np.random.default_rng(2), 4, 1, 1)
     good = DNNSolver().solve(qp)
-    bad = Solution(
-        good.x, good.y, good.z, good.z_box, Status.NOT_SETTLED, 1, 1.0, Residuals(1.0, 1.0, 1.0)
-    ).to_qpsolvers(qp.to_qpsolvers())
+    bad = good._replace(status=Status.NOT_SETTLED).to_qpsolvers(qp.to_qpsolvers())
     assert bad.found is False
     assert bad.x is None
     assert bad.primal_residual() == np.inf

@@ -109,6 +109,8 @@ def test_verdicts_claim_no_more_than_was_checked(tmp_path):
     assert "no reference solver was asked" in verdict(make_record(solvers=()), tmp_path)
     lag = make_record(settings={"mode": "continuous"})
     assert "lag, not judged" in verdict(lag, tmp_path)
+    unsure = make_record(reference_residual=np.full((10, 1), 1e-3), settings=lag.settings)
+    assert verdict(unsure, tmp_path).endswith("; 10 reference answers not to be believed")
     assert "reported and not judged" in (tmp_path / "report.md").read_text(encoding="utf-8")
 
 

@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, Protocol
 
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.qp import QP, Vector
 
+Settled = tuple[int, float, float, float, float]
+"""How far a network was advanced, and the residuals of the point it stands for.
 
-class Settled(NamedTuple):
-    """How far a network was advanced, and the residuals of the point it stands for.
-
-    Attributes:
-        iterations: Linear systems solved (implicit) or steps taken (explicit).
-        network_time: Time that passed, in units of rho.
-        primal: Primal residual of the point.
-        dual: Dual residual.
-        gap: Duality gap.
-    """
-
-    iterations: int
-    network_time: float
-    primal: float
-    dual: float
-    gap: float
+``(iterations, network_time, primal, dual, gap)``: linear systems solved (implicit) or steps taken
+(explicit), the time that passed in units of rho, and qpsolvers' three residuals. A plain tuple,
+since a control loop asks for it at every step.
+"""
 
 
 class Integrator(Protocol):

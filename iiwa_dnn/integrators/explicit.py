@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from iiwa_dnn import kernels
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.integrators.base import Settled
 from iiwa_dnn.networks import ProjectionNetwork
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp import QP, Residuals, Vector
 
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""
@@ -35,10 +35,9 @@ class ExplicitEuler:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        if self.substeps is not None and self.substeps < 1:
-            raise InvalidInputError("substeps", f"must be at least 1, not {self.substeps}")
-        if self.max_steps < 1:
-            raise InvalidInputError("max_steps", f"must be at least 1, not {self.max_steps}")
+        if self.substeps is not None:
+            checks.integer("substeps", self.substeps, 1)
+        checks.integer("max_steps", self.max_steps, 1)
 
     def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho].
@@ -54,7 +53,7 @@ class ExplicitEuler:
         if count is None:
             count = max(1, math.ceil(duration / self._stable_step(network, qp, state)))
         kernels.explicit_euler(
-            qp.arrays(), network.primal_projection, state, duration / count, count, -1.0
+            qp.data, *qp.sizes, network.primal_projection, state, duration / count, count, -1.0
         )
         return count
 
@@ -66,18 +65,23 @@ class ExplicitEuler:
         Raises:
             InvalidInputError: P is singular, so that no step is known to be stable.
         """
-        arrays = qp.arrays()
         step = self._stable_step(network, qp, None)
         taken, rate_tol = 0, tol
         while True:
             steps, _ = kernels.explicit_euler(
-                arrays, network.primal_projection, state, step, self.max_steps - taken, rate_tol
+                qp.data,
+                *qp.sizes,
+                network.primal_projection,
+                state,
+                step,
+                self.max_steps - taken,
+                rate_tol,
             )
             taken += steps
-            residuals = kernels.kkt_point(arrays, state, point)
+            residuals = Residuals(*kernels.kkt_point(qp.data, *qp.sizes, state, point))
             # The gap weighs the rates with the multipliers, so they may have to be smaller still.
-            if max(residuals) <= tol or taken >= self.max_steps or rate_tol < 1e-3 * tol:
-                return Settled(taken, taken * step, *residuals)
+            if residuals.largest <= tol or taken >= self.max_steps or rate_tol < 1e-3 * tol:
+                return taken, taken * step, *residuals
             rate_tol *= 0.1
 
     def _stable_step(self, network: ProjectionNetwork, qp: QP, state: Vector | None) -> float:

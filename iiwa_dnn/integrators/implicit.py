@@ -35,8 +35,8 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from iiwa_dnn import kernels
-from iiwa_dnn.exceptions import InvalidInputError, NoSolutionError
+from iiwa_dnn import checks, kernels
+from iiwa_dnn.exceptions import NoSolutionError
 from iiwa_dnn.integrators.base import Settled
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.qp import QP, Vector
@@ -59,9 +59,9 @@ class ImplicitEuler:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        for name in ("step", "long_step", "max_steps"):
-            if not getattr(self, name) > 0:
-                raise InvalidInputError(name, f"must be positive, not {getattr(self, name)}")
+        checks.positive("step", self.step)
+        checks.positive("long_step", self.long_step)
+        checks.integer("max_steps", self.max_steps, 1)
 
     def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
@@ -73,7 +73,9 @@ class ImplicitEuler:
             NoSolutionError: A step's linear system is singular to working precision.
         """
         count = max(1, math.ceil(duration / self.step))
-        systems = int(kernels.advance_implicit(qp.arrays(), state, duration / count, count, 1e-12))
+        systems = int(
+            kernels.advance_implicit(qp.data, *qp.sizes, state, duration / count, count, 1e-12)
+        )
         if systems < 0:
             raise NoSolutionError("an implicit step is singular to working precision")
         return systems
@@ -82,8 +84,8 @@ class ImplicitEuler:
         self, network: ProjectionNetwork, qp: QP, state: Vector, point: Vector, tol: float
     ) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`."""
-        return Settled(
-            *kernels.settle_implicit(
-                qp.data, *qp.sizes, state, point, tol, self.max_steps, self.long_step
-            )
+        n, m, p = qp.sizes
+        settled: Settled = kernels.settle_implicit(
+            qp.data, n, m, p, state, point, tol, self.max_steps, self.long_step
         )
+        return settled

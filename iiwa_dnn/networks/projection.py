@@ -25,8 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn import kernels
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.qp import QP, Vector
 
 
@@ -46,8 +45,7 @@ class ProjectionNetwork:
 
     def __post_init__(self) -> None:
         """Check the time constant."""
-        if not (np.isfinite(self.rho) and self.rho > 0):
-            raise InvalidInputError("rho", f"must be a positive time in s, not {self.rho}")
+        checks.positive("rho", self.rho)
 
     def state_size(self, qp: QP) -> int:
         """Number of states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
@@ -60,9 +58,7 @@ class ProjectionNetwork:
     def rates(self, qp: QP, state: Vector) -> Vector:
         """The right-hand side, rho ds/dt, of shape (state_size,)."""
         rates = np.empty(state.size)
-        kernels.field(
-            qp.arrays(), self.primal_projection, state, rates, np.empty(state.size, np.bool_)
-        )
+        self._field(qp, state, rates)
         return rates
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
@@ -89,9 +85,7 @@ class ProjectionNetwork:
             active[m : m + n] |= active[m + n :]
             active[m + n :] = qp.lb == qp.ub
         else:
-            active = np.empty(state.size, np.bool_)
-            kernels.multiplier_field(qp.arrays(), state, np.empty(state.size), active)
-            active = active[: m + 2 * n]
+            active = self._field(qp, state, np.empty(state.size)) > 0.0
         rows = np.vstack([qp.A, qp.G[active[:m]]]) if m else qp.A
         gram = rows.T @ rows
         gram[np.diag_indices(n)] += active[m : m + n].astype(float) + active[m + n :]
@@ -101,3 +95,10 @@ class ProjectionNetwork:
         # Passive multipliers and clipped variables decay at rate one: never more than 2.
         bound = 2.0 / largest
         return min(bound, smallest / coupling) if coupling > 0.0 else bound
+
+    def _field(self, qp: QP, state: Vector, rates: Vector) -> Vector:
+        """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""
+        n, m, p = qp.sizes
+        active = np.empty(m + 2 * n)
+        kernels.field(qp.data, n, m, p, self.primal_projection, state, rates, active)
+        return active

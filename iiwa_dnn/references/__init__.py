@@ -1,10 +1,11 @@
 """References: paths for the tip, with exact velocities."""
 
-from iiwa_dnn.references.base import Reference, Target, Targets
+from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.circle import Circle
 from iiwa_dnn.references.heart import Heart
 from iiwa_dnn.references.line import Line
 from iiwa_dnn.references.lissajous import Lissajous
+from iiwa_dnn.references.targets import Target, Targets
 from iiwa_dnn.references.waypoints import Waypoints
 
 __all__ = [

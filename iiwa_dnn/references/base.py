@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import copy
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
-from operator import index
-from typing import Any, ClassVar, Protocol, SupportsIndex, TypeVar
+from dataclasses import fields
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.references._checks import finite_array
+from iiwa_dnn.checks import finite_array
+from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
@@ -26,49 +26,6 @@ class Pose(Protocol):
     @property
     def rotation(self) -> NDArray[np.float64]:
         """Orientation, shape (3, 3)."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Target:
-    """Where the tip should be at one time, and how it should move; all along the world's axes.
-
-    Attributes:
-        position: Desired position [m], shape (3,).
-        rotation: Desired orientation, shape (3, 3).
-        linear_velocity: Desired linear velocity [m/s], shape (3,).
-        angular_velocity: Desired angular velocity [rad/s], shape (3,).
-    """
-
-    position: NDArray[np.float64]
-    rotation: NDArray[np.float64]
-    linear_velocity: NDArray[np.float64]
-    angular_velocity: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Targets:
-    """Targets at k times; ``targets[i]`` is the i-th :class:`Target`, a view of these arrays.
-
-    Attributes:
-        position: Desired positions [m], shape (k, 3).
-        rotation: Desired orientations, shape (k, 3, 3).
-        linear_velocity: Desired linear velocities [m/s], shape (k, 3).
-        angular_velocity: Desired angular velocities [rad/s], shape (k, 3).
-    """
-
-    position: NDArray[np.float64]
-    rotation: NDArray[np.float64]
-    linear_velocity: NDArray[np.float64]
-    angular_velocity: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.position)
-
-    def __getitem__(self, i: SupportsIndex) -> Target:
-        i = index(i)
-        return Target(
-            self.position[i], self.rotation[i], self.linear_velocity[i], self.angular_velocity[i]
-        )
 
 
 def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -161,10 +118,9 @@ class Reference(ABC):
         """
         now = finite_array("t", t, ())
         return Target(
-            position=_read_only(self.origin + self.displacement(now)),
+            position=self.origin + self.displacement(now),
             rotation=self.orientation,
-            linear_velocity=_read_only(self.velocity(now)),
-            angular_velocity=_AT_REST,
+            linear_velocity=self.velocity(now),
         )
 
     def sample(self, times: ArrayLike) -> Targets:
@@ -181,10 +137,10 @@ class Reference(ABC):
         """
         t = finite_array("times", times, (-1,))
         return Targets(
-            position=_read_only(self.origin + self.displacement(t)),
-            rotation=np.broadcast_to(self.orientation, (len(t), 3, 3)),
-            linear_velocity=_read_only(self.velocity(t)),
-            angular_velocity=np.broadcast_to(_AT_REST, (len(t), 3)),
+            position=self.origin + self.displacement(t),
+            rotation=self.orientation,
+            linear_velocity=self.velocity(t),
+            angular_velocity=_AT_REST,
         )
 
     def settings(self) -> dict[str, Any]:

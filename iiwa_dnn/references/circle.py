@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.checks import Vector3, positive, vector3
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.references._checks import Vector3, positive, vector3
 from iiwa_dnn.references.base import Reference, phase
 
 

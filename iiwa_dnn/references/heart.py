@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.references._checks import positive
+from iiwa_dnn.checks import positive
 from iiwa_dnn.references.base import Reference, phase
 
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.checks import finite_array
 from iiwa_dnn.exceptions import FileError, InvalidInputError
-from iiwa_dnn.references._checks import finite_array
 from iiwa_dnn.references.base import Reference
 
 if TYPE_CHECKING:

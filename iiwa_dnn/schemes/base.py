@@ -1,16 +1,18 @@
-"""What every scheme offers, and the position task that all of them share."""
+"""What every scheme offers, and the assembly of the program that all of them share."""
 
 from __future__ import annotations
 
-import math
+from functools import lru_cache
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import kernels
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
+from iiwa_dnn.schemes.orientation import MODE_INDEX, ROW_COUNT, Orientation
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")
 
@@ -35,22 +37,54 @@ class Scheme(Protocol):
         ...
 
 
-def check_gain(name: str, value: float) -> None:
-    """Raise InvalidInputError unless a feedback gain is a finite number that is not negative."""
-    if not (math.isfinite(value) and value >= 0):
-        raise InvalidInputError(name, f"must be a gain in 1/s of at least 0, not {value}", value)
+@lru_cache
+def identity(n: int) -> Matrix:
+    """The read-only (n, n) identity matrix."""
+    eye = np.eye(n)
+    eye.setflags(write=False)
+    return eye
 
 
-def position_rows(conf: Configuration, target: Target, gain: float) -> tuple[Matrix, Vector]:
-    r"""Rows of the position task, J dq = v_d + delta (p_d - p).
+def velocity_program(
+    conf: Configuration,
+    target: Target,
+    *,
+    limits: Matrix,
+    home: Vector,
+    kinetic: Matrix,
+    weight: float,
+    drift_gain: float,
+    position_gain: float,
+    orientation_gain: float,
+    limit_gain: float,
+    orientation: Orientation,
+) -> QP:
+    r"""Assemble a velocity program: an objective, the task as equality rows, velocity bounds.
+
+    The position rows are :math:`J \dot q = v_d + \delta\,(p_d - p)`; the orientation rows and the
+    bounds stand in their own files, the objective in `iiwa_dnn.schemes.double_indicator`.
 
     Args:
         conf: Where the robot is, n joints.
         target: Where it should be.
-        gain: Feedback gain delta [1/s].
+        limits: Rows of `Robot.limits` to keep, (3, n).
+        home: Posture to come back to [rad], (n,).
+        kinetic: G(q), (n, n).
+        weight: The blend of kinetic energy (1) and cyclic motion (0).
+        drift_gain: Gain towards `home` [1/s].
+        position_gain: Feedback gain delta [1/s].
+        orientation_gain: Feedback gain nu [1/s].
+        limit_gain: The bounds' kappa [1/s].
+        orientation: Form of the orientation rows.
 
     Returns:
-        ``(rows, rhs)`` of shapes (3, n) and (3,) [m/s].
+        A QP in n variables with 3 position rows and 3, 4 or 0 orientation rows.
     """
-    error = target.position - conf.position
-    return conf.jacobian[:3], target.linear_velocity + gain * error
+    n = conf.q.size
+    p = 3 + ROW_COUNT[orientation]
+    data = np.empty(n * n + 3 * n + p * (n + 1))
+    kernels.velocity_program(
+        data, p, MODE_INDEX[orientation], conf.q, conf.pose, conf.jacobian, target.data,
+        limits, home, kinetic, weight, drift_gain, position_gain, orientation_gain, limit_gain,
+    )  # fmt: skip
+    return QP.from_data(data, (n, 0, p))

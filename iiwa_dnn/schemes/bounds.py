@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from iiwa_dnn import kernels
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.qp import Vector
 
@@ -33,8 +34,6 @@ def velocity_bounds(conf: Configuration, limit_gain: float) -> tuple[Vector, Vec
     Returns:
         ``(lb, ub)`` [rad/s], each of shape (n,).
     """
-    robot, q = conf.robot, conf.q
-    fastest = robot.dq_max
-    lb = np.clip(limit_gain * (robot.q_lower - q), -fastest, fastest)
-    ub = np.clip(limit_gain * (robot.q_upper - q), -fastest, fastest)
+    lb, ub = np.empty(conf.q.size), np.empty(conf.q.size)
+    kernels.velocity_bounds(conf.q, conf.robot.limits, limit_gain, lb, ub)
     return lb, ub

@@ -18,22 +18,22 @@ alone. Source: equations (6) and (7) of the paper.
 
 from __future__ import annotations
 
-import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import QP
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import check_gain, position_rows
-from iiwa_dnn.schemes.bounds import velocity_bounds
-from iiwa_dnn.schemes.orientation import Orientation, check_orientation, orientation_rows
+from iiwa_dnn.schemes.base import identity, velocity_program
+from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 Kinetic = Literal["identity", "inertia"]
+KINETICS: tuple[Kinetic, ...] = ("identity", "inertia")
 
 
 @dataclass(frozen=True)
@@ -61,23 +61,21 @@ class DoubleIndicator:
     orientation: Orientation = "so3"
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
+    _home: Vector | None = field(init=False, repr=False, compare=False, default=None)
 
     def __post_init__(self) -> None:
         """Check every parameter; raises InvalidInputError naming it."""
-        if not (math.isfinite(self.weight) and 0.0 <= self.weight <= 1.0):
+        if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
-        for name in ("drift_gain", "position_gain", "orientation_gain", "limit_gain"):
-            check_gain(name, getattr(self, name))
-        check_orientation(self.orientation)
-        if self.kinetic not in ("identity", "inertia"):
-            raise InvalidInputError(
-                "kinetic", f"must be identity or inertia, not {self.kinetic!r}", self.kinetic
-            )
+        for name in ("drift_gain", "position_gain", "orientation_gain"):
+            checks.not_negative(name, getattr(self, name))
+        checks.positive("limit_gain", self.limit_gain)
+        checks.one_of("orientation", self.orientation, ORIENTATIONS)
+        checks.one_of("kinetic", self.kinetic, KINETICS)
         if self.home is not None:
-            home = tuple(float(value) for value in self.home)
-            if not all(math.isfinite(value) for value in home):
-                raise InvalidInputError("home", "must be finite", self.home)
-            object.__setattr__(self, "home", home)
+            home = checks.finite_array("home", self.home, (-1,))
+            object.__setattr__(self, "home", tuple(home.tolist()))
+            object.__setattr__(self, "_home", home)
 
     def anchored(self, conf: Configuration) -> DoubleIndicator:
         """The same scheme with `conf` as home, unless it has a home already."""
@@ -96,35 +94,36 @@ class DoubleIndicator:
         Raises:
             InvalidInputError: `home` has another length than the robot has joints.
         """
-        n = conf.q.size
-        position, position_rhs = position_rows(conf, target, self.position_gain)
-        angular, angular_rhs = orientation_rows(
-            self.orientation, conf, target, self.orientation_gain
-        )
-        P = (1.0 - self.weight) * np.eye(n) + self.weight * self._kinetic_matrix(conf)
-        linear = np.zeros(n)
-        if self.home is not None:
-            if len(self.home) != n:
-                raise InvalidInputError("home", f"has {len(self.home)} values for {n} joints")
-            linear = (1.0 - self.weight) * self.drift_gain * (conf.q - np.array(self.home))
-        lb, ub = velocity_bounds(conf, self.limit_gain)
-        return QP(
-            P,
-            linear,
-            A=np.concatenate([position, angular]),
-            b=np.concatenate([position_rhs, angular_rhs]),
-            lb=lb,
-            ub=ub,
+        home = self._home
+        if home is None:
+            home = conf.q
+        elif home.size != conf.q.size:
+            raise InvalidInputError("home", f"has {home.size} values for {conf.q.size} joints")
+        return velocity_program(
+            conf,
+            target,
+            limits=conf.robot.limits,
+            home=home,
+            kinetic=self._kinetic_matrix(conf),
+            weight=self.weight,
+            drift_gain=self.drift_gain,
+            position_gain=self.position_gain,
+            orientation_gain=self.orientation_gain,
+            limit_gain=self.limit_gain,
+            orientation=self.orientation,
         )
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """dq^T G(q) dq: [rad^2/s^2] with G = I, [J] (twice the energy) with the inertia."""
         velocity = np.asarray(dq, dtype=np.float64)
-        return float(velocity @ self._kinetic_matrix(conf) @ velocity)
+        if self.kinetic == "identity":
+            return float(velocity.dot(velocity))
+        return float(velocity @ conf.inertia @ velocity)
 
     def settings(self) -> dict[str, Any]:
         """Name and parameters, as values that JSON can hold."""
-        return {"name": "double-indicator", **asdict(self)}
+        parameters = {field.name: getattr(self, field.name) for field in fields(self) if field.init}
+        return {"name": "double-indicator", **parameters}
 
-    def _kinetic_matrix(self, conf: Configuration) -> Any:
-        return conf.inertia if self.kinetic == "inertia" else np.eye(conf.q.size)
+    def _kinetic_matrix(self, conf: Configuration) -> Matrix:
+        return conf.inertia if self.kinetic == "inertia" else identity(conf.q.size)

@@ -22,22 +22,17 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
+from iiwa_dnn import kernels
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
 
 Orientation = Literal["so3", "block", "none"]
 ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")
-
-
-def check_orientation(value: str) -> None:
-    """Raise InvalidInputError unless `value` is one of ``ORIENTATIONS``."""
-    if value not in ORIENTATIONS:
-        choices = ", ".join(ORIENTATIONS)
-        raise InvalidInputError("orientation", f"must be one of {choices}, not {value!r}", value)
+ROW_COUNT: dict[Orientation, int] = {"so3": 3, "block": 4, "none": 0}
+MODE_INDEX: dict[Orientation, int] = {"none": 0, "so3": 1, "block": 2}
+"""What the kernels call a form."""
 
 
 def block_vector(rotation: Matrix) -> Vector:
@@ -47,15 +42,9 @@ def block_vector(rotation: Matrix) -> Vector:
 
 def block_map(rotation: Matrix) -> Matrix:
     """W(R) of shape (4, 3): the rate of `block_vector` is W(R) times the angular velocity."""
-    R = rotation
-    return np.array(
-        [
-            [0.0, R[2, 0], -R[1, 0]],
-            [0.0, R[2, 1], -R[1, 1]],
-            [-R[2, 0], 0.0, R[0, 0]],
-            [-R[2, 1], 0.0, R[0, 1]],
-        ]
-    )
+    result = np.empty((4, 3))
+    kernels.block_map(np.ascontiguousarray(rotation, dtype=np.float64), result)
+    return result
 
 
 def orientation_rows(
@@ -72,13 +61,9 @@ def orientation_rows(
     Returns:
         ``(rows, rhs)`` of shapes (k, n) and (k,) with k = 3, 4 or 0.
     """
-    angular = conf.jacobian[3:]
-    if mode == "so3":
-        error = pin.log3(target.rotation @ conf.rotation.T)
-        return angular, target.angular_velocity + gain * error
-    if mode == "block":
-        rows = block_map(conf.rotation) @ angular
-        desired = block_map(target.rotation) @ target.angular_velocity
-        error = block_vector(target.rotation) - block_vector(conf.rotation)
-        return rows, desired + gain * error
-    return angular[:0], np.zeros(0)
+    count = ROW_COUNT[mode]
+    rows, rhs = np.empty((count, conf.q.size)), np.empty(count)
+    kernels.orientation_rows(
+        MODE_INDEX[mode], conf.pose, conf.jacobian, target.data, gain, rows, rhs
+    )
+    return rows, rhs

@@ -11,16 +11,18 @@ Transactions on Man-Machine Systems 10 (1969).
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import check_gain, position_rows
-from iiwa_dnn.schemes.orientation import Orientation, check_orientation, orientation_rows
+from iiwa_dnn.schemes.base import identity, velocity_program
+from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 
 @dataclass(frozen=True)
@@ -39,9 +41,9 @@ class PseudoInverse:
 
     def __post_init__(self) -> None:
         """Check every parameter; raises InvalidInputError naming it."""
-        check_gain("position_gain", self.position_gain)
-        check_gain("orientation_gain", self.orientation_gain)
-        check_orientation(self.orientation)
+        checks.not_negative("position_gain", self.position_gain)
+        checks.not_negative("orientation_gain", self.orientation_gain)
+        checks.one_of("orientation", self.orientation, ORIENTATIONS)
 
     def anchored(self, conf: Configuration) -> PseudoInverse:
         """The scheme itself: it has no posture to come back to."""
@@ -49,16 +51,19 @@ class PseudoInverse:
 
     def build_qp(self, conf: Configuration, target: Target) -> QP:
         """The least-norm problem as a QP in n variables, without bounds."""
-        position, position_rhs = position_rows(conf, target, self.position_gain)
-        angular, angular_rhs = orientation_rows(
-            self.orientation, conf, target, self.orientation_gain
-        )
         n = conf.q.size
-        return QP(
-            np.eye(n),
-            np.zeros(n),
-            A=np.concatenate([position, angular]),
-            b=np.concatenate([position_rhs, angular_rhs]),
+        return velocity_program(
+            conf,
+            target,
+            limits=_no_limits(n),
+            home=conf.q,
+            kinetic=identity(n),
+            weight=1.0,
+            drift_gain=0.0,
+            position_gain=self.position_gain,
+            orientation_gain=self.orientation_gain,
+            limit_gain=1.0,
+            orientation=self.orientation,
         )
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
@@ -75,3 +80,12 @@ class PseudoInverse:
     def settings(self) -> dict[str, Any]:
         """Name and parameters, as values that JSON can hold."""
         return {"name": "pseudo-inverse", **asdict(self)}
+
+
+@lru_cache
+def _no_limits(n: int) -> Matrix:
+    """Limits of `Robot.limits`' shape that hold nothing back."""
+    limits = np.full((3, n), np.inf)
+    limits[0] = -np.inf
+    limits.setflags(write=False)
+    return limits

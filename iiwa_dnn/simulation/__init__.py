@@ -3,6 +3,14 @@
 from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.loop import Simulation, simulate
 from iiwa_dnn.simulation.motion import MOTIONS
-from iiwa_dnn.simulation.noise import gaussian_noise
+from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, gaussian_noise
 
-__all__ = ["MOTIONS", "MovingAverage", "Simulation", "gaussian_noise", "simulate"]
+__all__ = [
+    "MOTIONS",
+    "NOISE_ENTRIES",
+    "MovingAverage",
+    "NoiseEntry",
+    "Simulation",
+    "gaussian_noise",
+    "simulate",
+]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn import checks
 from iiwa_dnn.qp import Vector
 
 
@@ -28,9 +28,7 @@ class MovingAverage:
         Raises:
             InvalidInputError: `window` is below 1.
         """
-        if window < 1:
-            raise InvalidInputError("filter_window", f"must be at least 1, not {window}", window)
-        self.window = window
+        self.window = checks.integer("filter_window", window, 1)
         self._count = 0
         self._samples = np.empty((0, 0))
 

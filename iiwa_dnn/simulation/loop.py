@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from importlib.metadata import version
@@ -11,21 +10,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
+from iiwa_dnn.checkpool import CheckPool
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import Command, Controller, Mode
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Solution, Status, Vector
 from iiwa_dnn.record import Record
-from iiwa_dnn.references import Reference
+from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
-from iiwa_dnn.simulation.noise import gaussian_noise
+from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, gaussian_noise
 from iiwa_dnn.solver import DNNSolver
 
 COMPLETED = "completed"
+MAX_STEPS = 20_000_000
+"""More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
+
+BLOCK = 500
+"""Steps between two hand-overs to the record and to the check."""
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
 Progress = Callable[[int], object]
@@ -65,6 +71,7 @@ class Simulation:
     Step k: the scheme builds the program at ``q[k]`` and ``t[k]`` (and at the stages between, for
     midpoint and RK4), the network answers, every reference solver is asked the same, noise is
     added to the velocity, the filter averages it, and the robot moves by dt times the result.
+    Noise may enter elsewhere instead (`iiwa_dnn.simulation.noise.NOISE_ENTRIES`).
 
     A step that the network cannot solve ends the run there with the robot at rest; the record's
     status says so.
@@ -82,6 +89,7 @@ class Simulation:
         mode: Mode = "converged",
         motion: Motion = "euler",
         noise: float = 0.0,
+        noise_at: NoiseEntry = "velocity",
         filter_window: int = 1,
         seed: int = 0,
         tol: float = 1e-9,
@@ -99,7 +107,10 @@ class Simulation:
             duration: Length of the run [s], rounded to whole steps; None takes the reference's.
             mode: ``"converged"`` or ``"continuous"`` (`iiwa_dnn.controller.Controller`).
             motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` takes ``euler`` only.
-            noise: Standard deviation of white noise on each joint velocity [rad/s].
+            noise: Standard deviation of white noise on each joint, in the unit of what it is
+                added to: [rad/s], or [rad] for ``measurement``.
+            noise_at: ``"velocity"``, the one commanded; ``"network"``, x of the network's state;
+                ``"measurement"``, the joint angles that the controller sees.
             filter_window: Samples that the moving average takes; 1 is no filter.
             seed: Seed of the noise; the same seed gives the same record, bit for bit.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
@@ -110,27 +121,28 @@ class Simulation:
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
-        _check_positive("dt", dt)
+        checks.positive("dt", dt)
         length = reference.duration if duration is None else duration
-        _check_positive("duration", length)
-        if motion not in MOTIONS:
-            choices = ", ".join(MOTIONS)
-            raise InvalidInputError("motion", f"must be one of {choices}, not {motion!r}", motion)
+        checks.positive("duration", length)
+        checks.one_of("motion", motion, tuple(MOTIONS))
         if mode == "continuous" and motion != "euler":
             raise InvalidInputError(
                 "motion", "must be euler in continuous mode: the network has one clock", motion
             )
-        steps = max(1, round(length / dt))
+        steps = _step_count(length, dt)
         self._solver = DNNSolver(tol=tol) if solver is None else solver
         self._check = CrossCheck() if check is None else check
         self._scratch = robot.model.createData()
         start = Configuration(robot, q0, self._scratch)
         self._controller = Controller(scheme.anchored(start), self._solver, mode, dt)
-        self._robot, self._dt, self._motion = robot, dt, MOTIONS[motion]
-        self._disturbance = gaussian_noise(noise, steps, robot.dof, seed)
-        self._average = MovingAverage(filter_window)
-        # Two targets a step: the methods of motion ask at its ends and at its middle.
-        self._targets = reference.sample(np.arange(2 * steps + 1) * (0.5 * dt))
+        self._robot, self._reference = robot, reference
+        self._dt, self._motion = dt, MOTIONS[motion]
+        checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
+        self._noise_at = noise_at
+        drawn = gaussian_noise(noise, steps, robot.dof, seed)
+        self._noise = drawn if noise > 0.0 else None
+        checks.integer("filter_window", filter_window, 1)
+        self._filter_window = filter_window
         self._settings: dict[str, Any] = {
             "robot": robot.name,
             "tip": robot.tip,
@@ -143,6 +155,7 @@ class Simulation:
             "mode": mode,
             "motion": motion,
             "noise": noise,
+            "noise_at": noise_at,
             "filter_window": filter_window,
             "seed": seed,
             "tol": self._solver.tol,
@@ -166,77 +179,102 @@ class Simulation:
         """
         began = time.perf_counter()
         self._solver.reset()
-        report_every = max(1, self.steps // 1000)
-        status, done, reported = COMPLETED, 0, 0
+        # A window longer than the run never fills; so none is too long for the memory.
+        self._average = MovingAverage(min(self._filter_window, self.steps))
+        pool = CheckPool(self._check, self.steps * self._motion.stages)
+        status, done = COMPLETED, 0
         while done < self.steps and status == COMPLETED:
-            status = self._step(done)
-            done += 1
-            if progress is not None and done - reported >= report_every:
-                progress(done - reported)
-                reported = done
-        if progress is not None and done > reported:
-            progress(done - reported)
+            block = _Block(self._reference, done, min(BLOCK, self.steps - done), self._dt)
+            for k in range(done, done + block.steps):
+                status = self._step(k, block)
+                if status != COMPLETED:
+                    break
+            taken = len(block.velocities)
+            self._record_block(done, taken, block)
+            pool.submit(np.stack(block.programs), block.sizes, np.stack(block.answers))
+            done += taken
+            if progress is not None:
+                progress(taken)
         last = Configuration(self._robot, self._q[done], self._scratch)
         self._position[done], self._rotation[done] = last.position, last.rotation
-        return self._record(done, status, time.perf_counter() - began)
+        desired = self._reference.sample([done * self._dt])
+        self._position_desired[done] = desired.position[0]
+        self._rotation_desired[done] = desired.rotation[0]
+        agreement = pool.finish().worst_of(self._motion.stages)
+        return self._record(done, status, agreement, time.perf_counter() - began)
 
     def _allocate(self, q0: Vector) -> None:
-        steps, n, k = self.steps, q0.size, len(self._check.solvers)
+        steps, n = self.steps, q0.size
         self._q = np.empty((steps + 1, n))
         self._q[0] = q0
-        self._dq, self._dq_solver = np.zeros((steps, n)), np.zeros((steps, n))
-        self._position = np.empty((steps + 1, 3))
-        self._rotation = np.empty((steps + 1, 3, 3))
-        self._kinetic_index, self._kkt_residual = np.zeros(steps), np.zeros(steps)
-        self._iterations = np.zeros(steps, dtype=np.int64)
-        self._solution_gap = np.full((steps, k), np.nan)
-        self._objective_gap = np.full((steps, k), np.nan)
-        self._reference_residual = np.full((steps, k), np.nan)
+        self._dq, self._dq_solver = np.empty((steps, n)), np.empty((steps, n))
+        self._position, self._rotation = np.empty((steps + 1, 3)), np.empty((steps + 1, 3, 3))
+        self._position_desired = np.empty((steps + 1, 3))
+        self._rotation_desired = np.empty((steps + 1, 3, 3))
+        self._kinetic_index, self._kkt_residual = np.empty(steps), np.empty(steps)
+        self._iterations = np.empty(steps, dtype=np.int64)
 
-    def _step(self, k: int) -> str:
-        """Take step k and record it; returns the status that the run has after it."""
-        stages: list[tuple[Configuration, Command]] = []
+    def _step(self, k: int, block: _Block) -> str:
+        """Take step k, note it in the block, and return the status that the run has after it."""
+        q, dt = self._q[k], self._dt
+        noise = None if self._noise is None else self._noise[k]
+        seen = q if noise is None or self._noise_at != "measurement" else q + noise
+        before = len(block.solutions)
 
         def velocity_at(q: Vector, t: float) -> Vector:
             conf = Configuration(self._robot, q, self._scratch)
-            command = self._controller.step(conf, self._targets[round(2.0 * t / self._dt)])
-            stages.append((conf, command))
+            command = self._controller.step(conf, block.target(t))
+            block.add(conf, command)
             return command.dq
 
-        q, dt = self._q[k], self._dt
-        velocity = self._motion(velocity_at, q, k * dt, dt)
-        status = self._judge(k, [command for _, command in stages])
-        if status == COMPLETED:
-            self._dq_solver[k] = velocity
-            self._dq[k] = self._average(velocity + self._disturbance[k])
-        conf = stages[0][0]
-        self._position[k], self._rotation[k] = conf.position, conf.rotation
-        self._kinetic_index[k] = self._controller.scheme.kinetic_index(conf, self._dq[k])
-        self._q[k + 1] = q + dt * self._dq[k]
+        velocity = self._motion.step(velocity_at, seen, k * dt, dt)
+        status = self._judge(k, block.solutions[before:])
+        if status != COMPLETED:
+            velocity = np.zeros(q.size)
+        moved = velocity
+        if noise is not None and self._noise_at == "velocity" and status == COMPLETED:
+            moved = velocity + noise
+        dq = self._average(moved) if status == COMPLETED else moved
+        if noise is not None and self._noise_at == "network":
+            self._solver.disturb(noise)
+        if seen is not q:
+            block.configurations[before] = Configuration(self._robot, q, self._scratch)
+        block.velocities.append(velocity)
+        self._dq[k] = dq
+        self._q[k + 1] = q + dt * dq
         return status
 
-    def _judge(self, k: int, commands: list[Command]) -> str:
-        """Check the programs of step k, and say whether the run can go on."""
-        solutions = [command.solution for command in commands]
-        largest = float(np.max([solution.residuals.largest for solution in solutions]))
-        self._kkt_residual[k] = largest
-        self._iterations[k] = sum(solution.iterations for solution in solutions)
-        if self._check.solvers:
-            worst = Agreement.worst([self._check.check(c.qp, c.dq) for c in commands])
-            self._solution_gap[k] = worst.solution_gap
-            self._objective_gap[k] = worst.objective_gap
-            self._reference_residual[k] = worst.reference_residual
-        settled = self._controller.mode == "continuous" or all(s.found for s in solutions)
-        if settled and math.isfinite(largest):
-            return COMPLETED
-        return (
-            f"stopped at step {k} (t = {k * self._dt:g} s): "
-            f"the network did not settle, KKT residual {largest:.1e}"
-        )
+    def _judge(self, k: int, solutions: list[Solution]) -> str:
+        """Say whether the run can go on after step k."""
+        for solution in solutions:
+            if solution.status is not Status.SOLVED and solution.status is not Status.ADVANCED:
+                return (
+                    f"stopped at step {k} (t = {k * self._dt:g} s): the network did not settle, "
+                    f"KKT residual {solution.residuals.largest:.1e}"
+                )
+        return COMPLETED
 
-    def _record(self, steps: int, status: str, wall_time: float) -> Record:
+    def _record_block(self, first: int, steps: int, block: _Block) -> None:
+        """Write a block's steps into the arrays of the run."""
+        rows, stages = slice(first, first + steps), self._motion.stages
+        starts = block.configurations[::stages]
+        poses = np.stack([conf.pose for conf in starts])
+        self._position[rows], self._rotation[rows] = poses[:, :3, 3], poses[:, :3, :3]
+        at_steps = slice(0, 2 * steps, 2)
+        self._position_desired[rows] = block.targets.position[at_steps]
+        self._rotation_desired[rows] = block.targets.rotation[at_steps]
+        self._dq_solver[rows] = block.velocities
+        index = self._controller.scheme.kinetic_index
+        self._kinetic_index[rows] = [
+            index(conf, dq) for conf, dq in zip(starts, self._dq[rows], strict=True)
+        ]
+        residuals = np.array([solution[-3:] for solution in block.solutions])
+        self._kkt_residual[rows] = residuals.reshape(steps, -1).max(axis=1)
+        iterations = np.array([solution.iterations for solution in block.solutions])
+        self._iterations[rows] = iterations.reshape(steps, stages).sum(axis=1)
+
+    def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
-        desired = slice(0, 2 * steps + 1, 2)
         return Record(
             t=self._dt * np.arange(steps + 1, dtype=np.float64),
             q=self._q[: steps + 1],
@@ -244,19 +282,53 @@ class Simulation:
             dq_solver=self._dq_solver[:steps],
             position=self._position[: steps + 1],
             rotation=self._rotation[: steps + 1],
-            position_desired=self._targets.position[desired],
-            rotation_desired=self._targets.rotation[desired],
+            position_desired=self._position_desired[: steps + 1],
+            rotation_desired=self._rotation_desired[: steps + 1],
             kinetic_index=self._kinetic_index[:steps],
             kkt_residual=self._kkt_residual[:steps],
             iterations=self._iterations[:steps],
-            solution_gap=self._solution_gap[:steps],
-            objective_gap=self._objective_gap[:steps],
-            reference_residual=self._reference_residual[:steps],
+            solution_gap=agreement.solution_gap,
+            objective_gap=agreement.objective_gap,
+            reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": status},
             wall_time_s=wall_time,
         )
 
 
-def _check_positive(name: str, value: float) -> None:
-    if not (math.isfinite(value) and value > 0):
-        raise InvalidInputError(name, f"must be a positive time in s, not {value}", value)
+def _step_count(duration: float, dt: float) -> int:
+    """Whole steps in a run; an InvalidInputError where there is none, or far too many."""
+    steps = duration / dt
+    if not 0.5 < steps <= MAX_STEPS:
+        name, value = ("dt", dt) if steps > 1.0 and dt < 1e-6 else ("duration", duration)
+        problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"
+        raise InvalidInputError(name, problem, value)
+    return max(1, round(steps))
+
+
+class _Block:
+    """What a stretch of steps leaves behind, one entry a stage, until it is recorded."""
+
+    def __init__(self, reference: Reference, first: int, steps: int, dt: float) -> None:
+        self.steps = steps
+        self._first, self._dt = first, dt
+        # Two targets a step: the methods of motion ask at its ends and at its middle.
+        self.targets = reference.sample((2 * first + np.arange(2 * steps + 1)) * (0.5 * dt))
+        self.configurations: list[Configuration] = []
+        self.programs: list[Vector] = []
+        self.answers: list[Vector] = []
+        self.solutions: list[Solution] = []
+        self.velocities: list[Vector] = []
+        self.sizes = (0, 0, 0)
+
+    def target(self, t: float) -> Target:
+        """The target at a stage's time [s]."""
+        return self.targets[round(2.0 * t / self._dt) - 2 * self._first]
+
+    def add(self, conf: Configuration, command: Command) -> None:
+        """Note a stage."""
+        qp, solution = command
+        self.configurations.append(conf)
+        self.programs.append(qp.data)
+        self.sizes = qp.sizes
+        self.solutions.append(solution)
+        self.answers.append(solution.x)

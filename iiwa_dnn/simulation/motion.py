@@ -11,7 +11,7 @@ E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I"
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from iiwa_dnn.qp import Vector
 
@@ -39,4 +39,20 @@ def rk4(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
     return (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
 
 
-MOTIONS: dict[str, Step] = {"euler": euler, "midpoint": midpoint, "rk4": rk4}
+class Method(NamedTuple):
+    """A method and how often it asks for the velocity in one step.
+
+    Attributes:
+        step: Gives the mean velocity of a step.
+        stages: Velocities that it asks for.
+    """
+
+    step: Step
+    stages: int
+
+
+MOTIONS: dict[str, Method] = {
+    "euler": Method(euler, 1),
+    "midpoint": Method(midpoint, 2),
+    "rk4": Method(rk4, 4),
+}

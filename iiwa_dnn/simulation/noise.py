@@ -1,34 +1,44 @@
-"""Disturbances of the joint velocity."""
+"""Disturbances of the loop: how they are drawn, and where they may enter."""
 
 from __future__ import annotations
 
-import math
+from typing import Literal
 
 import numpy as np
 
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix
+
+NoiseEntry = Literal["velocity", "network", "measurement"]
+NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
+"""Where noise may enter the loop; sigma is in the unit of what it is added to.
+
+``velocity`` [rad/s]: added to the joint velocity that the controller commands, before the filter:
+the paper's section IV. ``network`` [rad/s]: added to x of the network's state after each step's
+answer was taken, so the network has one control step to work it off; a network that settles at
+every step forgets it. ``measurement`` [rad]: added to the joint angles that the controller sees;
+the robot, and the record, keep the true ones.
+"""
 
 
 def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
     """White Gaussian noise, drawn anew at every control step (section IV of the paper).
 
     Args:
-        sigma: Standard deviation [rad/s]; the paper's amplitude is 0.01.
+        sigma: Standard deviation, in [rad/s] or [rad] by where it enters (`NOISE_ENTRIES`); the
+            paper's amplitude is 0.01.
         steps: Number of control steps.
         joints: Number of joints.
-        seed: The same seed gives the same noise.
+        seed: The same seed gives the same noise, wherever it enters.
 
     Returns:
-        Noise [rad/s] of shape (steps, joints).
+        Noise in the unit of `sigma`, of shape (steps, joints).
 
     Raises:
         InvalidInputError: `sigma` is negative or not finite, or `seed` is negative.
     """
-    if not (math.isfinite(sigma) and sigma >= 0):
-        raise InvalidInputError("noise", f"must be at least 0 rad/s, not {sigma}", sigma)
-    if seed < 0:
-        raise InvalidInputError("seed", f"must be at least 0, not {seed}", seed)
+    checks.not_negative("noise", sigma)
+    checks.integer("seed", seed, 0)
     if sigma == 0.0:
         return np.zeros((steps, joints))
     return sigma * np.random.default_rng(seed).standard_normal((steps, joints))

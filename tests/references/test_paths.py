@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Targets, Waypoints
+from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
 from iiwa_dnn.robot import load_robot
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
@@ -108,7 +108,7 @@ def test_sample_is_at_for_many_times(reference: Reference) -> None:
     t = times(reference, 20)
     targets = anchored.sample(t)
     assert len(targets) == 20
-    names = [field.name for field in dataclasses.fields(Targets)]
+    names = ("position", "rotation", "linear_velocity", "angular_velocity")
     for i in range(-20, 20):
         one, other = targets[i], anchored.at(t[i])
         for name in names:
@@ -136,7 +136,7 @@ def test_immutable(reference: Reference) -> None:
             setattr(reference, name, 1.0)
     with pytest.raises(ValueError, match="read-only"):
         reference.origin[0] = 1.0
-    with pytest.raises(dataclasses.FrozenInstanceError):
+    with pytest.raises(AttributeError):
         reference.at(0.0).position = None
 
 

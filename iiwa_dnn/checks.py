@@ -1,10 +1,10 @@
-"""Checks of the parameters that references are made of."""
+"""Checks of arguments: each returns the value as it is needed, or names the argument."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from numbers import Real
+from numbers import Integral, Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,6 +19,30 @@ def positive(argument: str, value: object) -> float:
     if not isinstance(value, Real) or not math.isfinite(value) or float(value) <= 0.0:
         raise InvalidInputError(argument, f"must be a finite number above 0, not {value!r}", value)
     return float(value)
+
+
+def not_negative(argument: str, value: object) -> float:
+    """The value as a float, or an InvalidInputError unless it is a finite number of at least 0."""
+    if not isinstance(value, Real) or not math.isfinite(value) or float(value) < 0.0:
+        raise InvalidInputError(argument, f"must be a finite number >= 0, not {value!r}", value)
+    return float(value)
+
+
+def integer(argument: str, value: object, least: int) -> int:
+    """The value as an int, or an InvalidInputError unless it is a whole number >= `least`."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+        raise InvalidInputError(
+            argument, f"must be a whole number of at least {least}, not {value!r}", value
+        )
+    return int(value)
+
+
+def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
+    """An InvalidInputError unless the value is one of the choices."""
+    if value not in choices:
+        raise InvalidInputError(
+            argument, f"must be one of {', '.join(choices)}, not {value!r}", value
+        )
 
 
 def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:

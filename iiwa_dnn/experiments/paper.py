@@ -1,0 +1,47 @@
+"""What the paper prints: its parameters and the numbers of its tables.
+
+Source: "Enhanced Orientation Tracking for Redundant Manipulators via DNN-Based Double Control",
+section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squared error's unit
+"meters", which can only be [m^2].
+"""
+
+from __future__ import annotations
+
+START = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
+"""theta(0) [rad]."""
+
+JOINT_LIMIT = 2.5
+"""Position limit on every joint [rad]: of the experiment, not of the robot."""
+
+DT = 1e-4
+"""Control period [s], the paper's trajectory planning interval."""
+
+NOISE = 0.01
+"""The white noise's amplitude, read as the standard deviation; the paper gives no unit."""
+
+WINDOW = 10
+"""Samples in the moving average."""
+
+WEIGHT = 0.2
+"""xi of Table II and Fig. 2. Section V-A names 0.3 instead, which no result belongs to."""
+
+WEIGHTS = (0.1, 0.2, 0.4, 0.5, 0.6, 0.8, 0.9)
+"""xi of the columns of Table I."""
+
+MAX_ERROR = (7.25e-5, 5.59e-5, 6.50e-5, 4.06e-5, 7.88e-5, 4.24e-5, 1.75e-5)
+"""Table I, MAX E [m]."""
+
+DRIFT = (None, 1.74e-2, 3.88e-2, None, 8.71e-2, None, None)
+"""Table I, MAX |theta(T) - theta(0)| [rad]; four cells of the printed table cannot be read."""
+
+KINETIC_INDEX = (4.54e-6,) * 7
+"""Table I, MAX of the squared joint velocity; see docs/errata.md on its size."""
+
+CASES = ("no noise, no filter", "no noise, filter", "noise, no filter", "noise, filter")
+"""The rows of Table II, and the panels (a), (c), (b), (d) of Fig. 2."""
+
+CASES_MAX_ERROR = (6.70e-5, 6.47e-5, 7.07e-5, 6.87e-5)
+"""Table II, MAX E [m], in the order of `CASES`."""
+
+CASES_MSE = (2.00e-10, 1.97e-10, 3.28e-10, 2.49e-10)
+"""Table II, MSE [m^2], in the order of `CASES`."""

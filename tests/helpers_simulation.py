@@ -1,0 +1,83 @@
+"""The paper's experiment in small: robot, start, reference, and short runs of it."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import qpsolvers
+import scipy.sparse as spa
+from numpy.typing import ArrayLike, NDArray
+
+from helpers_kinematics import PAPER_Q0
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.crosscheck import CrossCheck
+from iiwa_dnn.qp import QP
+from iiwa_dnn.record import Record
+from iiwa_dnn.references import Heart, Reference, Target
+from iiwa_dnn.robot import Robot, load_robot
+from iiwa_dnn.schemes import DoubleIndicator, Scheme
+from iiwa_dnn.simulation import simulate
+
+UNCHECKED = CrossCheck(())
+
+
+@cache
+def paper_robot() -> Robot:
+    """The iiwa 7 with the paper's position limits."""
+    return load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+
+
+@cache
+def paper_start() -> Configuration:
+    """The paper's theta(0)."""
+    return Configuration(paper_robot(), PAPER_Q0)
+
+
+def heart(period: float = 10.0) -> Reference:
+    """The heart from the paper's start; a short period makes a short run of a whole one."""
+    return Heart(period=period).anchored(paper_start())
+
+
+def near_target(q: ArrayLike, seed: int, size: float = 0.1) -> Target:
+    """A target near the pose at q, in motion in every direction."""
+    rng = np.random.default_rng(seed)
+    pose = Configuration(paper_robot(), np.asarray(q) + size * rng.standard_normal(7))
+    return Target(
+        pose.position, pose.rotation, size * rng.standard_normal(3), size * rng.standard_normal(3)
+    )
+
+
+def run(
+    scheme: Scheme | None = None,
+    reference: Reference | None = None,
+    robot: Robot | None = None,
+    **options: Any,
+) -> Record:
+    """A run from the paper's start, by default of 0.05 s at 1e-3 s and without a cross-check."""
+    return simulate(
+        robot or paper_robot(),
+        scheme or DoubleIndicator(),
+        reference or heart(),
+        PAPER_Q0,
+        **{"dt": 1e-3, "duration": 0.05, "check": UNCHECKED} | options,
+    )
+
+
+def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
+    """The program's solution by an established solver, straight through qpsolvers."""
+    problem = qp.to_qpsolvers()
+    if solver == "osqp":
+        problem.P, problem.A = spa.csc_matrix(problem.P), spa.csc_matrix(problem.A)
+        options: dict[str, Any] = {
+            "eps_abs": 1e-10,
+            "eps_rel": 0.0,
+            "polishing": True,
+            "raise_error": False,
+        }
+    else:
+        options = {"eps_abs": 1e-11, "eps_rel": 0.0, "backend": "dense"}
+    solution = qpsolvers.solve_problem(problem, solver=solver, **options)
+    assert solution.is_optimal(1e-8)
+    return solution.x

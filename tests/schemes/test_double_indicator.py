@@ -1,0 +1,234 @@
+"""The paper's scheme against its objective, its constraints and other solvers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from helpers_kinematics import PAPER_Q0, Array
+from helpers_simulation import heart, near_target, paper_robot, paper_start, solve_by
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import QP
+from iiwa_dnn.robot import load_robot
+from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.solver import DNNSolver, solve_problem
+
+WEIGHTS = (0.0, 0.2, 0.7, 1.0)
+HOME = tuple(np.add(PAPER_Q0, (0.3, -0.1, 0.2, -0.4, 0.05, 0.6, -0.2)))
+
+
+def inertia(q: Array) -> Array:
+    """The inertia matrix, column by column through inverse dynamics at rest."""
+    model = paper_robot().model
+    data = model.createData()
+    rest = np.zeros(7)
+    gravity = pin.rnea(model, data, q, rest, rest).copy()
+    return np.column_stack([pin.rnea(model, data, q, rest, e) - gravity for e in np.eye(7)])
+
+
+def paper_objective(scheme: DoubleIndicator, q: Array, dq: Array) -> float:
+    """Equation (6) as the paper writes it, before it is expanded."""
+    metric = inertia(q) if scheme.kinetic == "inertia" else np.eye(7)
+    drift = dq + scheme.drift_gain * (q - np.array(scheme.home))
+    return 0.5 * (scheme.weight * dq @ metric @ dq + (1.0 - scheme.weight) * drift @ drift)
+
+
+def qp_objective(qp: QP, dq: Array) -> float:
+    return 0.5 * dq @ qp.P @ dq + qp.q @ dq
+
+
+@pytest.mark.parametrize("kinetic", ["identity", "inertia"])
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_objective_is_the_papers_up_to_a_constant(weight: float, kinetic: str) -> None:
+    scheme = DoubleIndicator(weight=weight, kinetic=kinetic, drift_gain=3.7, home=HOME)
+    rng = np.random.default_rng(1)
+    for q in rng.uniform(-2.5, 2.5, (5, 7)):
+        qp = scheme.build_qp(Configuration(paper_robot(), q), near_target(q, seed=2))
+        for one, other in rng.normal(size=(10, 2, 7)):
+            expected = paper_objective(scheme, q, one) - paper_objective(scheme, q, other)
+            difference = qp_objective(qp, one) - qp_objective(qp, other)
+            assert difference == pytest.approx(expected, rel=1e-10, abs=1e-10)
+
+
+def test_weight_one_has_no_pull_home_and_weight_zero_no_inertia() -> None:
+    q = np.array(PAPER_Q0) + 0.1
+    conf, target = Configuration(paper_robot(), q), near_target(q, seed=3)
+    energy = DoubleIndicator(weight=1.0, kinetic="inertia", home=PAPER_Q0).build_qp(conf, target)
+    cyclic = DoubleIndicator(weight=0.0, kinetic="inertia", home=PAPER_Q0).build_qp(conf, target)
+    np.testing.assert_array_equal(energy.q, np.zeros(7))
+    np.testing.assert_allclose(energy.P, inertia(q), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(cyclic.q, np.full(7, 10.2 * 0.1), rtol=1e-12)
+    np.testing.assert_array_equal(cyclic.P, np.eye(7))
+
+
+@pytest.mark.parametrize("weight", WEIGHTS)
+def test_with_the_identity_the_weight_acts_through_the_linear_term_alone(weight: float) -> None:
+    conf = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.1)
+    qp = DoubleIndicator(weight=weight, home=PAPER_Q0).build_qp(conf, near_target(conf.q, seed=3))
+    np.testing.assert_allclose(qp.P, np.eye(7), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(qp.q, (1.0 - weight) * 10.2 * (conf.q - PAPER_Q0), rtol=1e-12)
+
+
+def test_without_a_home_nothing_pulls_and_anchoring_gives_one() -> None:
+    elsewhere = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.2)
+    target = near_target(elsewhere.q, seed=4)
+    scheme = DoubleIndicator()
+    np.testing.assert_array_equal(scheme.build_qp(elsewhere, target).q, np.zeros(7))
+    anchored = scheme.anchored(paper_start())
+    assert anchored.home == PAPER_Q0
+    np.testing.assert_allclose(anchored.build_qp(elsewhere, target).q, 0.8 * 10.2 * 0.2, rtol=1e-12)
+    assert scheme.home is None
+    assert anchored.anchored(elsewhere) == anchored
+    assert DoubleIndicator(home=HOME).anchored(paper_start()).home == HOME
+
+
+@pytest.mark.parametrize(("orientation", "rows"), [("so3", 6), ("block", 7), ("none", 3)])
+def test_rows_are_the_position_task_then_the_orientation(orientation: str, rows: int) -> None:
+    rng = np.random.default_rng(5)
+    q = rng.uniform(-2.0, 2.0, 7)
+    conf, target = Configuration(paper_robot(), q), near_target(q, seed=6)
+    qp = DoubleIndicator(position_gain=4.0, orientation=orientation).build_qp(conf, target)
+    assert qp.A.shape == (rows, 7)
+    assert qp.G.shape == (0, 7)
+    np.testing.assert_array_equal(qp.A[:3], conf.jacobian[:3])
+    expected = target.linear_velocity + 4.0 * (target.position - conf.position)
+    np.testing.assert_allclose(qp.b[:3], expected, rtol=1e-14)
+    assert (qp.lb < qp.ub).all()
+    qp.check_values()
+
+
+def test_the_program_can_be_looked_at_again_and_again_without_being_solved() -> None:
+    scheme = DoubleIndicator(kinetic="inertia", home=HOME)
+    conf, target = paper_start(), near_target(PAPER_Q0, seed=7)
+    first, second = scheme.build_qp(conf, target), scheme.build_qp(conf, target)
+    for one, other in zip(first.arrays(), second.arrays(), strict=True):
+        np.testing.assert_array_equal(one, other)
+    first.A[:] = 0.0
+    first.P[:] = 0.0
+    np.testing.assert_array_equal(scheme.build_qp(conf, target).A, second.A)
+    np.testing.assert_array_equal(scheme.build_qp(conf, target).P, second.P)
+
+
+@pytest.mark.parametrize("solver", ["proxqp", "osqp"])
+@pytest.mark.parametrize("kinetic", ["identity", "inertia"])
+@pytest.mark.parametrize("orientation", ["so3", "none"])
+def test_other_solvers_give_the_networks_answer(
+    solver: str, kinetic: str, orientation: str
+) -> None:
+    rng = np.random.default_rng(8)
+    scheme = DoubleIndicator(kinetic=kinetic, orientation=orientation, home=PAPER_Q0)
+    for seed in range(5):
+        q = np.array(PAPER_Q0) + 0.02 * rng.standard_normal(7)
+        target = near_target(q, seed, size=2e-3)
+        qp = scheme.build_qp(Configuration(paper_robot(), q), target)
+        answer = DNNSolver().solve(qp)
+        assert answer.found
+        np.testing.assert_allclose(answer.x, solve_by(solver, qp), rtol=0, atol=1e-7)
+
+
+def test_other_solvers_give_the_networks_answer_where_velocity_bounds_bind() -> None:
+    scheme = DoubleIndicator(orientation="none", home=PAPER_Q0)
+    rng = np.random.default_rng(9)
+    bound = 0
+    for seed in range(10):
+        q = np.array(PAPER_Q0) + 0.02 * rng.standard_normal(7)
+        target = near_target(q, seed, size=0.01)
+        free = solve_problem(scheme.build_qp(Configuration(paper_robot(), q), target)).x
+        robot = paper_robot().with_limits(velocity=0.8 * np.abs(free).max())
+        qp = scheme.build_qp(Configuration(robot, q), target)
+        answer = DNNSolver().solve(qp)
+        assert answer.found
+        bound += int((np.abs(answer.x) >= qp.ub[0] - 1e-9).sum())
+        for solver in ("proxqp", "osqp"):
+            np.testing.assert_allclose(answer.x, solve_by(solver, qp), rtol=0, atol=1e-7)
+    assert bound >= 10
+
+
+def test_the_papers_rows_are_dependent_and_still_solved() -> None:
+    # Seven rows of rank six: J' has four rows of rank three.
+    qp = DoubleIndicator(orientation="block", home=HOME).build_qp(
+        paper_start(), near_target(PAPER_Q0, seed=10, size=0.0)
+    )
+    values = np.linalg.svd(qp.A, compute_uv=False)
+    assert values[6] < 1e-14
+    assert values[5] == pytest.approx(0.075, abs=5e-4)  # PAPER: at theta(0)
+    assert values[0] == pytest.approx(2.54, abs=5e-3)
+    answer = DNNSolver().solve(qp)
+    assert answer.found
+    # Least squares on the null space of the rows, through numpy alone.
+    null = np.linalg.svd(qp.A)[2][6:].T
+    expected = -null @ (null.T @ qp.q)
+    np.testing.assert_allclose(answer.x, expected, rtol=0, atol=1e-8)
+
+
+def test_more_weight_on_energy_takes_less_energy_and_more_drift() -> None:
+    # At one and the same instant: exchanging two minimisers shows that neither can be otherwise.
+    conf, target = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.02), heart().at(1.3)
+    energies, drifts = [], []
+    for weight in np.linspace(0.0, 1.0, 11):
+        scheme = DoubleIndicator(weight=weight, kinetic="inertia", home=PAPER_Q0)
+        answer = DNNSolver().solve(scheme.build_qp(conf, target))
+        assert answer.found
+        energies.append(scheme.kinetic_index(conf, answer.x))
+        drifts.append(float(np.linalg.norm(answer.x + 10.2 * (conf.q - PAPER_Q0))))
+    assert (np.diff(energies) < 0.0).all()
+    assert (np.diff(drifts) > 0.0).all()
+
+
+@pytest.mark.parametrize("kinetic", ["identity", "inertia"])
+def test_kinetic_index(kinetic: str) -> None:
+    dq = np.random.default_rng(11).normal(size=7)
+    model = paper_robot().model
+    energy = pin.computeKineticEnergy(model, model.createData(), np.array(PAPER_Q0), dq)
+    expected = 2.0 * energy if kinetic == "inertia" else dq @ dq
+    index = DoubleIndicator(kinetic=kinetic).kinetic_index(paper_start(), dq)
+    assert index == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_robot_with_another_number_of_joints() -> None:
+    robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
+    conf = Configuration(robot, np.delete(PAPER_Q0, 2))
+    scheme = DoubleIndicator(kinetic="inertia").anchored(conf)
+    qp = scheme.build_qp(conf, near_target(PAPER_Q0, seed=12, size=1e-3))
+    assert qp.A.shape == (6, 6)
+    answer = DNNSolver().solve(qp)
+    assert answer.found
+    np.testing.assert_allclose(answer.x, np.linalg.solve(qp.A, qp.b), rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        *[("weight", bad) for bad in (-0.01, 1.01, np.nan, np.inf, None, "half")],
+        *[
+            (gain, bad)
+            for gain in ("drift_gain", "position_gain", "orientation_gain", "limit_gain")
+            for bad in (-1.0, np.nan, np.inf, None, "high")
+        ],
+        ("limit_gain", 0.0),  # every joint with a limit would be held still
+        ("orientation", "quaternion"),
+        ("kinetic", "mass"),
+        ("home", (0.0, np.nan)),
+        ("home", ("here",)),
+    ],
+)
+def test_a_bad_parameter_is_named(argument: str, value: object) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{argument}\b") as caught:
+        DoubleIndicator(**{argument: value})
+    assert caught.value.argument == argument
+
+
+def test_a_home_of_the_wrong_length_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^home\b.*3.*7"):
+        DoubleIndicator(home=(0.0, 0.0, 0.0)).build_qp(
+            paper_start(), near_target(PAPER_Q0, seed=13)
+        )
+
+
+def test_settings_are_plain_values_and_make_the_scheme_again() -> None:
+    scheme = DoubleIndicator(weight=0.4, kinetic="inertia", home=HOME)
+    settings = scheme.settings()
+    assert settings.pop("name") == "double-indicator"
+    assert DoubleIndicator(**settings) == scheme

@@ -1,0 +1,475 @@
+"""The closed loop: its bookkeeping, determinism, limits, drift, lag, and how it stops."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
+from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.crosscheck import CrossCheck
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.integrators import ExplicitEuler
+from iiwa_dnn.metrics import compute_metrics, failures
+from iiwa_dnn.qp import QP
+from iiwa_dnn.record import Record
+from iiwa_dnn.references import Circle
+from iiwa_dnn.robot import load_robot
+from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
+from iiwa_dnn.simulation import Simulation, simulate
+from iiwa_dnn.solver import DNNSolver
+
+OPTIONS = {
+    "plain": {},
+    "noisy": {"noise": 0.01, "filter_window": 10, "seed": 3},
+    "midpoint": {"motion": "midpoint"},
+    "rk4": {"motion": "rk4", "noise": 0.01},
+    "continuous": {"mode": "continuous", "dt": 1e-4, "duration": 0.01},
+}
+REFERENCE_ARRAYS = ("solution_gap", "objective_gap", "reference_residual")
+
+
+@pytest.fixture(scope="module", params=list(OPTIONS))
+def record(request: pytest.FixtureRequest) -> Record:
+    return run(**{"check": CrossCheck(("proxqp", "osqp"))} | OPTIONS[request.param])
+
+
+def drift(record: Record) -> float:
+    return float(np.abs(record.q[-1] - record.q[0]).max())
+
+
+def position_error(record: Record) -> np.ndarray:
+    """Distance to the desired position [m], (N+1,), the position by the DH formula."""
+    return np.linalg.norm(dh_pose(record.q)[0] - record.position_desired, axis=1)
+
+
+def feasible(qp: QP) -> bool:
+    """Whether any x satisfies the equalities and the bounds, by linear programming."""
+    bounds = list(zip(qp.lb, qp.ub, strict=True))
+    answer = linprog(np.zeros(qp.q.size), A_eq=qp.A, b_eq=qp.b, bounds=bounds, method="highs")
+    assert answer.status in (0, 2)
+    return answer.status == 0
+
+
+# What is in the record
+
+
+def test_the_robot_moves_by_dt_times_the_velocity(record: Record) -> None:
+    dt = record.settings["dt"]
+    np.testing.assert_array_equal(record.q[0], PAPER_Q0)
+    np.testing.assert_array_equal(record.q[1:], record.q[:-1] + dt * record.dq)
+    np.testing.assert_allclose(np.diff(record.t), dt, rtol=1e-9)
+    assert record.steps == round(record.settings["duration"] / dt)
+
+
+def test_poses_are_those_of_the_dh_formula(record: Record) -> None:
+    position, rotation = dh_pose(record.q)
+    np.testing.assert_allclose(record.position, position, rtol=0, atol=1e-12)
+    assert rotation_angle(record.rotation, rotation).max() < 1e-12
+
+
+def test_desired_poses_are_the_references(record: Record) -> None:
+    for k, t in enumerate(record.t):
+        np.testing.assert_allclose(
+            record.position_desired[k], heart().at(t).position, rtol=0, atol=1e-15
+        )
+    rotation = np.broadcast_to(dh_pose(PAPER_Q0)[1], record.rotation_desired.shape)
+    np.testing.assert_allclose(record.rotation_desired, rotation, rtol=0, atol=1e-12)
+
+
+def test_the_kinetic_index_is_that_of_the_velocity_that_moved_the_robot(record: Record) -> None:
+    np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
+
+
+def test_every_step_was_checked_by_every_reference(record: Record) -> None:
+    assert record.settings["check"]["solvers"] == ["proxqp", "osqp"]
+    assert (record.reference_residual <= 1e-8).all()
+    assert np.isfinite(record.solution_gap).all()
+    assert np.isfinite(record.objective_gap).all()
+    assert (record.iterations >= 0).all()
+    if record.settings["mode"] == "converged":
+        assert record.crosscheck_gap.max() <= 1e-6
+        assert record.kkt_residual.max() <= 1e-9
+    else:
+        assert record.crosscheck_gap.max() > 1e-6  # the lag
+    assert failures(record) == []
+
+
+def test_the_answers_are_the_programs_solutions() -> None:
+    record = run()  # Euler, converged: the velocity is the solution of one program
+    scheme = DoubleIndicator(home=PAPER_Q0)
+    for k in (0, 7, 49):
+        qp = scheme.build_qp(Configuration(paper_robot(), record.q[k]), heart().at(record.t[k]))
+        # Equality-constrained least squares: no bound binds here.
+        inverse = np.linalg.pinv(qp.A)
+        expected = inverse @ qp.b - (np.eye(7) - inverse @ qp.A) @ qp.q
+        assert ((qp.lb < expected) & (expected < qp.ub)).all()
+        np.testing.assert_allclose(record.dq_solver[k], expected, rtol=0, atol=1e-7)
+
+
+def test_settings_say_what_was_asked_and_with_what() -> None:
+    robot = paper_robot().with_limits(velocity=1.0)
+    settings = run(
+        DoubleIndicator(weight=0.3, kinetic="inertia"),
+        robot=robot,
+        noise=0.001,
+        filter_window=4,
+        seed=11,
+        tol=1e-8,
+        check=CrossCheck(("osqp",), tolerance=1e-5),
+    ).settings
+    expected = {
+        "robot": "iiwa7",
+        "tip": robot.tip,
+        "q_lower": [-2.5] * 7,
+        "q_upper": [2.5] * 7,
+        "dq_max": [1.0] * 7,
+        "q0": list(PAPER_Q0),
+        "dt": 1e-3,
+        "duration": 0.05,
+        "mode": "converged",
+        "motion": "euler",
+        "noise": 0.001,
+        "filter_window": 4,
+        "seed": 11,
+        "tol": 1e-8,
+        "rho": 9e-5,
+        "status": "completed",
+    }
+    assert expected.items() <= settings.items()
+    assert settings["scheme"]["weight"] == 0.3
+    assert settings["scheme"]["kinetic"] == "inertia"
+    assert settings["scheme"]["home"] == list(PAPER_Q0)
+    assert settings["reference"] == {"name": "heart", "scale": 3.45e-3, "period": 10.0}
+    assert settings["check"] == {
+        "solvers": ["osqp"],
+        "tolerance": 1e-5,
+        "reference_tolerance": 1e-8,
+    }
+    assert {"iiwa-dnn", "numpy", "pin", "qpsolvers"} <= set(settings["versions"])
+    json.dumps(settings, allow_nan=False)
+
+
+def test_without_a_duration_the_reference_is_followed_once() -> None:
+    assert run(reference=heart(period=2.0), duration=None, dt=0.01).steps == 200
+
+
+def test_a_given_home_is_kept() -> None:
+    home = tuple(np.add(PAPER_Q0, 0.1))
+    settings = run(DoubleIndicator(home=home), duration=0.002).settings
+    assert settings["scheme"]["home"] == list(home)
+
+
+def test_another_reference_scheme_and_robot() -> None:
+    robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
+    q0 = np.delete(PAPER_Q0, 2)
+    circle = Circle(radius=0.02, period=1.0).anchored(Configuration(robot, q0))
+    record = simulate(robot, PseudoInverse(), circle, q0, dt=1e-3, duration=0.1)
+    assert record.q.shape == (101, 6)
+    assert failures(record) == []
+    full = np.insert(record.q, 2, 0.0, axis=1)
+    np.testing.assert_allclose(record.position, dh_pose(full)[0], rtol=0, atol=1e-12)
+    assert np.abs(record.position - record.position_desired).max() < 1e-4
+
+
+def test_progress_adds_up_to_the_steps() -> None:
+    told = []
+    simulate(
+        paper_robot(),
+        DoubleIndicator(),
+        heart(),
+        PAPER_Q0,
+        dt=1e-3,
+        duration=1.234,
+        check=UNCHECKED,
+        progress=told.append,
+    )
+    assert sum(told) == 1234
+    assert min(told) > 0
+
+
+# Same call, same bytes
+
+
+@pytest.mark.parametrize("solvers", [(), ("osqp",)], ids=["none", "osqp"])
+@pytest.mark.parametrize("case", list(OPTIONS))
+def test_the_same_call_saves_the_same_bytes(
+    case: str, solvers: tuple[str, ...], tmp_path: Path
+) -> None:
+    for name in ("one", "two"):
+        run(**{"check": CrossCheck(solvers)} | OPTIONS[case]).save(tmp_path / name)
+    assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
+
+
+def test_with_proxqp_all_but_its_own_last_digits_is_the_same(tmp_path: Path) -> None:
+    # ProxQP's answers vary in the last bits from call to call, those of one process included.
+    check = CrossCheck(("proxqp",))
+    first, second = run(check=check, duration=0.2), run(check=check, duration=0.2)
+    for name in ("q", "dq", "dq_solver", "position", "rotation", "kkt_residual", "iterations"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
+    for name in REFERENCE_ARRAYS:
+        np.testing.assert_allclose(getattr(first, name), getattr(second, name), rtol=0, atol=1e-13)
+
+
+def test_a_solver_that_is_already_warm_gives_the_same_run() -> None:
+    solver = DNNSolver()
+    first = run(solver=solver)
+    run(reference=heart(period=3.0), solver=solver)
+    second = run(solver=solver)
+    np.testing.assert_array_equal(first.dq, second.dq)
+    np.testing.assert_array_equal(first.iterations, second.iterations)
+
+
+@pytest.mark.parametrize("case", ["plain", "noisy", "continuous"])
+def test_one_simulation_run_twice_gives_the_same_run(case: str) -> None:
+    simulation = Simulation(
+        paper_robot(),
+        DoubleIndicator(),
+        heart(),
+        PAPER_Q0,
+        **{"dt": 1e-3, "duration": 0.05, "check": UNCHECKED} | OPTIONS[case],
+    )
+    first, second = simulation.run(), simulation.run()
+    np.testing.assert_array_equal(first.q, second.q)
+    np.testing.assert_array_equal(first.iterations, second.iterations)
+
+
+def test_seeds_differ_with_noise_and_do_not_matter_without() -> None:
+    assert drift(run(noise=0.01, seed=1)) != drift(run(noise=0.01, seed=2))
+    np.testing.assert_array_equal(run(seed=1).q, run(seed=2).q)
+
+
+# What the paper claims
+
+
+def test_cyclic_motion_comes_back_and_minimum_energy_drifts() -> None:
+    # One whole heart, drawn in 2 s.
+    whole = {"reference": heart(period=2.0), "duration": None}
+    cyclic = run(DoubleIndicator(weight=0.2), **whole)
+    energy = run(DoubleIndicator(weight=1.0), **whole)
+    assert drift(cyclic) < 5e-4
+    assert drift(energy) > 5e-3
+    for record in (cyclic, energy):
+        assert position_error(record).max() < 1e-4
+    # With G = I and no limit near, minimum energy is the pseudo-inverse.
+    baseline = run(PseudoInverse(), **whole)
+    np.testing.assert_allclose(energy.q, baseline.q, rtol=0, atol=1e-6)
+
+
+def test_the_more_weight_on_energy_the_more_drift() -> None:
+    whole = {"reference": heart(period=2.0), "duration": None, "dt": 2e-3}
+    drifts = [drift(run(DoubleIndicator(weight=w), **whole)) for w in (0.0, 0.2, 0.5, 0.9, 1.0)]
+    assert (np.diff(drifts) > 0.0).all()
+
+
+def test_the_orientation_is_held() -> None:
+    record = run(reference=heart(period=2.0), duration=1.0, motion="midpoint")
+    desired = dh_pose(PAPER_Q0)[1]
+    assert rotation_angle(dh_pose(record.q)[1], desired).max() < 1e-6
+    free = run(DoubleIndicator(orientation="none"), reference=heart(period=2.0), duration=1.0)
+    assert rotation_angle(dh_pose(free.q)[1], desired).max() > 1e-2
+
+
+def test_a_joint_that_meets_its_limit_stays_inside_and_the_tip_on_its_path() -> None:
+    # Without it, joint 1 would go to -2.48 rad.
+    lower = np.full(7, -2.5)
+    lower[0] = -2.42
+    robot = paper_robot().with_limits(lower=lower)
+    options = {"reference": heart(period=2.0), "duration": 1.0, "check": CrossCheck()}
+    assert run(**options).q[:, 0].min() < -2.47
+    record = run(robot=robot, **options)
+    assert record.q[:, 0].min() >= -2.42
+    assert np.count_nonzero(record.q[:, 0] < -2.42 + 1e-4) > 100
+    metrics = compute_metrics(record)
+    assert metrics["position_limit_violation_rad"] == 0.0
+    assert metrics["velocity_limit_violation_rad_s"] == 0.0
+    assert failures(record) == []
+    assert position_error(record).max() < 1e-4
+
+
+def test_a_velocity_limit_that_binds_is_kept_and_the_tip_stays_on_its_path() -> None:
+    options = {
+        "scheme": DoubleIndicator(orientation="none"),
+        "reference": heart(period=2.0),
+        "duration": 1.0,
+        "check": CrossCheck(),
+    }
+    fastest = np.abs(run(**options).dq).max()
+    record = run(robot=paper_robot().with_limits(velocity=0.9 * fastest), **options)
+    assert np.abs(record.dq).max() <= 0.9 * fastest
+    assert np.count_nonzero(np.abs(record.dq).max(axis=1) > 0.8999 * fastest) > 20
+    assert failures(record) == []
+    assert position_error(record).max() < 1e-4
+
+
+def test_a_start_outside_the_limits_is_brought_back() -> None:
+    upper = np.full(7, 2.5)
+    upper[0] = PAPER_Q0[0] - 0.02
+    robot = paper_robot().with_limits(upper=upper)
+    record = run(robot=robot, duration=0.5, check=CrossCheck())
+    excess = record.q[:, 0] - upper[0]
+    assert (np.diff(excess) < 1e-12).all()
+    # Like exp(-kappa t), kappa = 20 / s.
+    np.testing.assert_allclose(excess, 0.02 * np.exp(-20.0 * record.t), rtol=0, atol=2e-4)
+    assert record.settings["status"] == "completed"
+    assert any("position limit" in reason for reason in failures(record))
+
+
+def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
+    paper = 5.59e-5  # m, Table I at weight 0.2, over 10 s
+    record = run(DoubleIndicator(orientation="block"), mode="continuous", dt=1e-4, duration=0.5)
+    assert paper / 3.0 < position_error(record).max() < 3.0 * paper
+    settled = run(DoubleIndicator(orientation="block"), dt=1e-4, duration=0.1)
+    assert position_error(settled).max() < 0.05 * position_error(record)[:1001].max()
+    assert failures(record) == []
+
+
+def network_matrix(qp: QP) -> np.ndarray:
+    """The network's linear part with no bound active: x, equality multipliers, idle others."""
+    n, p = qp.q.size, qp.b.size
+    matrix = -np.eye(3 * n + p)
+    matrix[:n, :n] = -qp.P
+    matrix[:n, n : n + p], matrix[n : n + p, :n] = -qp.A.T, qp.A
+    matrix[n : n + p, n : n + p] = 0.0
+    matrix[:n, n + p : 2 * n + p], matrix[:n, 2 * n + p :] = -np.eye(n), np.eye(n)
+    return matrix
+
+
+def test_eight_substeps_are_stable_at_the_papers_start_and_seven_chatter() -> None:
+    scheme = DoubleIndicator(orientation="block", home=PAPER_Q0)
+    matrix = network_matrix(scheme.build_qp(paper_start(), heart().at(0.0)))
+    radius = {}
+    roughness = {}
+    for substeps in (7, 8):
+        step = 1e-4 / 9e-5 / substeps
+        radius[substeps] = np.abs(1.0 + step * np.linalg.eigvals(matrix)).max()
+        solver = DNNSolver(follower=ExplicitEuler(substeps=substeps))
+        record = run(scheme, mode="continuous", dt=1e-4, duration=0.15, solver=solver)
+        assert (record.iterations == substeps).all()
+        roughness[substeps] = np.abs(np.diff(record.dq[-100:], n=2, axis=0)).max()
+    # The row that depends on the others gives an eigenvalue of one exactly.
+    assert radius[8] <= 1.0 + 1e-9
+    assert radius[7] > 1.001
+    assert roughness[8] < 1e-7
+    assert roughness[7] > 1e-2
+
+
+def test_the_computed_substeps_are_the_eight() -> None:
+    record = run(DoubleIndicator(orientation="block"), mode="continuous", dt=1e-4, duration=0.01)
+    assert (record.iterations == 8).all()
+
+
+# How a run stops
+
+
+def test_a_network_that_cannot_settle_stops_the_run_at_rest() -> None:
+    # Too slow for the heart: from some step on, no velocity within the limits fulfils the task.
+    robot = paper_robot().with_limits(velocity=0.15)
+    record = run(robot=robot, reference=heart(period=2.0), duration=1.0, check=CrossCheck())
+    last = record.steps - 1
+    assert 0 < last < 999
+    scheme = DoubleIndicator(home=PAPER_Q0)
+
+    def program(k: int) -> QP:
+        conf = Configuration(robot, record.q[k])
+        return scheme.build_qp(conf, heart(period=2.0).at(record.t[k]))
+
+    assert feasible(program(last - 1))
+    assert not feasible(program(last))
+    assert record.settings["status"].startswith(f"stopped at step {last} ")
+    np.testing.assert_array_equal(record.dq[last], np.zeros(7))
+    np.testing.assert_array_equal(record.q[last + 1], record.q[last])
+    assert record.dq[last - 1].any()
+    assert record.kkt_residual[last] > 1e-9
+    assert (record.kkt_residual[:last] <= 1e-9).all()
+    np.testing.assert_array_equal(record.reference_residual[last], [np.inf])
+    np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
+    assert any(f"step {last} " in reason for reason in failures(record))
+    assert np.isfinite(record.q).all()
+
+
+def test_a_tolerance_that_cannot_be_met_stops_the_run() -> None:
+    # The first program, at rest, has the answer zero, residual zero; the second has rounding.
+    record = run(tol=1e-30)
+    assert record.steps == 2
+    assert record.settings["status"].startswith("stopped at step 1 ")
+    np.testing.assert_array_equal(record.dq[-1], np.zeros(7))
+    assert any("KKT residual" in reason for reason in failures(record))
+
+
+def test_a_budget_that_is_too_small_stops_the_run() -> None:
+    # Explicitly, and with too few steps to settle from rest.
+    solver = DNNSolver(settler=ExplicitEuler(max_steps=50))
+    record = run(solver=solver)
+    assert record.steps == 2
+    assert record.iterations.tolist() == [0, 50]
+    assert failures(record)
+
+
+def test_noise_does_not_stop_a_run() -> None:
+    record = run(dt=1e-4, duration=0.05, noise=0.01)
+    assert failures(record) == []
+
+
+def test_no_warnings() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for options in OPTIONS.values():
+            run(**{"check": CrossCheck(("proxqp", "osqp")), "duration": 0.01} | options)
+
+
+# Bad arguments
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        *[("dt", bad) for bad in (0.0, -1e-3, np.nan, np.inf, None, "1 ms")],
+        ("dt", 5e-324),  # more steps than a number can hold
+        ("dt", 1e-14),  # more than any memory can
+        *[("duration", bad) for bad in (0.0, -1.0, np.nan, np.inf, "long")],
+        ("duration", 1e300),
+        ("duration", 1e-6),  # not one step of 1e-3
+        ("mode", "discrete"),
+        ("mode", None),
+        ("motion", "heun"),
+        ("motion", None),
+        ("motion", ["euler"]),
+        *[("noise", bad) for bad in (-1.0, np.nan, np.inf, None, "loud")],
+        *[("filter_window", bad) for bad in (0, -3, 2.5, np.nan, None, "wide")],
+        *[("seed", bad) for bad in (-1, 1.5, None, "lucky")],
+        *[("tol", bad) for bad in (0.0, -1e-9, np.nan, np.inf, None, "tight")],
+    ],
+)
+def test_a_bad_argument_is_named(argument: str, value: object) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{argument}\b") as caught:
+        run(**{argument: value})
+    assert caught.value.argument == argument
+
+
+@pytest.mark.parametrize("motion", ["midpoint", "rk4"])
+def test_continuous_mode_takes_euler_only(motion: str) -> None:
+    with pytest.raises(InvalidInputError, match=r"^motion\b.*continuous"):
+        run(mode="continuous", motion=motion)
+
+
+@pytest.mark.parametrize("q0", [np.zeros(6), np.full(7, np.nan), np.full(7, np.inf), "home", None])
+def test_a_bad_start_is_named(q0: object) -> None:
+    with pytest.raises(InvalidInputError, match=r"^q0?\b"):
+        simulate(paper_robot(), DoubleIndicator(), heart(), q0, dt=1e-3, duration=0.01)
+
+
+def test_a_home_of_the_wrong_length_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^home\b"):
+        run(DoubleIndicator(home=(0.0,)))
+
+
+def test_an_argument_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(TypeError, match="wieght"):
+        run(wieght=0.2)

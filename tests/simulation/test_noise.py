@@ -1,0 +1,110 @@
+"""Noise: its statistics, its seed, and where it enters the loop."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from helpers_kinematics import PAPER_Q0, dh_pose
+from helpers_simulation import heart, paper_robot, run
+from iiwa_dnn.configuration import Configuration
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
+from iiwa_dnn.solver import DNNSolver
+
+
+def test_same_seed_same_bits_and_another_seed_others() -> None:
+    first = gaussian_noise(0.01, 1000, 7, seed=3)
+    assert first.tobytes() == gaussian_noise(0.01, 1000, 7, seed=3).tobytes()
+    assert not np.isclose(first, gaussian_noise(0.01, 1000, 7, seed=4)).any(axis=1).all()
+    np.random.default_rng().standard_normal(10)  # no hidden state is shared
+    assert first.tobytes() == gaussian_noise(0.01, 1000, 7, seed=3).tobytes()
+
+
+def test_a_longer_run_begins_with_the_shorter_ones_noise() -> None:
+    np.testing.assert_array_equal(
+        gaussian_noise(0.01, 500, 7, seed=3), gaussian_noise(0.01, 1000, 7, seed=3)[:500]
+    )
+
+
+def test_it_is_white_and_normal() -> None:
+    steps, sigma = 20_000, 0.01
+    noise = gaussian_noise(sigma, steps, 7, seed=5)
+    assert noise.shape == (steps, 7)
+    # Four standard errors of each estimate; the seed is fixed.
+    assert np.abs(noise.mean(axis=0)).max() < 4.0 * sigma / np.sqrt(steps)
+    np.testing.assert_allclose(noise.std(axis=0), sigma, rtol=4.0 / np.sqrt(2.0 * steps))
+    for joint in range(7):
+        assert scipy.stats.kstest(noise[:, joint] / sigma, "norm").pvalue > 1e-3
+    correlation = np.corrcoef(np.hstack([noise[1:], noise[:-1]]).T)
+    assert np.abs(correlation - np.eye(14)).max() < 4.5 / np.sqrt(steps)
+
+
+def test_sigma_is_a_factor_and_zero_is_silence() -> None:
+    np.testing.assert_allclose(
+        gaussian_noise(0.02, 10, 7, seed=1), 2.0 * gaussian_noise(0.01, 10, 7, seed=1), rtol=1e-15
+    )
+    np.testing.assert_array_equal(gaussian_noise(0.0, 10, 7, seed=1), np.zeros((10, 7)))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        *[((sigma, 10, 7, 0), "noise") for sigma in (-1e-9, np.nan, np.inf, None, "loud")],
+        *[((0.01, 10, 7, seed), "seed") for seed in (-1, 1.5, np.nan, None, "lucky")],
+        *[((0.0, 10, 7, seed), "seed") for seed in (-1, 1.5)],
+    ],
+)
+def test_a_bad_argument_is_named(arguments: tuple, name: str) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{name}\b") as caught:
+        gaussian_noise(*arguments)
+    assert caught.value.argument == name
+
+
+def test_at_the_velocity_it_is_added_to_the_networks_answer() -> None:
+    record = run(noise=0.01, seed=7, duration=0.1)
+    expected = gaussian_noise(0.01, 100, 7, seed=7)
+    np.testing.assert_allclose(record.dq - record.dq_solver, expected, rtol=0, atol=1e-15)
+
+
+def test_at_the_network_it_disturbs_the_state_and_not_the_velocity() -> None:
+    quiet = run(mode="continuous", dt=1e-4, duration=0.01)
+    record = run(mode="continuous", dt=1e-4, duration=0.01, noise=0.01, noise_at="network")
+    np.testing.assert_array_equal(record.dq, record.dq_solver)
+    # It enters after the answer was taken: the first answer is the quiet one, the next is not.
+    np.testing.assert_array_equal(record.dq[0], quiet.dq[0])
+    spread = np.abs(record.dq[1:] - quiet.dq[1:])
+    assert (spread.max(axis=1) > 1e-4).all()
+    assert spread.max() < 0.1
+
+
+def test_at_the_network_a_network_that_settles_forgets_it() -> None:
+    quiet = run()
+    record = run(noise=0.01, noise_at="network")
+    np.testing.assert_allclose(record.dq, quiet.dq, rtol=0, atol=1e-7)
+
+
+def test_at_the_measurement_the_controller_sees_other_angles_and_the_record_the_true_ones() -> None:
+    sigma, seed = 1e-3, 9
+    record = run(noise=sigma, seed=seed, noise_at="measurement", duration=0.02)
+    seen = record.q[:-1] + gaussian_noise(sigma, 20, 7, seed)
+    scheme = DoubleIndicator(home=PAPER_Q0)
+    for k in range(20):
+        target = heart().at(record.t[k])
+        answer = DNNSolver().solve(scheme.build_qp(Configuration(paper_robot(), seen[k]), target)).x
+        np.testing.assert_allclose(record.dq[k], answer, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("entry", NOISE_ENTRIES)
+@pytest.mark.parametrize("mode", ["converged", "continuous"])
+def test_without_noise_all_entries_are_the_same_run(entry: str, mode: str) -> None:
+    record, quiet = run(noise_at=entry, mode=mode), run(mode=mode)
+    np.testing.assert_array_equal(record.q, quiet.q)
+
+
+def test_an_unknown_entry_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^noise_at\b.*velocity.*'motor'"):
+        run(noise_at="motor")
