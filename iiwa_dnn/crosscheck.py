@@ -30,7 +30,7 @@ _SOLVER_OPTIONS: dict[str, dict[str, Any]] = {
         "eps_duality_gap_abs": 1e-9,
         # Ten are enough for a program that has a solution; on one that has none, as the paper's
         # rows once the tool lags, the default of 10,000 takes 0.1 s a program.
-        "max_iter": 100,
+        "max_iter": 50,
     },
     "osqp": {
         "eps_abs": 1e-9,

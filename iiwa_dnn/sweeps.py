@@ -38,6 +38,7 @@ _WITHOUT_NUMBERS = (
     "decimation", "panels", "plots", "paper_plots", "report", "paper_report", "viewer", "cli",
     "paper_cli", "sweeps", "__init__", "__main__",
 )  # fmt: skip
+_PATIENCE = 10.0  # how long to look for a scheduler [s]
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
@@ -233,7 +234,7 @@ def _dask_client(workers: int, address: str) -> Iterator[object]:
             yield client
         return
     try:
-        client = Client(address, timeout=10)
+        client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError) as error:
         raise InvalidInputError(
             "dask", f"no scheduler at {address!r} ({one_line(error)})"

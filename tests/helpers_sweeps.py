@@ -30,8 +30,8 @@ def cells(log: Path, count: int, **others: Any) -> list[dict[str, Any]]:
     return [{"seed": seed, "log": str(log), **others} for seed in range(count)]
 
 
-if __name__ == "__main__":
-    # A process of its own, so that a test can kill it: FOLDER LOG COUNT SLEEP WORKERS
+def main() -> None:
+    """A sweep in a process of its own, so that a test can kill it."""
     folder, log, count, sleep, workers = sys.argv[1:]
     Sweep(draw, Path(folder)).run(
         cells(Path(log), int(count), sleep=float(sleep)), workers=int(workers), quiet=True

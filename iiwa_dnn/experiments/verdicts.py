@@ -16,6 +16,9 @@ from iiwa_dnn.statistics import Estimate, trend
 FACTOR = 2.0
 """How far a number may be off and still count as reproduced."""
 
+NEGLIGIBLE = 1e-3
+"""A relative change below this is none, however narrow its interval; the paper's least is 0.015."""
+
 Level = Literal["reproduced", "same trend", "not reproduced"]
 
 
@@ -97,9 +100,15 @@ def judge_change(paper: float, ours: Estimate) -> Verdict:
         factor 2, ``same trend`` if only the former, else ``not reproduced``.
     """
     ratio = ours.mean / paper if paper else None
-    word = {1: "raises", -1: "lowers", 0: "no effect shown"}
-    said = Estimate.exact(paper).sign
+    mine, said = _direction(ours), _direction(Estimate.exact(paper))
     level: Level = "not reproduced"
-    if ours.sign == said and said != 0:
+    if mine == said and said != "no effect shown":
         level = "reproduced" if within_factor(ratio) else "same trend"
-    return Verdict(level, (ratio,), word[ours.sign], word[said])
+    return Verdict(level, (ratio,), mine, said)
+
+
+def _direction(change: Estimate) -> str:
+    """Which way a relative change goes, as far as its interval tells."""
+    if change.sign == 0 or abs(change.mean) < NEGLIGIBLE:
+        return "no effect shown"
+    return "raises" if change.sign > 0 else "lowers"
