@@ -133,11 +133,15 @@ def velocity_bounds(q, limits, gain, lb, ub):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def velocity_program(
-    data, p, mode, q, pose, jacobian, target, limits, home, kinetic,
-    weight, drift_gain, position_gain, orientation_gain, limit_gain,
+    data, p, mode, q, pose, jacobian, target, limits, home, kinetic, parameters
 ):  # fmt: skip
-    """Write the program of `iiwa_dnn.schemes.DoubleIndicator` into `data`, with p equality rows."""
+    """Write the program of `iiwa_dnn.schemes.DoubleIndicator` into `data`, with p equality rows.
+
+    `parameters` are weight, drift gain, position gain, orientation gain and limit gain.
+    """
     n = q.size
+    weight, drift_gain, position_gain = parameters[0], parameters[1], parameters[2]
+    orientation_gain, limit_gain = parameters[3], parameters[4]
     at_q, _, at_A, at_lb = offsets(n, 0, p)
     at_b = at_lb - p
     for i in range(n):

@@ -126,13 +126,16 @@ def _head(
 ) -> dict[str, str]:
     """What, when and on what it was run."""
     spent = sum(values["wall_time_s"] for values in results)
+    period = HeartRun().reference().period
+    note = f": less than the heart's {period:g} s does not close it, so the drift is another"
+    open_end = note if scope.duration < period else ""
     versions = fingerprint()["versions"] | {"python": platform.python_version()}
     return {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()}",
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "runs": f"{runs:,} of {scope.duration:g} s at {scope.dt:g} s; {scope.seeds} seeds in "
-        f"Table II, {scope.laps} laps at {scope.laps_dt:g} s",
+        f"Table II, {scope.laps} laps at {scope.laps_dt:g} s{open_end}",
         "wall time": f"{wall:.0f} s, of which runs found finished took none; all runs together "
         f"took {spent:.0f} s, {spent / runs:.2f} s each",
     }

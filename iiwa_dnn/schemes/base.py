@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,19 +45,26 @@ def identity(n: int) -> Matrix:
     return eye
 
 
+class Weights(NamedTuple):
+    """The numbers of a velocity program that do not change along a run.
+
+    Attributes:
+        orientation: Form of the orientation rows.
+        values: The blend of kinetic energy (1) and cyclic motion (0), and the gains towards home,
+            of the position, of the orientation and near the limits [1/s]; (5,).
+    """
+
+    orientation: Orientation
+    values: Vector
+
+
 def velocity_program(
     conf: Configuration,
     target: Target,
-    *,
+    weights: Weights,
     limits: Matrix,
     home: Vector,
     kinetic: Matrix,
-    weight: float,
-    drift_gain: float,
-    position_gain: float,
-    orientation_gain: float,
-    limit_gain: float,
-    orientation: Orientation,
 ) -> QP:
     r"""Assemble a velocity program: an objective, the task as equality rows, velocity bounds.
 
@@ -67,24 +74,20 @@ def velocity_program(
     Args:
         conf: Where the robot is, n joints.
         target: Where it should be.
+        weights: Weight, gains and form of the orientation rows.
         limits: Rows of `Robot.limits` to keep, (3, n).
         home: Posture to come back to [rad], (n,).
         kinetic: G(q), (n, n).
-        weight: The blend of kinetic energy (1) and cyclic motion (0).
-        drift_gain: Gain towards `home` [1/s].
-        position_gain: Feedback gain delta [1/s].
-        orientation_gain: Feedback gain nu [1/s].
-        limit_gain: The bounds' kappa [1/s].
-        orientation: Form of the orientation rows.
 
     Returns:
         A QP in n variables with 3 position rows and 3, 4 or 0 orientation rows.
     """
-    n = conf.q.size
-    p = 3 + ROW_COUNT[orientation]
+    orientation, values = weights
+    q = conf.q
+    n, p = q.size, 3 + ROW_COUNT[orientation]
     data = np.empty(n * n + 3 * n + p * (n + 1))
     kernels.velocity_program(
-        data, p, MODE_INDEX[orientation], conf.q, conf.pose, conf.jacobian, target.data,
-        limits, home, kinetic, weight, drift_gain, position_gain, orientation_gain, limit_gain,
+        data, p, MODE_INDEX[orientation], q, conf.pose, conf.jacobian, target.data,
+        limits, home, kinetic, values,
     )  # fmt: skip
     return QP.from_data(data, (n, 0, p))

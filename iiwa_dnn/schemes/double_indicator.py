@@ -29,7 +29,7 @@ from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import identity, velocity_program
+from iiwa_dnn.schemes.base import Weights, identity, velocity_program
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 Kinetic = Literal["identity", "inertia"]
@@ -62,6 +62,7 @@ class DoubleIndicator:
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
     _home: Vector | None = field(init=False, repr=False, compare=False, default=None)
+    _weights: Weights = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check every parameter; raises InvalidInputError naming it."""
@@ -72,6 +73,9 @@ class DoubleIndicator:
         checks.positive("limit_gain", self.limit_gain)
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         checks.one_of("kinetic", self.kinetic, KINETICS)
+        gains = (self.drift_gain, self.position_gain, self.orientation_gain, self.limit_gain)
+        weights = Weights(self.orientation, np.array([self.weight, *gains]))
+        object.__setattr__(self, "_weights", weights)
         if self.home is not None:
             home = checks.finite_array("home", self.home, (-1,))
             object.__setattr__(self, "home", tuple(home.tolist()))
@@ -99,19 +103,8 @@ class DoubleIndicator:
             home = conf.q
         elif home.size != conf.q.size:
             raise InvalidInputError("home", f"has {home.size} values for {conf.q.size} joints")
-        return velocity_program(
-            conf,
-            target,
-            limits=conf.robot.limits,
-            home=home,
-            kinetic=self._kinetic_matrix(conf),
-            weight=self.weight,
-            drift_gain=self.drift_gain,
-            position_gain=self.position_gain,
-            orientation_gain=self.orientation_gain,
-            limit_gain=self.limit_gain,
-            orientation=self.orientation,
-        )
+        kinetic = self._kinetic_matrix(conf)
+        return velocity_program(conf, target, self._weights, conf.robot.limits, home, kinetic)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """dq^T G(q) dq: [rad^2/s^2] with G = I, [J] (twice the energy) with the inertia."""

@@ -21,7 +21,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import identity, velocity_program
+from iiwa_dnn.schemes.base import Weights, identity, velocity_program
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 
@@ -52,19 +52,9 @@ class PseudoInverse:
     def build_qp(self, conf: Configuration, target: Target) -> QP:
         """The least-norm problem as a QP in n variables, without bounds."""
         n = conf.q.size
-        return velocity_program(
-            conf,
-            target,
-            limits=_no_limits(n),
-            home=conf.q,
-            kinetic=identity(n),
-            weight=1.0,
-            drift_gain=0.0,
-            position_gain=self.position_gain,
-            orientation_gain=self.orientation_gain,
-            limit_gain=1.0,
-            orientation=self.orientation,
-        )
+        values = np.array([1.0, 0.0, self.position_gain, self.orientation_gain, 1.0])
+        weights = Weights(self.orientation, values)
+        return velocity_program(conf, target, weights, _no_limits(n), conf.q, identity(n))
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """The closed form A^+ b [rad/s], (n,), through numpy's singular value decomposition."""

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.checkpool import CheckPool
+from iiwa_dnn.checkpool import CheckPool, Job
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.controller import Command, Controller, Mode
+from iiwa_dnn.controller import Controller, Mode
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Solution, Status, Vector
+from iiwa_dnn.qp import QP, Solution, Status, Vector
 from iiwa_dnn.record import Record
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Robot
@@ -166,6 +166,7 @@ class Simulation:
             "versions": {name: version(name) for name in _PACKAGES},
         }
         self.steps = steps
+        self._expected = Status.SOLVED if mode == "converged" else Status.ADVANCED
         self._allocate(start.q)
 
     def run(self, progress: Progress | None = None) -> Record:
@@ -184,14 +185,15 @@ class Simulation:
         pool = CheckPool(self._check, self.steps * self._motion.stages)
         status, done = COMPLETED, 0
         while done < self.steps and status == COMPLETED:
-            block = _Block(self._reference, done, min(BLOCK, self.steps - done), self._dt)
-            for k in range(done, done + block.steps):
-                status = self._step(k, block)
+            count = min(BLOCK, self.steps - done)
+            self._block = block = _Block(self._reference, done, count, self._dt)
+            for k in range(done, done + count):
+                status = self._step(k)
                 if status != COMPLETED:
                     break
             taken = len(block.velocities)
-            self._record_block(done, taken, block)
-            pool.submit(np.stack(block.programs), block.sizes, np.stack(block.answers))
+            self._record_block(done, taken)
+            pool.submit(*block.job())
             done += taken
             if progress is not None:
                 progress(taken)
@@ -213,51 +215,61 @@ class Simulation:
         self._rotation_desired = np.empty((steps + 1, 3, 3))
         self._kinetic_index, self._kkt_residual = np.empty(steps), np.empty(steps)
         self._iterations = np.empty(steps, dtype=np.int64)
+        self._change = np.empty(n)
 
-    def _step(self, k: int, block: _Block) -> str:
+    def _velocity_at(self, q: Vector, t: float) -> Vector:
+        """The controller's answer at a stage, noted in the block."""
+        block = self._block
+        conf = Configuration(self._robot, q, self._scratch)
+        qp, solution = self._controller.step(conf, block.target(t))
+        block.stages.append((conf, qp, solution))
+        if solution.status is not self._expected:
+            block.failed = solution
+        return solution.x
+
+    def _step(self, k: int) -> str:
         """Take step k, note it in the block, and return the status that the run has after it."""
-        q, dt = self._q[k], self._dt
-        noise = None if self._noise is None else self._noise[k]
-        seen = q if noise is None or self._noise_at != "measurement" else q + noise
-        before = len(block.solutions)
-
-        def velocity_at(q: Vector, t: float) -> Vector:
-            conf = Configuration(self._robot, q, self._scratch)
-            command = self._controller.step(conf, block.target(t))
-            block.add(conf, command)
-            return command.dq
-
-        velocity = self._motion.step(velocity_at, seen, k * dt, dt)
-        status = self._judge(k, block.solutions[before:])
-        if status != COMPLETED:
-            velocity = np.zeros(q.size)
-        moved = velocity
-        if noise is not None and self._noise_at == "velocity" and status == COMPLETED:
-            moved = velocity + noise
-        dq = self._average(moved) if status == COMPLETED else moved
-        if noise is not None and self._noise_at == "network":
-            self._solver.disturb(noise)
-        if seen is not q:
-            block.configurations[before] = Configuration(self._robot, q, self._scratch)
+        q, dt, block, noise = self._q[k], self._dt, self._block, None
+        seen = q
+        if self._noise is not None:
+            noise = self._noise[k]
+            if self._noise_at == "measurement":
+                seen = q + noise
+        velocity = self._motion.step(self._velocity_at, seen, k * dt, dt)
+        if block.failed is not None:
+            return self._stop(k, block.failed)
+        dq = velocity
+        if noise is not None:
+            if self._noise_at == "velocity":
+                dq = velocity + noise
+            elif self._noise_at == "network":
+                self._solver.disturb(noise)
+            else:  # the controller saw another posture than the robot has
+                _, qp, solution = block.stages[-self._motion.stages]
+                true = Configuration(self._robot, q, self._scratch)
+                block.stages[-self._motion.stages] = (true, qp, solution)
+        dq = self._average(dq)
         block.velocities.append(velocity)
         self._dq[k] = dq
-        self._q[k + 1] = q + dt * dq
-        return status
-
-    def _judge(self, k: int, solutions: list[Solution]) -> str:
-        """Say whether the run can go on after step k."""
-        for solution in solutions:
-            if solution.status is not Status.SOLVED and solution.status is not Status.ADVANCED:
-                return (
-                    f"stopped at step {k} (t = {k * self._dt:g} s): the network did not settle, "
-                    f"KKT residual {solution.residuals.largest:.1e}"
-                )
+        np.multiply(dq, dt, out=self._change)
+        np.add(q, self._change, out=self._q[k + 1])
         return COMPLETED
 
-    def _record_block(self, first: int, steps: int, block: _Block) -> None:
-        """Write a block's steps into the arrays of the run."""
-        rows, stages = slice(first, first + steps), self._motion.stages
-        starts = block.configurations[::stages]
+    def _stop(self, k: int, failed: Solution) -> str:
+        """Leave the robot at rest in step k, and say why."""
+        self._block.velocities.append(np.zeros(self._robot.dof))
+        self._dq[k] = 0.0
+        self._q[k + 1] = self._q[k]
+        return (
+            f"stopped at step {k} (t = {k * self._dt:g} s): the network did not settle, "
+            f"KKT residual {failed.residuals.largest:.1e}"
+        )
+
+    def _record_block(self, first: int, steps: int) -> None:
+        """Write the block's steps into the arrays of the run."""
+        block, stages = self._block, self._motion.stages
+        rows = slice(first, first + steps)
+        starts = [conf for conf, _, _ in block.stages[::stages]]
         poses = np.stack([conf.pose for conf in starts])
         self._position[rows], self._rotation[rows] = poses[:, :3, 3], poses[:, :3, :3]
         at_steps = slice(0, 2 * steps, 2)
@@ -268,9 +280,9 @@ class Simulation:
         self._kinetic_index[rows] = [
             index(conf, dq) for conf, dq in zip(starts, self._dq[rows], strict=True)
         ]
-        residuals = np.array([solution[-3:] for solution in block.solutions])
+        residuals = np.array([solution[-3:] for _, _, solution in block.stages])
         self._kkt_residual[rows] = residuals.reshape(steps, -1).max(axis=1)
-        iterations = np.array([solution.iterations for solution in block.solutions])
+        iterations = np.array([solution.iterations for _, _, solution in block.stages])
         self._iterations[rows] = iterations.reshape(steps, stages).sum(axis=1)
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
@@ -309,26 +321,19 @@ class _Block:
     """What a stretch of steps leaves behind, one entry a stage, until it is recorded."""
 
     def __init__(self, reference: Reference, first: int, steps: int, dt: float) -> None:
-        self.steps = steps
         self._first, self._dt = first, dt
         # Two targets a step: the methods of motion ask at its ends and at its middle.
         self.targets = reference.sample((2 * first + np.arange(2 * steps + 1)) * (0.5 * dt))
-        self.configurations: list[Configuration] = []
-        self.programs: list[Vector] = []
-        self.answers: list[Vector] = []
-        self.solutions: list[Solution] = []
+        self.stages: list[tuple[Configuration, QP, Solution]] = []
         self.velocities: list[Vector] = []
-        self.sizes = (0, 0, 0)
+        self.failed: Solution | None = None
 
     def target(self, t: float) -> Target:
         """The target at a stage's time [s]."""
         return self.targets[round(2.0 * t / self._dt) - 2 * self._first]
 
-    def add(self, conf: Configuration, command: Command) -> None:
-        """Note a stage."""
-        qp, solution = command
-        self.configurations.append(conf)
-        self.programs.append(qp.data)
-        self.sizes = qp.sizes
-        self.solutions.append(solution)
-        self.answers.append(solution.x)
+    def job(self) -> Job:
+        """The programs and the answers, for the check."""
+        programs = np.stack([qp.data for _, qp, _ in self.stages])
+        answers = np.stack([solution.x for _, _, solution in self.stages])
+        return programs, self.stages[0][1].sizes, answers

@@ -2,46 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 
+from helpers_paper import SCOPE, by_weight, choice, noisy_case, values
 from iiwa_dnn.experiments import ablation, paper, table1, table2
 from iiwa_dnn.experiments.runs import HeartRun
-from iiwa_dnn.experiments.scope import FULL, QUICK, Scope
+from iiwa_dnn.experiments.scope import FULL, QUICK
 from iiwa_dnn.simulation import NOISE_ENTRIES
-
-SCOPE = Scope(duration=1.0, seeds=40, laps=2)
-
-
-def values(**changes: Any) -> dict[str, Any]:
-    """Numbers as `measure` returns them."""
-    return {
-        "max_position_error_m": 5e-5,
-        "mse_position_error_m2": 2e-10,
-        "max_orientation_error_rad": 1e-3,
-        "joint_drift_rad": 1e-2,
-        "max_kinetic_index": 0.0454,
-        "max_kkt_residual": 1e-3,
-        "total_variation_rad_s": 1.0,
-        "lap_drift_rad": [1e-3, 2e-3],
-        "jacobian_square_m2": 1.2,
-        "amplification": 0.9,
-        "status": "completed",
-    } | changes
-
-
-def by_weight(run: HeartRun) -> dict[str, Any]:
-    """The paper's own Table I, where its numbers are there."""
-    if run.weight not in paper.WEIGHTS or run.motion != "euler":
-        return values()
-    i = paper.WEIGHTS.index(run.weight)
-    drift = paper.DRIFT[i]
-    return values(
-        max_position_error_m=paper.MAX_ERROR[i],
-        joint_drift_rad=1e-4 * run.weight if drift is None else drift,
-    )
 
 
 def test_the_papers_own_table1_is_reproduced() -> None:
@@ -71,22 +39,6 @@ def test_table1_keeps_variants_apart() -> None:
     ):
         row = table["variants"][name]["rows"]["max_position_error_m"]
         np.testing.assert_allclose(row, first - 0.1 + np.array(paper.WEIGHTS), err_msg=name)
-
-
-def noisy_case(run: HeartRun) -> dict[str, Any]:
-    """Noise doubles the mean squared error; the filter takes a tenth off, and never more.
-
-    Seeds differ by far more than the filter does: only their pairs tell.
-    """
-    mse = 2e-10
-    if run.noise:
-        luck = np.random.default_rng(run.seed).uniform(0.4, 1.6)
-        mse *= 2.0 * luck
-        if run.filter_window > 1:
-            mse *= {"velocity": 0.9, "network": 1.1, "measurement": 1.0}[run.noise_at]
-    elif run.filter_window > 1:
-        mse *= 0.98
-    return values(mse_position_error_m2=mse, max_position_error_m=np.sqrt(mse))
 
 
 def test_table2_finds_the_effect_that_was_put_in() -> None:
@@ -141,13 +93,7 @@ def test_theory_of_the_noise_worked_by_hand() -> None:
 
 
 def test_the_ablation_says_which_choice_is_closest_and_whether_it_is_stable() -> None:
-    def result(run: HeartRun) -> dict[str, Any]:
-        drift = {1: 0.5, 2: 0.0170, 7: 0.03}.get(run.substeps, 1e-5)  # type: ignore[call-overload]
-        growth = None if run.substeps == "implicit" else 9.0 / (run.substeps + 1.0)
-        drift *= 1.0 + 0.1 * (run.orientation == "so3") + (run.noise > 0)
-        return values(joint_drift_rad=drift, amplification=growth)
-
-    table = ablation.tabulate(SCOPE, [result(run) for run in ablation.cells(SCOPE)])
+    table = ablation.tabulate(SCOPE, [choice(run) for run in ablation.cells(SCOPE)])
     closest = table["closest_to_the_papers_drift"]
     assert (closest["substeps"], closest["orientation"], closest["noise_at"]) == (
         2,

@@ -22,7 +22,7 @@ from iiwa_dnn.record import Record
 from iiwa_dnn.references import Circle
 from iiwa_dnn.robot import load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
-from iiwa_dnn.simulation import Simulation, simulate
+from iiwa_dnn.simulation import NOISE_ENTRIES, Simulation, gaussian_noise, simulate
 from iiwa_dnn.solver import DNNSolver
 
 OPTIONS = {
@@ -99,6 +99,22 @@ def test_every_step_was_checked_by_every_reference(record: Record) -> None:
     else:
         assert record.crosscheck_gap.max() > 1e-6  # the lag
     assert failures(record) == []
+
+
+@pytest.mark.parametrize("motion", ["euler", "midpoint"])
+def test_a_run_of_several_blocks_has_no_seams(motion: str) -> None:
+    reference = heart(period=2.0)
+    record = run(reference=reference, duration=1.1, motion=motion, noise=1e-3, filter_window=5)
+    noisy = record.dq_solver + gaussian_noise(1e-3, 1100, 7, seed=0)
+    filtered = [noisy[max(0, k - 4) : k + 1].mean(axis=0) for k in range(1100)]
+    np.testing.assert_allclose(record.dq, filtered, rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
+    np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
+    desired = [reference.at(t).position for t in record.t]
+    np.testing.assert_allclose(record.position_desired, desired, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
+    assert (record.kkt_residual <= 1e-9).all()
+    assert position_error(record).max() < 1e-3
 
 
 def test_the_answers_are_the_programs_solutions() -> None:
@@ -392,6 +408,24 @@ def test_a_network_that_cannot_settle_stops_the_run_at_rest() -> None:
     np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
     assert any(f"step {last} " in reason for reason in failures(record))
     assert np.isfinite(record.q).all()
+
+
+@pytest.mark.parametrize("motion", ["euler", "rk4"])
+@pytest.mark.parametrize("entry", NOISE_ENTRIES)
+def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
+    robot = paper_robot().with_limits(velocity=0.15)
+    record = run(
+        robot=robot,
+        reference=heart(period=2.0),
+        duration=1.0,
+        motion=motion,
+        noise=1e-4,
+        noise_at=entry,
+    )
+    assert record.settings["status"].startswith(f"stopped at step {record.steps - 1} ")
+    np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
+    np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
+    np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
 
 
 def test_a_tolerance_that_cannot_be_met_stops_the_run() -> None:

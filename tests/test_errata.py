@@ -1,0 +1,332 @@
+"""Each slip of the paper that docs/errata.md lists: what is printed fails, the correction holds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import qpsolvers
+from numpy.typing import NDArray
+
+from helpers_kinematics import PAPER_Q0, dh_pose, finite_difference, rotation_angle
+from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, solve_by
+from iiwa_dnn import (
+    QP,
+    Configuration,
+    DoubleIndicator,
+    ExplicitEuler,
+    Heart,
+    ProjectionNetwork,
+    simulate,
+    solve_problem,
+)
+from iiwa_dnn.experiments import paper
+from iiwa_dnn.schemes.bounds import velocity_bounds
+from iiwa_dnn.schemes.orientation import block_map, block_vector
+from iiwa_dnn.statistics import kendall_tau, trend
+
+Array = NDArray[np.float64]
+
+
+def program(weight: float = 0.2, orientation: str = "so3", t: float = 1.0) -> QP:
+    """The program at the paper's start, its target somewhat along the heart."""
+    return DoubleIndicator(weight, orientation=orientation, home=PAPER_Q0).build_qp(
+        paper_start(), heart().at(t)
+    )
+
+
+# 1
+
+
+def test_forward_kinematics_go_from_joints_to_pose() -> None:
+    # Turning the last joint moves no point of its axis: one position, many joint angles, so that
+    # no function gives the joints from the position.
+    turned = np.array(PAPER_Q0) + [0, 0, 0, 0, 0, 0, 1.0]
+    np.testing.assert_allclose(dh_pose(turned)[0], dh_pose(PAPER_Q0)[0], atol=1e-15)
+    # And J of equation (2) is the derivative of the function from joints to position.
+    jacobian = finite_difference(lambda q: dh_pose(q)[0], np.array(PAPER_Q0))
+    np.testing.assert_allclose(jacobian, paper_start().jacobian[:3], atol=1e-8)
+
+
+# 2
+
+
+def test_chi_wants_minus_the_lower_bound() -> None:
+    qp = program()
+    omega, chi = qp.bounds_as_inequalities()
+    printed = np.concatenate([qp.ub, qp.lb])
+    rng = np.random.default_rng(0)
+    inside = rng.uniform(qp.lb, qp.ub, (200, 7))
+    outside = inside.copy()
+    outside[np.arange(200), rng.integers(7, size=200)] *= 1e3
+    for velocity, allowed in [*((v, True) for v in inside), *((v, False) for v in outside)]:
+        assert bool((omega @ velocity <= chi).all()) is allowed
+    # As printed, standing still is forbidden, and so is every velocity inside the bounds.
+    assert (qp.lb < 0).all()
+    assert not (omega @ np.zeros(7) <= printed).all()
+    assert not any((omega @ velocity <= printed).all() for velocity in inside)
+    # A solver that is handed the printed chi finds nothing.
+    handed = qpsolvers.Problem(qp.P, qp.q, omega, printed, qp.A, qp.b)
+    assert not qpsolvers.solve_problem(handed, solver="proxqp").found
+
+
+# 3
+
+
+def test_the_inequalities_of_the_kkt_conditions_are_complementary() -> None:
+    # A velocity limit just below what the fastest joint would do without: its bound is active.
+    scheme = DoubleIndicator(orientation="none", home=PAPER_Q0)
+    free = np.abs(solve_problem(scheme.build_qp(paper_start(), heart().at(0.3))).x).max()
+    conf = Configuration(paper_robot().with_limits(velocity=0.9 * free), PAPER_Q0)
+    qp = scheme.build_qp(conf, heart().at(0.3))
+    solution = solve_problem(qp)
+    assert solution.found
+    omega, chi = qp.bounds_as_inequalities()
+    slack = omega @ solution.x - chi
+    mu = np.concatenate([np.maximum(solution.z_box, 0.0), np.maximum(-solution.z_box, 0.0)])
+    assert (slack <= 1e-9).all()
+    assert (mu >= 0.0).all()
+    assert abs(mu @ slack) < 1e-9
+    assert mu.max() > 1e-3, "no bound is active: the test shows nothing"
+    np.testing.assert_allclose(
+        qp.P @ solution.x + qp.q + qp.A.T @ solution.y + omega.T @ mu, 0.0, atol=1e-8
+    )
+    # As printed, both bounds of every joint would be met with equality at once.
+    least = omega @ np.linalg.lstsq(omega, chi, rcond=None)[0] - chi
+    np.testing.assert_allclose(np.abs(least).max(), 0.9 * free)
+
+
+# 4
+
+
+def test_the_block_leaves_a_sign_open() -> None:
+    rotation = dh_pose(PAPER_Q0)[1]
+    mirror = np.diag([1.0, 1.0, -1.0])
+    other = mirror @ rotation @ mirror
+    np.testing.assert_allclose(other @ other.T, np.eye(3), atol=1e-14)
+    assert np.linalg.det(other) == pytest.approx(1.0)
+    np.testing.assert_array_equal(block_vector(other), block_vector(rotation))
+    assert rotation_angle(other, rotation) > math.radians(20.0)
+
+
+def test_the_block_loses_the_tilt_where_the_tool_is_vertical() -> None:
+    upright = np.array([[0.6, 0.8, 0.0], [0.8, -0.6, 0.0], [0.0, 0.0, -1.0]])
+    np.testing.assert_allclose(np.linalg.svd(block_map(upright))[1][1:], 0.0, atol=1e-15)
+    rotation = paper_start().rotation
+    assert math.degrees(math.acos(-rotation[2, 2])) == pytest.approx(11.08, abs=0.01)
+    # At the paper's start a tilt moves the block by a seventh of what a turn moves it.
+    turn, _, tilt = np.linalg.svd(block_map(rotation))[1]
+    assert tilt / turn == pytest.approx(0.097, abs=1e-3)
+
+
+def test_the_block_weakens_the_program() -> None:
+    block, so3 = program(orientation="block").A, program(orientation="so3").A
+    assert block.shape == (7, 7)
+    singular = np.linalg.svd(block, compute_uv=False)
+    assert singular[6] < 1e-12 < singular[5], "seven rows of rank six"
+    assert singular[5] == pytest.approx(0.0750, abs=1e-4)
+    assert np.linalg.svd(so3, compute_uv=False)[5] == pytest.approx(0.2409, abs=1e-4)
+
+
+def test_the_blocks_multipliers_are_not_unique() -> None:
+    qp = program(orientation="block", t=0.0)
+    network = ProjectionNetwork()
+    solution = solve_problem(qp)
+    assert solution.found
+    null = np.linalg.svd(qp.A.T)[2][-1]
+    for shift in (0.0, 1.0, -5.0):
+        state = np.zeros(network.state_size(qp))
+        state[:7], state[7:14] = solution.x, solution.y + shift * null
+        assert np.abs(network.rates(qp, state)).max() < 1e-8, "another equilibrium"
+    # So no square solve: the matrix of the equality-constrained program is singular.
+    kkt = np.block([[qp.P, qp.A.T], [qp.A, np.zeros((7, 7))]])
+    assert np.linalg.cond(kkt) > 1e14
+
+
+def test_the_blocks_rows_contradict_each_other_once_the_tool_lags() -> None:
+    def contradiction(orientation: str) -> float:
+        q = np.array(PAPER_Q0) + 1e-3 * np.array([1, -1, 1, 1, -1, 1, 1])
+        scheme = DoubleIndicator(orientation=orientation, home=PAPER_Q0)
+        qp = scheme.build_qp(Configuration(paper_robot(), q), heart().at(0.0))
+        left = qp.b - qp.A @ np.linalg.lstsq(qp.A, qp.b, rcond=1e-9)[0]
+        return float(np.abs(left).max())
+
+    assert contradiction("block") > 1e-6
+    assert contradiction("so3") < 1e-12
+
+
+# 5
+
+
+def test_with_identity_the_weight_acts_through_the_linear_term_alone() -> None:
+    away = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.05)
+
+    def answers(conf: Configuration, kinetic: str = "identity") -> tuple[list[QP], list[Array]]:
+        programs = [
+            DoubleIndicator(w, home=PAPER_Q0, kinetic=kinetic).build_qp(conf, heart().at(1.0))
+            for w in paper.WEIGHTS
+        ]
+        return programs, [solve_by("proxqp", qp) for qp in programs]
+
+    for conf in (paper_start(), away):
+        programs, _ = answers(conf)
+        for weight, qp in zip(paper.WEIGHTS, programs, strict=True):
+            np.testing.assert_allclose(qp.P, np.eye(7), atol=1e-15)
+            np.testing.assert_allclose(
+                qp.q, (1.0 - weight) * 10.2 * (conf.q - PAPER_Q0), atol=1e-12
+            )
+    # At home, where the linear term is zero, every weight asks for the same velocity.
+    _, at_home = answers(paper_start())
+    np.testing.assert_allclose(at_home, np.tile(at_home[0], (7, 1)), atol=1e-9)
+    _, elsewhere = answers(away)
+    assert np.abs(elsewhere[-1] - elsewhere[0]).max() > 1e-3
+    # With the inertia matrix the weight acts at home, too.
+    _, inertia = answers(paper_start(), "inertia")
+    assert np.abs(inertia[-1] - inertia[0]).max() > 1e-4
+
+
+# 6
+
+
+def test_what_the_paper_calls_xi_and_nu_are_four_things() -> None:
+    base = program(weight=0.2)
+    # xi the weight leaves Xi the rows alone; nu the gain leaves nu the multipliers' rows alone.
+    np.testing.assert_array_equal(program(weight=0.7).A, base.A)
+    conf = Configuration(paper_robot(), np.array(PAPER_Q0) + 0.01)
+    weak, strong = (
+        DoubleIndicator(orientation_gain=gain, home=PAPER_Q0).build_qp(conf, heart().at(0.0))
+        for gain in (1.0, 10.0)
+    )
+    np.testing.assert_array_equal(weak.A, strong.A)
+    np.testing.assert_allclose(strong.b[3:], 10.0 * weak.b[3:], rtol=1e-12)
+    assert solve_problem(weak).y.shape == (6,), "nu the multipliers: one for each row"
+    settings = DoubleIndicator().settings()
+    assert {"weight", "orientation_gain"} <= set(settings)
+
+
+# 7
+
+
+def test_the_text_and_the_tables_disagree() -> None:
+    for text, table in (
+        (paper.TEXT_MAX_ERROR, paper.CASES_MAX_ERROR),
+        (paper.TEXT_MSE, paper.CASES_MSE),
+    ):
+        off = [abs(a / b - 1.0) for a, b in zip(text, table, strict=True) if a is not None]
+        assert len(off) == 3
+        assert max(off) > 0.02, "more than rounding"
+    # The run without noise and without filter at xi = 0.2 stands there three times over.
+    same = (paper.MAX_ERROR[1], paper.CASES_MAX_ERROR[0], paper.TEXT_MAX_ERROR[0])
+    assert len(set(same)) == 3
+
+
+def test_a_run_without_noise_has_one_error() -> None:
+    first, again = (
+        simulate(
+            paper_robot(), DoubleIndicator(orientation="block"), heart(), PAPER_Q0,
+            mode="continuous", duration=0.02, seed=seed, check=UNCHECKED,
+        )
+        for seed in (0, 1)
+    )  # fmt: skip
+    np.testing.assert_array_equal(first.q, again.q)
+
+
+# 8
+
+
+def test_the_kinetic_index_fits_a_heart_only_if_multiplied_by_dt() -> None:
+    def index_and_width(scale: float) -> tuple[float, float]:
+        record = simulate(
+            paper_robot(), DoubleIndicator(), Heart(scale=scale).anchored(paper_start()), PAPER_Q0,
+            dt=1e-2, motion="midpoint", check=UNCHECKED,
+        )  # fmt: skip
+        return float(record.kinetic_index.max()), float(np.ptp(record.position_desired[:, 0]))
+
+    index, width = index_and_width(3.45e-3)
+    assert index * paper.DT == pytest.approx(4.54e-6, rel=0.01)
+    assert width == pytest.approx(0.110, abs=1e-3)
+    # The index goes with the square of the scale; as printed it wants a heart of a millimetre.
+    index, width = index_and_width(3.45e-5)
+    assert index == pytest.approx(4.54e-6, rel=0.01)
+    assert width == pytest.approx(1.10e-3, abs=1e-5)
+
+
+# 9
+
+
+def test_outside_a_limit_the_printed_bounds_cross() -> None:
+    robot = paper_robot()
+    q = np.array(PAPER_Q0)
+    q[3] = 2.7  # 0.2 rad beyond the limit
+    lower = np.maximum(-robot.dq_max, 20.0 * (robot.q_lower - q))
+    upper = np.minimum(robot.dq_max, 20.0 * (robot.q_upper - q))
+    assert lower[3] > upper[3], "no velocity is allowed"
+    lb, ub = velocity_bounds(Configuration(robot, q), 20.0)
+    assert (lb <= ub).all()
+    assert lb[3] == ub[3] == -robot.dq_max[3], "back as fast as it may"
+    inside = Configuration(robot, PAPER_Q0)
+    lb, ub = velocity_bounds(inside, 20.0)
+    np.testing.assert_array_equal(lb, np.maximum(-robot.dq_max, 20.0 * (robot.q_lower - inside.q)))
+    np.testing.assert_array_equal(ub, np.minimum(robot.dq_max, 20.0 * (robot.q_upper - inside.q)))
+
+
+# 10
+
+
+def test_the_hearts_parenthesis_closes_after_the_fourth_cosine() -> None:
+    a = 3.45e-3
+
+    def printed(phase: float) -> float:
+        """y - y(0) with cos 4wt outside the factor a, where the printed parenthesis leaves it."""
+        inner = 13 * math.cos(phase) - 5 * math.cos(2 * phase) - 2 * math.cos(3 * phase)
+        return a * inner - math.cos(4 * phase) - 5 * a
+
+    assert abs(printed(0.0)) > 0.99, "a metre away from the start"
+    assert Heart(scale=a).displacement(0.0)[1] == pytest.approx(0.0, abs=1e-15)
+    drawn = Heart(scale=a).displacement(np.linspace(0.0, 10.0, 1001))
+    assert np.ptp(drawn[:, 1]) < 0.11
+
+
+# 11
+
+
+def test_the_parameters_name_a_weight_that_no_result_belongs_to() -> None:
+    assert 0.3 not in paper.WEIGHTS
+    assert paper.WEIGHT == 0.2
+
+
+# 12
+
+
+def test_the_error_does_not_fall_with_the_weight_as_steadily_as_the_text_says() -> None:
+    assert trend(paper.WEIGHTS, paper.MAX_ERROR) == "falling"
+    assert np.sum(np.diff(paper.MAX_ERROR) > 0) == 2, "it rises twice on the way"
+    assert kendall_tau(paper.WEIGHTS, paper.MAX_ERROR) == pytest.approx(-9 / 21)
+
+
+# 13
+
+
+def test_one_euler_step_in_a_control_step_is_unstable() -> None:
+    qp = program(orientation="block", t=0.0)
+    network = ProjectionNetwork()
+    control_step = paper.DT / network.rho
+    assert control_step == pytest.approx(1.11, abs=2e-3)
+    largest = np.linalg.norm(qp.A, 2)
+    assert largest == pytest.approx(2.54, abs=1e-2)
+    limit = 1.0 / largest**2
+    assert limit == pytest.approx(0.155, abs=1e-3)
+    assert control_step / 8 < limit < control_step / 7, "eight sub-steps suffice, seven do not"
+    # The projection hides it: after a thousand steps nothing is infinite, and nothing settled.
+    state = network.initial_state(qp)
+    state[:7] = 1e-3
+    for _ in range(1000):
+        ExplicitEuler(substeps=1).advance(network, qp, state, control_step)
+    assert np.isfinite(state).all()
+    assert np.abs(network.rates(qp, state)).max() > 0.1
+    state = network.initial_state(qp)
+    state[:7] = 1e-3
+    for _ in range(5000):
+        ExplicitEuler(substeps=8).advance(network, qp, state, control_step)
+    assert np.abs(network.rates(qp, state)).max() < 1e-9
