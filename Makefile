@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup heart test coverage lint format types clean
+.PHONY: help setup heart physics view test coverage lint format types clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [ARGS="..."]'
@@ -27,11 +27,17 @@ $(STAMP): pyproject.toml constraints.txt
 		{ echo 'setup: the OpenMP library that Pinocchio and ProxQP load is missing; on Debian and Ubuntu: apt-get install libgomp1' >&2; exit 1; }
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'setup: installing into $(VENV), 1.6 GB on disk in the end; the first time takes some minutes'
-	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,dev]'
+	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,sim,view,dev]'
 	@touch $@
 
 heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart
 	$(VENV_PYTHON) scripts/track_heart.py $(ARGS)
+
+physics: $(STAMP)  ## draw the heart in physics, with pictures and a video; in runs/physics
+	$(VENV_PYTHON) scripts/simulate_physics.py $(ARGS)
+
+view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the arm live
+	$(VENV_PYTHON) scripts/view.py $(ARGS)
 
 test: $(STAMP)  ## run the tests
 	$(VENV_PYTHON) -m pytest $(ARGS)

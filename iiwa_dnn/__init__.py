@@ -9,6 +9,7 @@ from iiwa_dnn.exceptions import (
     FileError,
     IiwaDnnError,
     InvalidInputError,
+    MissingDependencyError,
     NoSolutionError,
     NotFoundError,
 )
@@ -43,6 +44,7 @@ __all__ = [
     "InvalidInputError",
     "Line",
     "Lissajous",
+    "MissingDependencyError",
     "NoSolutionError",
     "NotFoundError",
     "ProjectionNetwork",

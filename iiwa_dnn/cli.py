@@ -134,8 +134,8 @@ def _simulation(options: argparse.Namespace) -> Simulation:
     """The run that the options ask for, every argument checked and nothing written."""
     robot = load_robot(options.robot, tip=options.tip, locked=options.lock)
     is_papers = robot.name == "iiwa7"
-    q0 = _start(robot, is_papers) if options.q0 is None else np.array(options.q0)
-    robot = _limited(robot, options.joint_limit, is_papers)
+    q0 = start_posture(robot, is_papers) if options.q0 is None else np.array(options.q0)
+    robot = limited(robot, options.joint_limit, is_papers)
     start = Configuration(robot, q0)
     return Simulation(
         robot,
@@ -156,7 +156,7 @@ def _simulation(options: argparse.Namespace) -> Simulation:
     )
 
 
-def _start(robot: Robot, is_papers: bool) -> Vector:
+def start_posture(robot: Robot, is_papers: bool) -> Vector:
     """Where to start when nobody says: the paper's posture, or the middle of each joint's range."""
     if is_papers and robot.dof == len(PAPER_START):
         return np.array(PAPER_START)
@@ -164,7 +164,7 @@ def _start(robot: Robot, is_papers: bool) -> Vector:
     return np.where(np.isfinite(middle), middle, 0.0)
 
 
-def _limited(robot: Robot, limit: str | None, is_papers: bool) -> Robot:
+def limited(robot: Robot, limit: str | None, is_papers: bool) -> Robot:
     """The robot with the position limits that were asked for."""
     if limit is None:
         limit = str(PAPER_LIMIT) if is_papers else "datasheet"

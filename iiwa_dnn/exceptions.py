@@ -87,3 +87,17 @@ class NoSolutionError(IiwaDnnError):
         self.problem = problem
         self.solution = solution
         self.step = step
+
+
+class MissingDependencyError(IiwaDnnError, ImportError):
+    """A part of the package needs something that is not installed.
+
+    Attributes:
+        missing: What is missing.
+        remedy: How to get it, in a few words.
+    """
+
+    def __init__(self, missing: str, remedy: str) -> None:
+        super().__init__(f"{missing} is missing: {remedy}")
+        self.missing = missing
+        self.remedy = remedy

@@ -85,10 +85,49 @@ def block_map(R, out):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
+def project_on_range(columns, vector):
+    """Replace `vector` (4,) by its projection on the range of `columns` (4, 3), which is spoilt.
+
+    Gram-Schmidt with pivoting; a direction below 1e-9 of the entries' scale, one, is none.
+    """
+    rows, count = columns.shape
+    result = np.zeros(rows)
+    for _ in range(count):
+        best, largest = 0, 0.0
+        for j in range(count):
+            norm = 0.0
+            for i in range(rows):
+                norm += columns[i, j] * columns[i, j]
+            if norm > largest:
+                best, largest = j, norm
+        if largest <= 1e-18:
+            break
+        scale = 1.0 / np.sqrt(largest)
+        along = 0.0
+        for i in range(rows):
+            columns[i, best] *= scale
+            along += columns[i, best] * vector[i]
+        for i in range(rows):
+            result[i] += along * columns[i, best]
+        for j in range(count):
+            if j != best:
+                # Twice, so that rounding leaves no trace of the direction that was taken out.
+                for _ in range(2):
+                    overlap = 0.0
+                    for i in range(rows):
+                        overlap += columns[i, best] * columns[i, j]
+                    for i in range(rows):
+                        columns[i, j] -= overlap * columns[i, best]
+        columns[:, best] = 0.0
+    vector[:] = result
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def orientation_rows(mode, pose, jacobian, target, gain, rows, rhs):
     """Write the orientation task's rows (k, n) and right-hand side (k,).
 
-    Mode 1 is so3 with k = 3, mode 2 the paper's block with k = 4, mode 0 nothing.
+    Mode 1 is so3 with k = 3, mode 2 the paper's block with k = 4, mode 0 nothing. The block's
+    right-hand side is projected on the range of its rows (`iiwa_dnn.schemes.orientation`).
     """
     n = jacobian.shape[1]
     R = pose[:3, :3]
@@ -120,6 +159,7 @@ def orientation_rows(mode, pose, jacobian, target, gain, rows, rhs):
                 for k in range(3):
                     value += here[i, k] * jacobian[3 + k, j]
                 rows[i, j] = value
+        project_on_range(here, rhs)
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

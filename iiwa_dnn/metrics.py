@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.files import plain
 from iiwa_dnn.record import FloatArray, Record
+from iiwa_dnn.torques import physics_failures, physics_metrics
 
 # Rounding of the integrator may carry a joint this far past a limit that the QP kept exactly.
 LIMIT_SLACK = 1e-9
@@ -56,7 +57,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
 
     The mean squared error ``mse_position_error_m2`` is the mean over the N+1 samples *and* the
     three axes, which is what the paper's MSE most likely is: a third of the mean squared distance.
-    ``duration_s`` is the time simulated; what was asked for is ``settings["duration"]``.
+    ``duration_s`` is the time simulated; what was asked for is ``settings["duration"]``. A run in
+    physics also has ``physics`` (`iiwa_dnn.torques.physics_metrics`).
 
     Args:
         record: The run.
@@ -85,6 +87,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "velocity_limit_violation_rad_s": velocity_limit_excess(record).max(initial=0.0),
             "max_kkt_residual": _max(record.kkt_residual),
             "crosscheck": _crosscheck(record),
+            **physics_metrics(record),
             "settings": settings,
             "versions": record.settings.get("versions", {}),
         }
@@ -111,6 +114,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         *_unsolved(metrics, record),
         *_crosscheck_failures(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),
+        *physics_failures(metrics, record),
     ]
 
 

@@ -72,6 +72,16 @@ def draw_velocities(axes: Axes, record: Record) -> None:
     legend_above(axes, columns=4)
 
 
+def draw_torques(axes: Axes, record: Record) -> None:
+    """Draw the joint torques [N m] over time, if there are any; each joint has its own limit."""
+    if record.torque is None:
+        return
+    _draw_joints(axes, record.t[:-1], record.torque, r"$\tau_{}$")
+    time_axis(axes, record)
+    axes.set_ylabel("Joint torque [N m]")
+    legend_above(axes, columns=4)
+
+
 def _draw_joints(axes: Axes, t: FloatArray, values: FloatArray, label: str) -> None:
     """Draw one curve a joint, told apart by luminance, dashes and markers."""
     import matplotlib

@@ -129,7 +129,7 @@ def _head(
     period = HeartRun().reference().period
     note = f": less than the heart's {period:g} s does not close it, so the drift is another"
     open_end = note if scope.duration < period else ""
-    versions = fingerprint()["versions"] | {"python": platform.python_version()}
+    versions = fingerprint(measure)["versions"] | {"python": platform.python_version()}
     return {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()}",

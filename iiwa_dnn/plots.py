@@ -18,6 +18,7 @@ from iiwa_dnn.panels import (
     draw_level,
     draw_log,
     draw_path,
+    draw_torques,
     draw_velocities,
     legend_above,
     plane_of,
@@ -60,8 +61,8 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
     """Draw all figures of a run and write each as PNG and PDF, atomically.
 
     The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
-    ``joint_velocities``, ``position_error``, and ``convergence`` (KKT residual and cross-check
-    gap). The same record gives the same bytes.
+    ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
+    and of a run in physics ``torques``. The same record gives the same bytes.
 
     Args:
         record: The run.
@@ -73,7 +74,10 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
     Raises:
         FileError: If the folder cannot be written.
     """
-    return write_figures({name: partial(draw, record) for name, draw in FIGURES.items()}, folder)
+    figures = {name: partial(draw, record) for name, draw in FIGURES.items()}
+    if record.torque is not None:
+        figures["torques"] = partial(_single, draw_torques, record)
+    return write_figures(figures, folder)
 
 
 def write_figures(

@@ -39,6 +39,8 @@ _SHAPES: dict[str, tuple[str | int, ...]] = {
     "objective_gap": ("N", "k"),
     "reference_residual": ("N", "k"),
 }
+# Only runs that have them; a file without them is whole.
+_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {"torque": ("N", "n")}
 
 # What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
@@ -72,6 +74,8 @@ class Record:
         objective_gap: Difference in the objective to each reference, (N, k).
         reference_residual: Largest KKT residual of each reference's own answer, (N, k).
         settings: What was asked for, in JSON types; an infinite limit reads None.
+        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
+            run that has no masses.
         wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
@@ -92,15 +96,17 @@ class Record:
     objective_gap: FloatArray
     reference_residual: FloatArray
     settings: dict[str, Any]
+    torque: FloatArray | None = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        for name, shape in _SHAPES.items():
+        shapes = self._shapes
+        for name, shape in shapes.items():
             array = _read_only_copy(name, getattr(self, name), len(shape))
             object.__setattr__(self, name, array)
         sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
-        for name, shape in _SHAPES.items():
+        for name, shape in shapes.items():
             expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
             if getattr(self, name).shape != expected:
                 symbols = ", ".join(str(size) for size in shape)
@@ -111,7 +117,8 @@ class Record:
                 )
         if sizes["N"] < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        object.__setattr__(self, "settings", _checked(self.settings, self.dof, self.references))
+        checked = _checked(self.settings, self.dof, self.references, self.torque is not None)
+        object.__setattr__(self, "settings", checked)
         object.__setattr__(self, "crosscheck_gap", _largest_gap(self.solution_gap))
 
     @property
@@ -129,6 +136,12 @@ class Record:
         """k, the number of reference solvers; their names are in the settings."""
         return int(self.solution_gap.shape[1])
 
+    @property
+    def _shapes(self) -> dict[str, tuple[str | int, ...]]:
+        """Shapes of the arrays that this record has, by name."""
+        present = {k: v for k, v in _OPTIONAL_SHAPES.items() if getattr(self, k) is not None}
+        return _SHAPES | present
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
 
@@ -140,7 +153,7 @@ class Record:
         Raises:
             FileError: If the file cannot be written.
         """
-        arrays = {name: getattr(self, name) for name in (*_SHAPES, "crosscheck_gap")}
+        arrays = {name: getattr(self, name) for name in (*self._shapes, "crosscheck_gap")}
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
@@ -166,6 +179,7 @@ class Record:
                 stored: dict[str, Any] = {
                     key: arrays[key] for key in (*_SHAPES, "crosscheck_gap", "settings")
                 }
+                stored |= {key: arrays[key] for key in _OPTIONAL_SHAPES if key in arrays.files}
             stored_gap = stored.pop("crosscheck_gap")
             settings = json.loads(str(stored.pop("settings")))
             record = cls(settings=settings, **stored)
@@ -203,13 +217,14 @@ def _largest_gap(solution_gap: FloatArray) -> FloatArray:
     return gap
 
 
-def _checked(settings: Mapping[str, Any], n: int, k: int) -> dict[str, Any]:
+def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict[str, Any]:
     """Return the settings in JSON types, once all that the metrics need is seen to be there."""
+    limits = ("q_lower", "q_upper", "dq_max") + (("torque_max",) if torques else ())
     if not isinstance(settings, Mapping):
         raise InvalidInputError("settings", "must be a dict", settings)
     try:
         checked: dict[str, Any] = plain(settings)
-        for key in ("q_lower", "q_upper", "dq_max"):
+        for key in limits:
             if len(checked[key]) != n:
                 raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", checked[key])
         if len(checked["check"]["solvers"]) != k:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ _CAPTIONS = {
     "path": "Desired and actual path.",
     "joint_angles": "Joint angles.",
     "joint_velocities": "Joint velocities that moved the robot.",
+    "torques": "Joint torques: of each step the largest.",
+    "moments": "The arm, and below it the path so far, face on.",
     "position_error": "Position error, actual minus desired.",
     "convergence": "KKT residual of the network and gap to the reference: the line is the largest "
     "value, the band the range, of each short stretch of time.",
@@ -39,7 +41,12 @@ _CAPTIONS = {
 _KINETIC_UNITS = {"identity": "rad²/s²", "inertia": "J"}
 
 
-def save_run(record: Record, folder: str | os.PathLike[str], plots: bool = True) -> dict[str, Any]:
+def save_run(
+    record: Record,
+    folder: str | os.PathLike[str],
+    plots: bool = True,
+    more: Callable[[Record, Path], list[Path]] | None = None,
+) -> dict[str, Any]:
     """Write all that a run leaves: record.npz, metrics.json, figures and report.md.
 
     Each file is written atomically, the record first.
@@ -48,6 +55,7 @@ def save_run(record: Record, folder: str | os.PathLike[str], plots: bool = True)
         record: The run.
         folder: Where to; made if need be.
         plots: Whether to draw the figures.
+        more: Draws more figures into the folder and returns their files.
 
     Returns:
         The metrics, as in metrics.json.
@@ -60,6 +68,7 @@ def save_run(record: Record, folder: str | os.PathLike[str], plots: bool = True)
     metrics = compute_metrics(record)
     write_json(folder / "metrics.json", metrics)
     figures = save_figures(record, folder) if plots else []
+    figures += more(record, folder) if more is not None else []
     write_report(record, metrics, folder, figures)
     return metrics
 
@@ -145,6 +154,7 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
         "kinetic index": f"max {_short(m['max_kinetic_index'])} {kinetic_unit}",
         "beyond limits": f"{_short(m['position_limit_violation_rad'])} rad, "
         f"{_short(m['velocity_limit_violation_rad_s'])} rad/s",
+        **_physics_lines(m.get("physics")),
         "KKT residual": f"max {_short(m['max_kkt_residual'])}, "
         f"tolerance {_short(settings['tol'])}",
         "cross-check": checked,
@@ -156,6 +166,26 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     return "\n".join(
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
+
+
+def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
+    """What a run in physics adds to the summary."""
+    if physics is None:
+        return {}
+    lines = {
+        "settled error": f"max {_short(physics['max_position_error_settled_m'])} m "
+        f"from {_short(physics['settled_after_s'])} s on",
+        "torque": f"max {physics['max_torque_share']:.0%} of a joint's limit",
+    }
+    push = physics["push"]
+    if push is not None:
+        recovery = push["recovery_s"]
+        back = "never" if recovery is None else f"after {_short(recovery)} s"
+        lines["push"] = (
+            f"error max {_short(push['max_position_error_m'])} m, "
+            f"back within {_short(push['recovered_below_m'])} m {back}"
+        )
+    return lines
 
 
 def _success(metrics: Mapping[str, Any]) -> str:
@@ -187,7 +217,32 @@ def _results(metrics: Mapping[str, Any]) -> list[Sequence[str]]:
         ("wall time", "wall_time_s", "s"),
         ("time simulated / wall time", "realtime_factor", ""),
     )
-    return [(name, _number(metrics[key]), unit) for name, key, unit in rows]
+    return [
+        *((name, _number(metrics[key]), unit) for name, key, unit in rows),
+        *(_physics(metrics["physics"]) if "physics" in metrics else []),
+    ]
+
+
+def _physics(physics: Mapping[str, Any]) -> list[Sequence[str]]:
+    since = f"largest position error from {physics['settled_after_s']:g} s on"
+    rows: list[Sequence[str]] = [
+        (since, _number(physics["max_position_error_settled_m"]), "m"),
+        *(
+            (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
+            for joint, (torque, limit) in enumerate(
+                zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True), 1
+            )
+        ),
+    ]
+    push = physics["push"]
+    if push is not None:
+        back = f"time from the push's end until back within {push['recovered_below_m']:g} m"
+        recovery = "never" if push["recovery_s"] is None else _number(push["recovery_s"])
+        rows += [
+            ("largest position error since the push", _number(push["max_position_error_m"]), "m"),
+            (back, recovery, "s"),
+        ]
+    return rows
 
 
 def _crosscheck(check: Mapping[str, Any]) -> list[Sequence[str]]:

@@ -2,9 +2,10 @@
 
 A cell is one setting of a task, in JSON types. What a finished cell came to is one file, named by
 the hash of its settings and of all else that the numbers depend on: the versions of the packages,
-the source of this one, the robots' URDFs. A sweep that was killed, even by ``kill -9``, finds the
-finished cells the next time and computes the others; after any change there are new cells, and old
-ones are never taken for them. Only the process that asked writes files, each atomically.
+the source of the task with what it imports of this one, the robots' URDFs. A sweep that was killed,
+even by ``kill -9``, finds the finished cells the next time and computes the others; after any
+change there are new cells, and old ones are never taken for them. Only the process that asked
+writes files, each atomically.
 
 The answers come in the order of the cells, whatever the number of workers, and each worker keeps
 to one thread, so the same cells give the same numbers on one machine.
@@ -12,7 +13,9 @@ to one thread, so the same cells give the same numbers on one machine.
 
 from __future__ import annotations
 
+import ast
 import hashlib
+import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -33,11 +36,6 @@ from iiwa_dnn.robot import available_robots, load_robot
 Settings = Mapping[str, Any]
 
 _PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
-# A change in what only draws or talks leaves the numbers as they are.
-_WITHOUT_NUMBERS = (
-    "decimation", "panels", "plots", "paper_plots", "report", "paper_report", "viewer", "cli",
-    "paper_cli", "sweeps", "__init__", "__main__",
-)  # fmt: skip
 _PATIENCE = 10.0  # how long to look for a scheduler [s]
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -132,7 +130,7 @@ class Sweep:
 
     def _identity(self, cell: Settings) -> dict[str, Any]:
         task = f"{self.task.__module__}.{self.task.__qualname__}"
-        return {"task": task, "settings": plain(cell), **fingerprint()}
+        return {"task": task, "settings": plain(cell), **fingerprint(self.task)}
 
     def _read(self, name: str, cell: Settings) -> dict[str, Any] | None:
         """The numbers of a finished cell; None if it is not finished or its file is damaged."""
@@ -159,7 +157,7 @@ class Sweep:
     ) -> Iterator[tuple[str, Outcome]]:
         """Compute the cells, each yielded as soon as it is done, in whatever order."""
         calls = (
-            joblib.delayed(_compute)(name, self.task, dict(cell), fingerprint())
+            joblib.delayed(_compute)(name, self.task, dict(cell), fingerprint(self.task))
             for name, cell in todo.items()
         )
         if not todo:
@@ -172,14 +170,11 @@ class Sweep:
 
 
 @cache
-def fingerprint() -> dict[str, Any]:
-    """What the numbers depend on besides the settings: package versions, source and URDFs."""
-    root = Path(__file__).parent
+def fingerprint(task: Task) -> dict[str, Any]:
+    """What a task's numbers depend on besides its settings: package versions, source and URDFs."""
     digest = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        parts = path.relative_to(root).with_suffix("").parts
-        if parts[0] not in _WITHOUT_NUMBERS:
-            digest.update("/".join(parts).encode() + b"\0" + path.read_bytes() + b"\0")
+    for path in sources(Path(inspect.getfile(task))):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     for robot in available_robots():
         urdf = load_robot(robot).path
         digest.update(b"" if urdf is None else urdf.read_bytes())
@@ -187,12 +182,45 @@ def fingerprint() -> dict[str, Any]:
     return {"versions": versions, "source": digest.hexdigest()[:24]}
 
 
+def sources(start: Path) -> list[Path]:
+    """A Python file and all modules of this package that it imports, directly or not.
+
+    Read from the source, so that it does not matter what else the process has imported. The
+    package's own ``__init__`` is left out: it hands names on and computes nothing.
+    """
+    found, todo = {start}, [start]
+    while todo:
+        for node in ast.walk(ast.parse(todo.pop().read_bytes())):
+            names: list[str] = []
+            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+            elif isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            new = {path for name in names for path in _files(name)} - found
+            found |= new
+            todo += new
+    return sorted(found)
+
+
+def _files(module: str) -> Iterator[Path]:
+    """The files of a module of this package and of the packages it lies in."""
+    root, *parts = module.split(".")
+    if root != "iiwa_dnn":
+        return
+    for depth in range(1, len(parts) + 1):
+        base = Path(__file__).parent.joinpath(*parts[:depth])
+        for path in (base.with_suffix(".py"), base / "__init__.py"):
+            if path.is_file():
+                yield path
+
+
 def _compute(
     name: str, task: Task, cell: Settings, expected: dict[str, Any]
 ) -> tuple[str, Outcome]:
     """What a worker does; one with other versions than the asking process refuses."""
-    if fingerprint() != expected:
-        raise IiwaDnnError(f"a worker runs other versions: {fingerprint()}, expected {expected}")
+    if fingerprint(task) != expected:
+        own = fingerprint(task)
+        raise IiwaDnnError(f"a worker runs other versions: {own}, expected {expected}")
     try:
         return name, task(cell)
     except IiwaDnnError as error:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import warnings
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +12,6 @@ from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp
 from helpers_simulation import heart, near_target, paper_start, run
 from iiwa_dnn import crosscheck
-from iiwa_dnn.checkpool import CheckPool
 from iiwa_dnn.crosscheck import SOLVERS, Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.metrics import compute_metrics, failures
@@ -336,43 +333,3 @@ def test_verdicts_keep_their_step_over_the_blocks_of_a_long_run() -> None:
     record = run(solver=Liar(wrong_at=2 * 730 + 1), check=EACH[0], duration=1.1, motion="midpoint")
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [730]
     assert (record.reference_residual <= 1e-8).all()
-
-
-def blocks_of_five(count: int) -> list[tuple[np.ndarray, tuple[int, int, int], np.ndarray]]:
-    """Blocks of programs and their answers, the second of block i wrong by (i + 1) 1e-4."""
-    rng = np.random.default_rng(58)
-    blocks = []
-    for i in range(count):
-        known = [known_qp(rng, 7, 3, active) for active in range(5)]
-        x = np.stack([best for _, best in known])
-        x[1, 4] += (i + 1) * 1e-4
-        blocks.append((np.stack([qp.data for qp, _ in known]), known[0][0].sizes, x))
-    return blocks
-
-
-def judged(check: CrossCheck, count: int, workers: int) -> Agreement:
-    pool = CheckPool(check, 5 * count, workers)
-    for block in blocks_of_five(count):
-        pool.submit(*block)
-    return pool.finish()
-
-
-def test_other_processes_give_the_same_verdicts_in_the_same_order() -> None:
-    alone, helped = judged(EACH[1], 8, workers=0), judged(EACH[1], 8, workers=2)
-    for one, other in zip(alone, helped, strict=True):
-        np.testing.assert_array_equal(one, other)
-    wrong = alone.solution_gap[1::5, 0]
-    np.testing.assert_allclose(wrong, 1e-4 * np.arange(1, 9), rtol=1e-3)
-
-
-def test_what_a_dying_worker_had_is_judged_again() -> None:
-    home = os.getpid()
-
-    class Fragile(CrossCheck):
-        def check_block(self, *block: Any) -> Agreement:
-            if os.getpid() != home:
-                os._exit(1)
-            return super().check_block(*block)
-
-    for one, other in zip(judged(EACH[1], 4, 0), judged(Fragile(("osqp",)), 4, 1), strict=True):
-        np.testing.assert_array_equal(one, other)

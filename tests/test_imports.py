@@ -13,11 +13,14 @@ PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 # A module, or a folder of modules, may import what stands before it. A new one gets its place here.
 ORDER = (
     "exceptions",
+    "offscreen",
     "checks",
     "files",
     "kernels",
     "urdf",
     "robot",
+    "shapes",
+    "mujoco_model",
     "configuration",
     "references",
     "qp",
@@ -29,6 +32,7 @@ ORDER = (
     "checkpool",
     "controller",
     "record",
+    "torques",
     "metrics",
     "statistics",
     "simulation",
@@ -40,18 +44,27 @@ ORDER = (
     "paper_plots",
     "report",
     "paper_report",
+    "rendering",
+    "pictures",
     "viewer",
+    "live",
     "cli",
     "paper_cli",
+    "physics_cli",
+    "view_cli",
     "__main__",
     "__init__",
 )
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
 AFTER_THE_RECORD = {
-    "decimation", "panels", "plots", "paper_plots", "report", "paper_report", "viewer",
+    "decimation", "panels", "plots", "paper_plots", "report", "paper_report",
+    "rendering", "pictures", "viewer",
 }  # fmt: skip
-BEFORE_THEM = {"exceptions", "checks", "files", "record", "metrics", "statistics"}
+BEFORE_THEM = {"exceptions", "checks", "files", "record", "torques", "metrics", "statistics"}
+# What draws the robot itself needs its shapes too, and nothing else of it.
+DRAW_THE_ROBOT = {"rendering", "pictures", "viewer"}
+SHAPES = {"robot", "shapes", "mujoco_model", "offscreen"}
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 
@@ -91,6 +104,8 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
             continue
         if ORDER.index(other) > ORDER.index(own):
             found.append(f"{where}, which points back: {other} stands after {own}")
+        elif own in DRAW_THE_ROBOT and other in SHAPES:
+            continue
         elif own in AFTER_THE_RECORD and other not in BEFORE_THEM | AFTER_THE_RECORD:
             found.append(f"{where}, but {own} works from the record alone")
     return found
@@ -121,6 +136,7 @@ def test_imports_point_forward(path: Path) -> None:
         ("networks/__init__", "from ..solver import A", "points back: solver stands after"),
         ("plots", "from iiwa_dnn.robot import Robot", "plots works from the record alone"),
         ("report", "from iiwa_dnn import simulation", "report works from the record alone"),
+        ("viewer/a", "from iiwa_dnn.controller import A", "viewer works from the record alone"),
         ("solver", "from numba import njit", "only kernels.py is compiled"),
         ("solver", "import numba.typed", "only kernels.py is compiled"),
         ("surprise", "import numpy", "add it to ORDER"),
@@ -140,6 +156,7 @@ def test_a_wrong_import_is_found(own: str, source: str, fault: str) -> None:
         ("networks/__init__", "from .projection import Projection"),
         ("plots", "from iiwa_dnn.record import Record\nfrom iiwa_dnn.exceptions import FileError"),
         ("report", "from iiwa_dnn.plots import save_figures"),
+        ("rendering", "from iiwa_dnn.robot import Robot"),
         ("__init__", "from iiwa_dnn.cli import main\nfrom .robot import Robot"),
     ],
 )

@@ -18,7 +18,7 @@ from iiwa_dnn.record import Record
 ARRAYS = [
     field.name
     for field in dataclasses.fields(Record)
-    if field.name not in ("settings", "wall_time_s")
+    if field.name not in ("settings", "wall_time_s", "torque")
 ]
 
 
@@ -43,6 +43,34 @@ def test_round_trip(tmp_path, steps, solvers):
     assert loaded.settings == record.settings
     assert loaded.wall_time_s is None
     assert (loaded.steps, loaded.dof, loaded.references) == (steps, 7, len(solvers))
+
+
+def test_torques_are_in_the_file_where_there_are_any(tmp_path):
+    torque = np.arange(70.0).reshape(10, 7)
+    record = make_record(torque=torque, settings={"torque_max": [176.0, *[np.inf] * 6]})
+    record.save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    np.testing.assert_array_equal(loaded.torque, torque, strict=True)
+    assert loaded.settings["torque_max"] == [176.0, *[None] * 6]
+    with pytest.raises(ValueError, match="read-only"):
+        loaded.torque[0] = 0.0
+    make_record().save(tmp_path / "without.npz")
+    assert Record.load(tmp_path / "without.npz").torque is None
+    with np.load(tmp_path / "without.npz") as stored:
+        assert "torque" not in stored.files
+
+
+@pytest.mark.parametrize(
+    ("torque", "settings", "words"),
+    [
+        (np.zeros((11, 7)), {"torque_max": [1.0] * 7}, r"torque: shape \(11, 7\)"),
+        (np.zeros((10, 7)), {}, "'torque_max' is missing"),
+        (np.zeros((10, 7)), {"torque_max": [1.0] * 6}, "7 limits"),
+    ],
+)
+def test_wrong_torques(torque, settings, words):
+    with pytest.raises(InvalidInputError, match=words):
+        make_record(torque=torque, settings=settings)
 
 
 def test_the_gap_is_the_largest_over_the_solvers(heart):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 import signal
@@ -76,11 +77,11 @@ def test_a_changed_package_is_a_new_cell(
 ) -> None:
     sweep = Sweep(draw, tmp_path / "cells")
     sweep.run(cells(log, 2), workers=1)
-    now = sweeps.fingerprint()
+    now = sweeps.fingerprint(draw)
     assert now["versions"]["numpy"] == np.__version__
     other = {"versions": {**now["versions"], "iiwa-dnn": "99"}} if change == "version" else {}
     other = now | (other or {"source": "0"})
-    monkeypatch.setattr(sweeps, "fingerprint", lambda: other)
+    monkeypatch.setattr(sweeps, "fingerprint", lambda task: other)
     assert sweep.run(cells(log, 2), workers=1) == expected(2)
     assert sorted(computed(log)) == [0, 0, 1, 1]
 
@@ -192,14 +193,40 @@ def test_a_scheduler_is_found_by_its_address(tmp_path: Path, log: Path) -> None:
     assert found == expected(3)
 
 
-def test_the_source_counts_and_the_drawing_does_not() -> None:
+def test_the_source_of_a_run_is_what_a_run_imports() -> None:
     package = Path(sweeps.__file__).parent
-    names = {
-        path.relative_to(package).parts[0].removesuffix(".py") for path in package.rglob("*.py")
-    }
-    silent = set(sweeps._WITHOUT_NUMBERS)
-    assert {"kernels", "solver", "simulation", "experiments", "schemes", "qp"} <= names - silent
-    assert silent - names <= {"viewer", "__main__"}, "a name that is no module of the package"
+    found = sweeps.sources(Path(inspect.getfile(measure)))
+    names = {"/".join(path.relative_to(package).with_suffix("").parts) for path in found}
+    # Read from the source, it holds all that a fresh process has loaded after the import, but for
+    # what the package's own __init__ brings in.
+    code = "import sys; import iiwa_dnn.experiments.runs; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    modules = {name for name in loaded.stdout.split() if name.startswith("iiwa_dnn.")}
+    known = {f"iiwa_dnn.{name.removesuffix('/__init__').replace('/', '.')}" for name in names}
+    assert known <= modules
+    assert {"kernels", "solver", "simulation/loop", "simulation/noise", "experiments/runs"} <= names
+    assert not {"plots", "report", "cli", "viewer", "__init__"} & names
+
+
+def test_a_changed_import_changes_the_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "iiwa_dnn"
+    (package / "deep").mkdir(parents=True)
+    for name, text in {
+        "task.py": "from iiwa_dnn.one import f",
+        "one.py": "def f():\n    import iiwa_dnn.deep.two",
+        "deep/__init__.py": "",
+        "deep/two.py": "from iiwa_dnn.deep import three",
+        "deep/three.py": "from iiwa_dnn.one import f\nimport numpy",
+        "other.py": "",
+    }.items():
+        (package / name).write_text(text, encoding="utf-8")
+    monkeypatch.setattr(sweeps, "__file__", str(package / "sweeps.py"))
+    found = [path.relative_to(package).as_posix() for path in sweeps.sources(package / "task.py")]
+    assert found == ["deep/__init__.py", "deep/three.py", "deep/two.py", "one.py", "task.py"]
 
 
 def test_one_bar_for_the_whole_sweep(

@@ -5,7 +5,10 @@ r"""Equality rows that hold or track the tool's orientation, in two forms.
 .. math::  J' \dot q = \dot r_d - \nu (r - r_d), \qquad J' = W(R)\, J_\omega
 
 where W follows from :math:`\dot R = [\omega]_\times R`. These four rows have rank three at most,
-and where the tool's axis is vertical they lose the two tilts (docs/errata.md).
+and where the tool's axis is vertical they lose the two tilts (docs/errata.md). Off the path the
+four contradict each other, at second order in the error: no velocity fulfils them all, and the
+program would have no solution. The right-hand side is therefore projected on the range of W, which
+gives the rows their least-squares meaning and changes nothing at first order.
 
 ``so3``: with the angular velocity rows themselves,
 

@@ -24,6 +24,9 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.schemes.base import Weights, identity, velocity_program
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
+RANK_TOLERANCE = 1e-10
+"""Singular values below this share of the largest count as zero: the block's rows are dependent."""
+
 
 @dataclass(frozen=True)
 class PseudoInverse:
@@ -59,7 +62,7 @@ class PseudoInverse:
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """The closed form A^+ b [rad/s], (n,), through numpy's singular value decomposition."""
         qp = self.build_qp(conf, target)
-        velocity: Vector = np.linalg.pinv(qp.A) @ qp.b
+        velocity: Vector = np.linalg.pinv(qp.A, rcond=RANK_TOLERANCE) @ qp.b
         return velocity
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:

@@ -112,7 +112,8 @@ class Simulation:
             noise_at: ``"velocity"``, the one commanded; ``"network"``, x of the network's state;
                 ``"measurement"``, the joint angles that the controller sees.
             filter_window: Samples that the moving average takes; 1 is no filter.
-            seed: Seed of the noise; the same seed gives the same record, bit for bit.
+            seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the
+                last digits of what ProxQP is said to be off by: it does not repeat itself.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
             check: Reference solvers; None asks ProxQP, ``CrossCheck(())`` nobody.
             solver: The network and its integrators, reset before the run; None takes the paper's
@@ -236,18 +237,17 @@ class Simulation:
             if self._noise_at == "measurement":
                 seen = q + noise
         velocity = self._motion.step(self._velocity_at, seen, k * dt, dt)
+        if seen is not q:  # the controller saw another posture than the robot has
+            _, qp, solution = block.stages[-self._motion.stages]
+            true = Configuration(self._robot, q, self._scratch)
+            block.stages[-self._motion.stages] = (true, qp, solution)
         if block.failed is not None:
             return self._stop(k, block.failed)
         dq = velocity
-        if noise is not None:
-            if self._noise_at == "velocity":
-                dq = velocity + noise
-            elif self._noise_at == "network":
-                self._solver.disturb(noise)
-            else:  # the controller saw another posture than the robot has
-                _, qp, solution = block.stages[-self._motion.stages]
-                true = Configuration(self._robot, q, self._scratch)
-                block.stages[-self._motion.stages] = (true, qp, solution)
+        if noise is not None and self._noise_at == "velocity":
+            dq = velocity + noise
+        elif noise is not None and self._noise_at == "network":
+            self._solver.disturb(noise)
         dq = self._average(dq)
         block.velocities.append(velocity)
         self._dq[k] = dq

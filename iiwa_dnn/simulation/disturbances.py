@@ -1,0 +1,134 @@
+"""What the physics does to the controller that its nominal model knows nothing of.
+
+The default of every disturbance is none. `Disturbances.typical` is what ``--disturb`` means; its
+sizes are assumptions, stated here, as the maker publishes none of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import Vector
+
+MASS_ERROR = 0.1
+"""Relative error of a link's mass: every mass of the URDF is an estimate."""
+
+FRICTION = 0.01
+"""Coulomb friction as a share of the torque limit: 1.76 N m at the iiwa's first two joints."""
+
+ENCODER_NOISE = 1e-5
+"""Standard deviation of an encoder reading [rad]."""
+
+ENCODER_BITS = 18
+"""Resolution of an encoder: 2 pi / 2^18 = 2.4e-5 rad."""
+
+DELAY = 1
+"""Control periods by which a command is late."""
+
+
+@dataclass(frozen=True)
+class Push:
+    """A force on the tip for a while.
+
+    Attributes:
+        force: Force along the world's axes [N], (3,).
+        start: When it begins [s].
+        duration: How long it lasts [s].
+    """
+
+    force: tuple[float, float, float] = (0.0, 10.0, 0.0)
+    start: float = 5.0
+    duration: float = 0.2
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        object.__setattr__(self, "force", checks.vector3("push", self.force))
+        checks.not_negative("push_at", self.start)
+        checks.not_negative("push_for", self.duration)
+
+    @property
+    def end(self) -> float:
+        """When it ends [s]."""
+        return self.start + self.duration
+
+
+@dataclass(frozen=True)
+class Disturbances:
+    """Everything that may differ between the physics and the controller's idea of it.
+
+    Attributes:
+        mass_error: Relative error of the moving links' masses and inertias: each is too heavy or
+            too light by this much, which of the two is drawn from the seed.
+        friction: Coulomb friction as a share of the joints' torque limits; a joint without a
+            limit has none.
+        encoder_noise: Standard deviation of white noise on every encoder reading [rad].
+        encoder_bits: Encoder readings are rounded to 2 pi / 2^bits [rad]; 0 rounds nothing.
+        delay: Control periods by which a velocity command arrives late.
+        push: A push on the tip, if there is one.
+    """
+
+    mass_error: float = 0.0
+    friction: float = 0.0
+    encoder_noise: float = 0.0
+    encoder_bits: int = 0
+    delay: int = 0
+    push: Push | None = None
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        for name in ("mass_error", "friction", "encoder_noise"):
+            checks.not_negative(name, getattr(self, name))
+        for name in ("encoder_bits", "delay"):
+            checks.integer(name, getattr(self, name), 0)
+        if self.mass_error >= 1.0:
+            raise InvalidInputError("mass_error", "must be below 1", self.mass_error)
+        if self.encoder_bits > 52:
+            raise InvalidInputError("encoder_bits", "is finer than a double", self.encoder_bits)
+
+    @classmethod
+    def typical(cls, push: Push | None = None) -> Disturbances:
+        """All of them but the push at the sizes stated above."""
+        return cls(MASS_ERROR, FRICTION, ENCODER_NOISE, ENCODER_BITS, DELAY, push)
+
+    @property
+    def encoder_step(self) -> float:
+        """Resolution of the encoders [rad]; 0 where they do not round."""
+        return 2.0 * math.pi / 2**self.encoder_bits if self.encoder_bits else 0.0
+
+    def mass_factors(self, joints: int, seed: int) -> Vector:
+        """What each moving link's mass and inertia is multiplied by, (n,)."""
+        signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
+        return 1.0 + self.mass_error * signs
+
+    def settings(self) -> dict[str, Any]:
+        """All of it, as values that JSON can hold."""
+        return asdict(self)
+
+
+class Encoder:
+    """Joint angles as they are measured: with noise, then rounded.
+
+    Attributes:
+        noise: Standard deviation of a reading [rad].
+        step: Resolution [rad]; 0 for none.
+    """
+
+    def __init__(self, noise: float, step: float, seed: int) -> None:
+        """The same seed gives the same readings."""
+        self.noise, self.step = noise, step
+        self._rng = np.random.default_rng([seed, 1])
+
+    def __call__(self, q: Vector) -> Vector:
+        """Measure joint angles `q` (n,) [rad]; the reading is a new array."""
+        reading: Vector = q.copy()
+        if self.noise:
+            reading += self.noise * self._rng.standard_normal(q.size)
+        if self.step:
+            reading = self.step * np.round(reading / self.step)
+        return reading

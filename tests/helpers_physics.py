@@ -1,0 +1,64 @@
+"""What the tests of physics and pictures share: the paper's heart, and what a machine lacks."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
+from iiwa_dnn.cli import PAPER_START
+
+ROOT = Path(__file__).parents[1]
+START = np.array(PAPER_START)
+
+
+def papers_robot() -> Robot:
+    """The iiwa 7 with the limits of the paper's experiment."""
+    return load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+
+
+def heart_in_physics(robot: Robot, check: tuple[str, ...] = (), **options: object) -> Record:
+    """The paper's heart in physics."""
+    from iiwa_dnn.simulation.physics import simulate_physics
+
+    heart = Heart().anchored(Configuration(robot, START))
+    return simulate_physics(
+        robot, DoubleIndicator(), heart, START, check=CrossCheck(check), **options
+    )
+
+
+def heart_without_physics(robot: Robot, steps: int = 500) -> Record:
+    """The paper's heart, quickly: for tests of what is drawn."""
+    heart = Heart().anchored(Configuration(robot, START))
+    return iiwa_dnn.simulate(robot, DoubleIndicator(), heart, START, dt=10.0 / steps)
+
+
+def distance(record: Record) -> np.ndarray:
+    """Distance from the tip to where it should be [m], (N+1,)."""
+    return np.linalg.norm(record.position - record.position_desired, axis=1)
+
+
+def run_python(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """Run a few lines in a Python of their own, the package found where it is."""
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | environment, cwd=ROOT, capture_output=True, text=True, timeout=300,
+    )  # fmt: skip
+
+
+def _opengl_is_there() -> bool:
+    from iiwa_dnn import offscreen
+
+    return not sys.platform.startswith("linux") or offscreen.egl_works() or offscreen.osmesa_works()
+
+
+needs_opengl = pytest.mark.skipif(
+    not _opengl_is_there(),
+    reason="no OpenGL without a display: on Debian, apt-get install libosmesa6 (or libegl1 libgl1)",
+)

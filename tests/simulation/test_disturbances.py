@@ -1,0 +1,85 @@
+"""Disturbances: what they do, seen from outside, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from iiwa_dnn import InvalidInputError
+from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
+
+
+def test_the_default_is_none_and_typical_is_all_but_the_push():
+    nothing = Disturbances()
+    assert nothing.settings() == {
+        "mass_error": 0.0, "friction": 0.0, "encoder_noise": 0.0, "encoder_bits": 0, "delay": 0,
+        "push": None,
+    }  # fmt: skip
+    np.testing.assert_array_equal(nothing.mass_factors(7, seed=3), np.ones(7))
+    typical = Disturbances.typical()
+    values = typical.settings()
+    assert values.pop("push") is None
+    assert all(value > 0 for value in values.values())
+    assert typical.delay == 1
+    assert typical.mass_error == 0.1
+
+
+def test_every_mass_is_off_by_as_much_and_the_seed_says_which_way():
+    typical = Disturbances.typical()
+    drawn = [typical.mass_factors(7, seed) for seed in range(20)]
+    assert all(np.allclose(np.abs(factors - 1.0), 0.1) for factors in drawn)
+    np.testing.assert_array_equal(drawn[4], typical.mass_factors(7, 4))
+    assert len({tuple(factors) for factors in drawn}) > 10
+
+
+def test_an_encoder_without_faults_returns_a_copy():
+    q = np.linspace(-1.0, 1.0, 7)
+    reading = Encoder(0.0, 0.0, seed=0)(q)
+    np.testing.assert_array_equal(reading, q)
+    reading[0] = 5.0
+    assert q[0] == -1.0
+
+
+def test_encoder_noise_and_rounding():
+    step = Disturbances(encoder_bits=18).encoder_step
+    assert step == pytest.approx(2.0 * np.pi / 262144)
+    q = np.full(7, 0.3)
+    rounded = Encoder(0.0, step, seed=0)(q)
+    np.testing.assert_allclose(rounded / step, np.round(rounded / step), atol=1e-9)
+    assert 0.0 < np.abs(rounded - q).max() <= 0.5 * step
+    noisy = Encoder(1e-3, 0.0, seed=0)
+    readings = np.array([noisy(q) for _ in range(3000)]) - q
+    assert readings.std() == pytest.approx(1e-3, rel=0.03)
+    assert abs(readings.mean()) < 3e-5
+    np.testing.assert_array_equal(Encoder(1e-3, step, 5)(q), Encoder(1e-3, step, 5)(q))
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({"mass_error": 1.0}, "mass_error"),
+        ({"mass_error": -0.1}, "mass_error"),
+        ({"friction": -1.0}, "friction"),
+        ({"encoder_noise": np.inf}, "encoder_noise"),
+        ({"encoder_bits": 60}, "encoder_bits"),
+        ({"encoder_bits": 1.5}, "encoder_bits"),
+        ({"delay": -1}, "delay"),
+    ],
+)
+def test_wrong_disturbances(options, name):
+    with pytest.raises(InvalidInputError, match=name):
+        Disturbances(**options)
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({"force": (1.0, np.nan, 0.0)}, "push"),
+        ({"start": -1.0}, "push_at"),
+        ({"duration": np.inf}, "push_for"),
+    ],
+)
+def test_wrong_pushes(options, name):
+    with pytest.raises(InvalidInputError, match=name):
+        Push(**options)
+    assert Push(start=1.0, duration=0.5).end == 1.5

@@ -1,0 +1,221 @@
+"""The whole loop in MuJoCo: the paper's heart, nominal and disturbed, held to its figures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from helpers_physics import START, distance, heart_in_physics, papers_robot
+from iiwa_dnn import (
+    Configuration,
+    DoubleIndicator,
+    Heart,
+    InvalidInputError,
+    Record,
+    compute_metrics,
+    failures,
+    load_robot,
+)
+from iiwa_dnn.simulation.disturbances import Disturbances, Push
+
+pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+
+TORQUE_LIMITS = np.array([176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0])  # the data sheet's
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return papers_robot()
+
+
+@pytest.fixture(scope="module")
+def nominal(robot) -> Record:
+    return heart_in_physics(robot, ("proxqp",))
+
+
+@pytest.fixture(scope="module")
+def disturbed(robot) -> Record:
+    return heart_in_physics(robot, disturbances=Disturbances.typical(), seed=1)
+
+
+def limits_are_kept(record: Record) -> bool:
+    """Position, velocity and torque limits, from the arrays alone."""
+    speeds = np.radians([98, 98, 100, 130, 140, 180, 180])
+    return bool(
+        (np.abs(record.q) <= 2.5).all()
+        and (np.abs(record.dq) <= speeds).all()
+        and (np.abs(record.torque) < TORQUE_LIMITS).all()
+    )
+
+
+def test_nominal_heart(nominal):
+    assert nominal.steps == 10_000
+    assert nominal.settings["status"] == "completed"
+    assert distance(nominal)[nominal.t >= 0.5].max() <= 1e-4
+    assert limits_are_kept(nominal)
+    metrics = compute_metrics(nominal)
+    assert metrics["crosscheck"]["steps_checked"] == 10_000
+    assert metrics["crosscheck"]["max_solution_gap"] <= 1e-6
+    assert metrics["physics"]["max_torque_share"] < 1.0
+    assert failures(nominal) == []
+
+
+def test_the_record_hangs_together(nominal, robot):
+    dt = nominal.settings["dt"]
+    np.testing.assert_allclose(nominal.q[1:], nominal.q[:-1] + dt * nominal.dq, atol=1e-12)
+    for k in (0, 1234, 10_000):
+        conf = Configuration(robot, nominal.q[k])
+        np.testing.assert_allclose(nominal.position[k], conf.position, atol=1e-12)
+        np.testing.assert_allclose(nominal.rotation[k], conf.rotation, atol=1e-12)
+    # A real arm follows its commands, not exactly and soon.
+    lag = np.abs(nominal.dq - nominal.dq_solver).max()
+    assert 1e-6 < lag < 5e-3
+    np.testing.assert_array_equal(nominal.settings["torque_max"], TORQUE_LIMITS)
+
+
+def test_all_disturbances_but_the_push(disturbed):
+    assert disturbed.settings["status"] == "completed"
+    error = distance(disturbed)
+    assert 2e-5 < error.max() <= 2e-3  # they do disturb
+    assert limits_are_kept(disturbed)
+    assert disturbed.settings["physics"]["disturbances"]["delay"] == 1
+
+
+@pytest.mark.parametrize("force", [(0.0, 10.0, 0.0), (10.0, 0.0, 0.0), (0.0, 0.0, -10.0)])
+def test_back_within_a_second_after_the_push(robot, force):
+    push = Push(force, start=1.0, duration=0.2)
+    disturbances = Disturbances.typical(push)
+    record = heart_in_physics(robot, disturbances=disturbances, duration=2.6)
+    error, t = distance(record), record.t
+    assert error[t >= push.end + 1.0].max() < 1e-3
+    # Pushed, and not only disturbed.
+    quiet = heart_in_physics(robot, disturbances=Disturbances.typical(), duration=1.3)
+    shift = np.linalg.norm(record.position[:1301] - quiet.position, axis=1)
+    assert shift[quiet.t < push.start].max() == 0.0
+    assert shift.max() > 1e-4
+    moved = record.position[1200] - quiet.position[1200]
+    assert moved @ np.array(force) > 0.0
+    assert limits_are_kept(record)
+
+
+def test_the_push_has_the_impulse_that_is_asked_for(robot):
+    """A frozen clock would push for ever; the joints' momentum balance tells."""
+    import mujoco
+
+    from iiwa_dnn.simulation.plant import Plant
+
+    push = Push((3.0, -2.0, 1.0), start=0.01, duration=0.02)
+    plant = Plant(robot, 1e-3, Disturbances(push=push), seed=0)
+    plant.reset(START)
+    jacobian = Configuration(robot, START).jacobian[:3]
+    total = np.zeros(7)
+    for _ in range(60):
+        plant.step(np.zeros(7))
+        total += 1e-3 * plant._data.qfrc_applied
+    np.testing.assert_allclose(total, jacobian.T @ push.force * 0.02, rtol=0.02, atol=1e-3)
+    assert isinstance(plant._data, mujoco.MjData)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_bound_holds_for_other_seeds(robot, seed):
+    record = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=seed, duration=2.5)
+    assert distance(record).max() <= 2e-3
+    assert limits_are_kept(record)
+
+
+def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
+    files = []
+    for name in "ab":
+        record = heart_in_physics(
+            robot, disturbances=Disturbances.typical(Push(start=0.05)), seed=7, duration=0.2
+        )
+        record.save(tmp_path / name)
+        files.append((tmp_path / name).read_bytes())
+    assert files[0] == files[1]
+    other = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=8, duration=0.2)
+    assert not np.array_equal(other.q, record.q)
+
+
+def test_a_run_can_be_repeated_by_one_object(robot):
+    from iiwa_dnn import CrossCheck
+    from iiwa_dnn.simulation.physics import PhysicsSimulation
+
+    heart = Heart().anchored(Configuration(robot, START))
+    simulation = PhysicsSimulation(
+        robot, DoubleIndicator(), heart, START, duration=0.1, check=CrossCheck(()),
+        disturbances=Disturbances.typical(),
+    )  # fmt: skip
+    seen: list[int] = []
+    first, second = simulation.run(seen.append), simulation.run()
+    np.testing.assert_array_equal(first.q, second.q)
+    assert sum(seen) == 100
+
+
+def test_an_unsolvable_step_ends_the_run_there(robot):
+    far = Heart(scale=10.0).anchored(Configuration(robot, START))
+    from iiwa_dnn import CrossCheck
+    from iiwa_dnn.simulation.physics import simulate_physics
+
+    record = simulate_physics(
+        robot, DoubleIndicator(), far, START, duration=5.0, check=CrossCheck(())
+    )
+    assert record.steps < 5000
+    assert "did not settle" in record.settings["status"]
+    assert not record.dq[-1].any()
+    assert failures(record)
+
+
+def test_physics_that_blows_up_is_noticed(robot):
+    from iiwa_dnn.simulation.torque_control import TorqueGains
+
+    record = heart_in_physics(
+        robot, gains=TorqueGains(bandwidth=1e5, observer_bandwidth=1e6), timestep=1e-3,
+        duration=2.0,
+    )  # fmt: skip
+    # Torques are limited, so it need not diverge; but it must not pass for a good run.
+    assert failures(record)
+
+
+def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
+    from iiwa_dnn.simulation.plant import Plant
+
+    step = Plant.step
+
+    def break_once(plant, torque):
+        if 0.1 < plant._data.time < 0.1005:
+            plant._data.qvel[2] = np.nan
+        step(plant, torque)
+
+    monkeypatch.setattr(Plant, "step", break_once)
+    record = heart_in_physics(robot, duration=1.0)
+    assert record.settings["status"] == "stopped at step 100 (t = 0.1 s): the physics diverged"
+    assert record.steps == 101
+    assert np.isfinite(record.q).all()
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({"dt": 0.0}, "dt"),
+        ({"dt": np.nan}, "dt"),
+        ({"duration": -1.0}, "duration"),
+        ({"timestep": 0.0}, "physics_dt"),
+        ({"timestep": 2e-3, "dt": 2e-3}, "at most 0.001 s"),
+        ({"timestep": 3e-4}, "must divide"),
+        ({"timestep": 1e-3, "dt": 1e-4}, "must divide"),
+        ({"seed": -1}, "seed"),
+    ],
+)
+def test_wrong_arguments(robot, options, name):
+    with pytest.raises(InvalidInputError, match=name):
+        heart_in_physics(robot, **options)
+
+
+def test_a_locked_robot_is_refused():
+    robot = load_robot("iiwa7", locked=("iiwa7_joint_7",))
+    from iiwa_dnn.simulation.physics import PhysicsSimulation
+
+    q0 = START[:6]
+    heart = Heart().anchored(Configuration(robot, q0))
+    with pytest.raises(InvalidInputError, match="locked"):
+        PhysicsSimulation(robot, DoubleIndicator(), heart, q0)

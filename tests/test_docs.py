@@ -1,0 +1,106 @@
+"""The documents: their code runs and prints what they say, their links lead somewhere.
+
+A ``python`` block is run, the blocks of one document after each other in one namespace. A ``text``
+block right after one is what it prints, to the letter.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+
+_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
+_TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
+
+
+def blocks(text: str) -> list[tuple[str, str, int, bool]]:
+    """Language, content, line of the content, and whether it comes right after the one before."""
+    found, end = [], 0
+    for match in _FENCE.finditer(text):
+        line = text.count("\n", 0, match.start()) + 2
+        found.append((match[1], match[2], line, not text[end : match.start()].strip()))
+        end = match.end()
+    return found
+
+
+def run_blocks(text: str, name: str) -> int:
+    """Run the Python of a document and compare what it prints; returns how many blocks there were.
+
+    Args:
+        text: The document.
+        name: What a traceback calls it.
+    """
+    namespace: dict[str, object] = {"__name__": "__docs__"}
+    count, printed = 0, ""
+    for language, content, line, follows in blocks(text):
+        if language == "python":
+            # Line numbers of the document, for the traceback.
+            code = compile("\n" * (line - 1) + content, name, "exec")
+            with contextlib.redirect_stdout(io.StringIO()) as output:
+                exec(code, namespace)
+            count, printed = count + 1, output.getvalue()
+        elif language == "text" and follows and count:
+            assert printed == content, f"{name}:{line}: the block above prints otherwise"
+    return count
+
+
+def defined(path: Path) -> set[str]:
+    """Names of the functions in a Python file."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    return {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_the_code_in_the_documents_runs(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
+    count = run_blocks(path.read_text(encoding="utf-8"), path.name)
+    if path.name in ("README.md", "theory.md"):
+        assert count > 0
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_links_and_named_tests_exist(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    for target, _ in _LINK.findall(text):
+        if not target.startswith(("http://", "https://", "mailto:")):
+            assert (path.parent / target).exists(), f"{path.name} links to {target}"
+    for file, name in _TEST.findall(text):
+        assert (ROOT / file).is_file(), f"{path.name} names {file}"
+        assert not name or name in defined(ROOT / file), f"{path.name} names {file}::{name}"
+
+
+def test_every_erratum_has_its_tests_and_every_test_its_erratum() -> None:
+    text = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+    entries = re.split(r"^## (?=\d+\. )", text, flags=re.MULTILINE)[1:]
+    numbers = [int(entry.split(".")[0]) for entry in entries]
+    assert numbers == list(range(1, len(entries) + 1))
+    assert len(entries) >= 8
+    named = [_TEST.findall(entry) for entry in entries]
+    assert all(named), "an entry without a test"
+    tests = {name for name in defined(ROOT / "tests/test_errata.py") if name.startswith("test_")}
+    assert {name for entry in named for file, name in entry if "errata" in file} == tests
+
+
+def test_a_block_that_fails_or_prints_otherwise_is_found() -> None:
+    right = "```python\nx = 2\nprint(x)\n```\n\n```text\n2\n```\n"
+    assert run_blocks(right, "right") == 1
+    later = right + "\n```python\nprint(x + 1)\n```\n\n```text\n3\n```\n"
+    assert run_blocks(later, "later") == 2
+    with pytest.raises(AssertionError, match="wrong:7: the block above prints otherwise"):
+        run_blocks(right.replace("\n2\n", "\n3\n"), "wrong")
+    with pytest.raises(ZeroDivisionError):
+        run_blocks("```python\n1 / 0\n```\n", "broken")
+    # Text that does not follow at once, and other languages, are let be.
+    assert run_blocks("```sh\nexit 1\n```\n\nwords\n\n```text\nany\n```\n", "calm") == 0
+    assert run_blocks(right + "\nwords\n\n```text\nany\n```\n", "apart") == 1

@@ -1,0 +1,159 @@
+"""The statements of docs/theory.md that are marked (T)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from helpers_kinematics import PAPER_Q0
+from helpers_qp import known_qp, network_rates
+from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
+from iiwa_dnn import (
+    QP,
+    Circle,
+    Configuration,
+    DNNSolver,
+    DoubleIndicator,
+    ImplicitEuler,
+    ProjectionNetwork,
+    simulate,
+)
+from iiwa_dnn.metrics import position_error
+
+Array = NDArray[np.float64]
+RHO, DELTA = 9e-5, 10.2
+SO3 = DoubleIndicator(orientation="so3", home=PAPER_Q0)
+
+
+def strong_qp(rng: np.random.Generator, active: int) -> QP:
+    """A program with P above I/2, active bounds and dependent rows."""
+    qp, _ = known_qp(rng, 5, 3, active, dependent=True)
+    root = rng.standard_normal((5, 5))
+    return QP(0.501 * np.eye(5) + root @ root.T, qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
+
+
+@pytest.mark.parametrize("active", [0, 2, 5])
+def test_trajectories_never_come_apart(active: int) -> None:
+    rng = np.random.default_rng(active)
+    worst = -np.inf
+    for _ in range(300):
+        qp = strong_qp(rng, active)
+        size = ProjectionNetwork().state_size(qp)
+        # Near each other as well as far apart, and multipliers of either sign.
+        one = 3.0 * rng.standard_normal(size)
+        step = 10.0 ** rng.uniform(-3, 1) * rng.standard_normal(size)
+        approach = step @ (network_rates(qp, one + step, False) - network_rates(qp, one, False))
+        bound = -step[:5] @ (qp.P - 0.5 * np.eye(5)) @ step[:5]
+        worst = max(worst, (approach - bound) / (step @ step))
+    assert worst < 1e-10
+
+
+def test_below_a_half_they_may() -> None:
+    # One variable, one bound: P = 0.05 and the worst slope that the proof allows for.
+    qp = QP([[0.05]], [0.0], lb=[-1.0], ub=[0.0])
+    step = np.array([1.0, -0.5, 0.5])
+    rest = np.array([-0.5, 0.0, 0.0])
+    approach = step @ (network_rates(qp, rest + step, False) - network_rates(qp, rest, False))
+    assert approach > 0.4
+
+
+def test_without_cost_the_flow_circles() -> None:
+    rng = np.random.default_rng(0)
+    qp = QP(np.zeros((4, 4)), np.zeros(4), A=rng.standard_normal((4, 4)), b=np.zeros(4))
+    for state in rng.standard_normal((20, ProjectionNetwork().state_size(qp))):
+        state[8:] = 0.0  # the multipliers of bounds that are not there
+        rates = network_rates(qp, state, False)
+        assert state @ rates == pytest.approx(0.0, abs=1e-12), "at constant distance"
+        assert np.linalg.norm(rates) > 0.1
+
+
+@pytest.mark.parametrize("weight", [0.2, 0.9])
+def test_the_lag_of_a_continuous_run_follows_from_a_settled_one(weight: float) -> None:
+    scheme, duration = DoubleIndicator(weight, orientation="so3", home=PAPER_Q0), 0.6
+    lagging = simulate(
+        paper_robot(), scheme, heart(), PAPER_Q0,
+        mode="continuous", duration=duration, check=UNCHECKED,
+    )  # fmt: skip
+    settled = simulate(
+        paper_robot(), scheme, heart(), PAPER_Q0,
+        dt=5e-3, duration=duration, motion="midpoint", check=UNCHECKED,
+    )  # fmt: skip
+    solver = DNNSolver()
+    y = np.array([
+        solver.solve(scheme.build_qp(Configuration(paper_robot(), q), heart().at(t))).y[:3]
+        for q, t in zip(settled.q, settled.t, strict=True)
+    ])  # fmt: skip
+    expected = np.zeros((len(y), 3))
+    for k, rate in enumerate(np.gradient(y, settled.t, axis=0)[1:]):
+        still = RHO * rate / DELTA
+        expected[k + 1] = still + (expected[k] - still) * np.exp(-DELTA * 5e-3)
+    found = position_error(lagging)[:: round(5e-3 / 1e-4)]
+    assert np.linalg.norm(found[-1]) > 1e-6
+    assert np.abs(found - expected).max() < 0.04 * np.linalg.norm(found, axis=1).max()
+
+
+@pytest.mark.parametrize("step", [0.1, 50.0])
+def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float) -> None:
+    rng = np.random.default_rng(7)
+    network = ProjectionNetwork(primal_projection=False)
+    for _ in range(5):
+        qp, _ = known_qp(rng, 4, 2, 2)
+        qp = QP(np.zeros((4, 4)), qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)  # even so
+        state = rng.standard_normal(network.state_size(qp))
+        x, y, mu = state[:4], state[4:6], state[6:]
+        omega, chi = qp.bounds_as_inequalities()
+
+        def function(new: Array, qp: QP = qp, x: Array = x, y: Array = y, mu: Array = mu,
+                     omega: Array = omega, chi: Array = chi) -> float:  # fmt: skip
+            w = omega @ new - chi
+            corner = -mu / (1.0 + step)  # where the two slopes of phi meet
+            slope = mu / (1.0 + step)
+            beyond = np.maximum(w - corner, 0.0)
+            phi = slope * w + 0.5 * step * beyond**2
+            distance = np.sum((new - x) ** 2) + np.sum((y + step * (qp.A @ new - qp.b)) ** 2)
+            return float(distance / (2.0 * step) + qp.q @ new + phi.sum())
+
+        # Strongly convex along any chord, with modulus 1/h.
+        for a, b in rng.standard_normal((50, 2, 4)):
+            sag = 0.5 * (function(a) + function(b)) - function(0.5 * (a + b))
+            assert sag >= np.sum((a - b) ** 2) / (8.0 * step) - 1e-9
+        new = state.copy()
+        ImplicitEuler(step=step).advance(network, qp, new, step)
+        residual = new - state - step * network_rates(qp, new, False)
+        assert np.abs(residual).max() < 1e-7 * max(1.0, step)
+        best = minimize(function, x, method="BFGS", options={"gtol": 1e-9})
+        assert function(new[:4]) <= best.fun + 1e-9
+        np.testing.assert_allclose(new[:4], best.x, atol=1e-4)
+
+
+def test_the_mean_square_that_noise_leaves() -> None:
+    sigma, dt = 0.01, 1e-3
+    target = Circle(radius=1e-9, period=10.0).anchored(paper_start())  # as good as standing still
+    errors = [
+        position_error(
+            simulate(
+                paper_robot(), SO3, target, PAPER_Q0,
+                dt=dt, duration=8.0, noise=sigma, seed=seed, check=UNCHECKED,
+            )
+        )[500:]
+        for seed in range(4)
+    ]  # fmt: skip
+    square = np.sum(paper_start().jacobian[:3] ** 2)
+    expected = square / 3.0 * sigma**2 * dt / (2.0 * DELTA)
+    # 30 s at 10 rad/s in three axes: some 450 independent samples of a square, 7 %.
+    assert np.mean(np.concatenate(errors) ** 2) == pytest.approx(expected, rel=0.2)
+
+
+def test_the_filter_delays_and_that_is_nine_of_eulers_errors() -> None:
+    def largest(window: int) -> float:
+        record = simulate(
+            paper_robot(), SO3, heart(), PAPER_Q0,
+            dt=1e-3, duration=5.0, filter_window=window, check=UNCHECKED,
+        )  # fmt: skip
+        return float(np.linalg.norm(position_error(record), axis=1).max())
+
+    plain, filtered = largest(1), largest(10)
+    # Ten samples are late by four and a half steps, Euler's method by half a step of its own.
+    assert filtered / plain == pytest.approx((4.5 + 0.5) / 0.5, rel=0.05)
