@@ -26,7 +26,7 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import ctypes, sys; sys.platform == "linux" and ctypes.CDLL("libgomp.so.1")' 2>/dev/null || \
 		{ echo 'setup: the OpenMP library that Pinocchio and ProxQP load is missing; on Debian and Ubuntu: apt-get install libgomp1' >&2; exit 1; }
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
-	@echo 'setup: installing into $(VENV), 1.6 GB on disk in the end; the first time takes some minutes'
+	@echo 'setup: installing into $(VENV), 2 GB on disk in the end; the first time takes some minutes'
 	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,sim,view,dev]'
 	@touch $@
 

@@ -19,9 +19,11 @@ from iiwa_dnn.experiments import ablation, paper, table1, table2
 from iiwa_dnn.experiments.runs import HeartRun, measure
 from iiwa_dnn.experiments.scope import FULL, QUICK, Scope
 from iiwa_dnn.files import prepare_folder, write_json
+from iiwa_dnn.paper_findings import findings
 from iiwa_dnn.paper_plots import save_paper_figures
-from iiwa_dnn.paper_report import findings, write_paper_report
-from iiwa_dnn.sweeps import Sweep, fingerprint
+from iiwa_dnn.paper_report import write_paper_report
+from iiwa_dnn.provenance import fingerprint
+from iiwa_dnn.sweeps import Sweep
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import write_text
+from iiwa_dnn.paper_findings import MEASURES, change_in_words, findings, short
 from iiwa_dnn.report import markdown_table
 
 Table = Mapping[str, Any]
@@ -26,12 +27,10 @@ _ROWS = {
     "total_variation_rad_s": "total variation of q̇ [rad/s]",
     "max_kkt_residual": "MAX KKT residual",
 }
-_MEASURES = {"max_position_error_m": "MAX E", "mse_position_error_m2": "MSE"}
 _TABLE2_HEAD = (
     "case", "MAX E [m], paper", "ours", "ours / paper's",
     "MSE [m²], paper", "ours", "ours / paper's",
 )  # fmt: skip
-_WAYS = {"lowers": "lowered", "raises": "raised", "no effect shown": "no effect shown"}
 _CAPTIONS = {
     "fig1": "The paper's Fig. 1: path, joint angles, joint velocities and position error, with "
     "noise and filter.",
@@ -47,6 +46,8 @@ _LIMITS = """\
   to be stable, the state carried from step to step; the ablation tries others.
 - Its noise amplitude 0.01 has no unit: taken as the standard deviation, in rad/s on the commanded
   velocity or on the network's x, in rad on the measured angle.
+- Rows of the ablation that are not stable are chaotic: their digits depend on the last bit of every
+  sum, and so on the versions and the machine.
 - Four cells of its drift row cannot be read; verdicts are on the other three.
 - A verdict: *reproduced* if all numbers are within a factor 2 of the paper's, else *same trend* if
   they go the same way, else *not reproduced*. A change (filter, noise) must also have an interval
@@ -100,68 +101,6 @@ def write_paper_report(
     return path
 
 
-def findings(tables: Mapping[str, Table]) -> list[str]:
-    """What the tables say, in sentences made from their numbers and verdicts."""
-    table1, table2, ablation = (tables[name] for name in ("table1", "table2", "ablation"))
-    lines = []
-    for name, variant in table1["variants"].items():
-        drift = variant["verdicts"]["joint_drift_rad"]
-        lines.append(
-            f"Table I, {name}: drift {drift['our_trend']} with ξ (paper: {drift['paper_trend']}), "
-            f"MAX E {variant['verdicts']['max_position_error_m']['our_trend']} "
-            f"(paper: {variant['verdicts']['max_position_error_m']['paper_trend']})."
-        )
-    for mode, entries in table2["modes"].items():
-        for entry, measures in entries.items():
-            said = [
-                f"{_MEASURES[key]} {_change(measures[key]['changes']['filter, with noise'])}"
-                for key in _MEASURES
-            ]
-            lines.append(f"Filter under noise at {entry}, {mode}: {', '.join(said)}.")
-    lines.append(_claim(table2))
-    closest, stable = ablation["closest_to_the_papers_drift"], ablation["closest_stable"]
-    lines.append(
-        f"Closest to the paper's drift of {_short(ablation['paper']['joint_drift_rad'])} rad: "
-        f"{_choice(closest)}, {_short(closest['joint_drift_rad'])} rad; this choice is "
-        f"{'stable' if closest['stable'] else 'not stable'}: {_growth(closest)}, MAX E "
-        f"{_short(closest['max_position_error_m'])} m. The closest stable one: {_choice(stable)}, "
-        f"{_short(stable['joint_drift_rad'])} rad."
-    )
-    return lines
-
-
-def _claim(table: Table) -> str:
-    """What the comparisons of Table II say, together, of the claim that the filter helps."""
-    found = [
-        entries[entry][key]["changes"]["filter, with noise"]
-        for entries in table["modes"].values()
-        for entry in entries
-        for key in _MEASURES
-    ]
-    counts = {way: sum(change["our_trend"] == way for change in found) for way in _WAYS}
-    said = ", ".join(f"{word} in {counts[way]}" for way, word in _WAYS.items())
-    best = 100.0 * max(-min(change["mean"] for change in found), 0.0)
-    papers = [changes["filter, with noise"] for changes in table["paper_changes"].values()]
-    return (
-        f"The paper's claim that the filter lowers the error under noise, in {len(found)} "
-        f"comparisons over {table['scope']['seeds']} seeds: {said}; the most it took off a mean is "
-        f"{best:.2f} %, against {-100.0 * min(papers):.1f} % in the paper."
-    )
-
-
-def _change(change: Mapping[str, Any]) -> str:
-    """A relative change in words and per cent."""
-    word = _WAYS[change["our_trend"]]
-    mean, low, high = (change[key] for key in ("mean", "low", "high"))
-    if mean > 1.0:  # a percentage of thousands says less than a factor
-        size = f"× {1.0 + mean:.3g}"
-    else:
-        size = f"{100.0 * mean:+.2f} %"
-        if change["samples"] > 1:
-            size += f" [{100.0 * low:+.2f}, {100.0 * high:+.2f}]"
-    return f"{word}, {size}: {change['verdict']}"
-
-
 def _variants(table1: Table, table2: Table) -> list[str]:
     return list(dict.fromkeys([*table1["variants"], *table2["modes"]]))
 
@@ -176,7 +115,7 @@ def _verdicts(table1: Table, table2: Table) -> list[list[str]]:
         rows.append([f"Table I, {_ROWS[key]}", *cells])
     entries = next(iter(table2["modes"].values()))
     for entry in entries:
-        for key, label in _MEASURES.items():
+        for key, label in MEASURES.items():
             cells = [
                 _of(table2["modes"].get(name), entry, key, "verdict", "verdict") for name in names
             ]
@@ -199,17 +138,15 @@ def _of(table: Any, *path: str) -> str:
 
 def _table1(table: Table) -> list[str]:
     head = ("", *(f"ξ = {weight:g}" for weight in table["weights"]))
-    rows = [
-        [f"paper: {_ROWS[key]}", *map(_short, values)] for key, values in table["paper"].items()
-    ]
+    rows = [[f"paper: {_ROWS[key]}", *map(short, values)] for key, values in table["paper"].items()]
     parts = ["### The paper's", markdown_table(head, rows)]
     for name, variant in table["variants"].items():
         rows = []
         for key, label in _ROWS.items():
-            rows.append([label, *map(_short, variant["rows"][key])])
+            rows.append([label, *map(short, variant["rows"][key])])
             if key in variant["verdicts"]:
                 ratios = variant["verdicts"][key]["ours_over_paper"]
-                rows.append(["ours / paper's", *map(_short, ratios)])
+                rows.append(["ours / paper's", *map(short, ratios)])
         parts += [f"### {name}", markdown_table(head, rows)]
     return parts
 
@@ -217,7 +154,7 @@ def _table1(table: Table) -> list[str]:
 def _laps(table: Table) -> str:
     laps = max(len(run["lap_drift_rad"]) for run in table["laps"].values())
     head = ("MAX |q − q(0)| [rad] after lap", *(str(lap + 1) for lap in range(laps)))
-    rows = [[name, *map(_short, run["lap_drift_rad"])] for name, run in table["laps"].items()]
+    rows = [[name, *map(short, run["lap_drift_rad"])] for name, run in table["laps"].items()]
     return markdown_table(head, rows)
 
 
@@ -230,25 +167,30 @@ def _table2(table: Table) -> list[str]:
                 [case]
                 + [
                     text
-                    for key in _MEASURES
+                    for key in MEASURES
                     for text in (
-                        _short(table["paper"][key][i]),
+                        short(table["paper"][key][i]),
                         _interval(measures[key]["cases"][i]),
-                        _short(measures[key]["verdict"]["ours_over_paper"][i]),
+                        short(measures[key]["verdict"]["ours_over_paper"][i]),
                     )
                 ]
                 for i, case in enumerate(cases)
             ]
             parts += [f"### {mode}; noise at {entry}", markdown_table(_TABLE2_HEAD, rows)]
             rows = [
-                [_MEASURES[key], change, f"{100.0 * changes[key][change]:+.1f} %", _change(ours)]
-                for key in _MEASURES
+                [
+                    MEASURES[key],
+                    change,
+                    f"{100.0 * changes[key][change]:+.1f} %",
+                    change_in_words(ours),
+                ]
+                for key in MEASURES
                 for change, ours in measures[key]["changes"].items()
             ]
             parts.append(markdown_table(("", "effect of", "paper", "ours [95 %]: verdict"), rows))
             pairs = ", ".join(
                 f"{label} {_interval(measures[key]['difference'])}"
-                for key, label in _MEASURES.items()
+                for key, label in MEASURES.items()
             )
             said = f"Filter minus no filter, seed by seed: {pairs}."
             theory = measures["theory_noise_mse_m2"]
@@ -257,8 +199,8 @@ def _table2(table: Table) -> list[str]:
                     measures["mse_position_error_m2"]["cases"][i]["mean"] for i in (0, 2)
                 )
                 said += (
-                    f" MSE that noise adds without filter: {_short(noisy - quiet)} m²; from "
-                    f"σ²Δt/2δ, {_short(theory)} m²."
+                    f" MSE that noise adds without filter: {short(noisy - quiet)} m²; from "
+                    f"σ²Δt/2δ, {short(theory)} m²."
                 )
             parts.append(said)
     return parts
@@ -280,7 +222,7 @@ def _ablation(table: Table) -> str:
             row["noise_at"],
             str(row["substeps"]),
             "yes" if row["stable"] else "no",
-            *(_short(row[key]) for key in columns if key != "amplification"),
+            *(short(row[key]) for key in columns if key != "amplification"),
             "–" if row["amplification"] is None else f"{row['amplification']:.4f}",
         ]
         for row in table["rows"]
@@ -288,24 +230,8 @@ def _ablation(table: Table) -> str:
     return markdown_table(head, rows)
 
 
-def _choice(row: Mapping[str, Any]) -> str:
-    how = "implicit" if row["substeps"] == "implicit" else f"{row['substeps']} explicit sub-steps"
-    return f"{how}, {row['orientation']}, noise at {row['noise_at']}"
-
-
-def _growth(row: Mapping[str, Any]) -> str:
-    growth = row["amplification"]
-    return (
-        "implicit steps damp" if growth is None else f"a sub-step multiplies errors by {growth:.2f}"
-    )
-
-
-def _short(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3g}"
-
-
 def _interval(estimate: Mapping[str, Any]) -> str:
     """A mean with the ends of its interval; an exact value alone."""
     if estimate["samples"] == 1:
-        return _short(estimate["mean"])
+        return short(estimate["mean"])
     return f"{estimate['mean']:.4g} [{estimate['low']:.4g}, {estimate['high']:.4g}]"

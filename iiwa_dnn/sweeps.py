@@ -2,9 +2,9 @@
 
 A cell is one setting of a task, in JSON types. What a finished cell came to is one file, named by
 the hash of its settings and of all else that the numbers depend on: the versions of the packages,
-the source of the task with what it imports of this one, the robots' URDFs. A sweep that was killed,
-even by ``kill -9``, finds the finished cells the next time and computes the others; after any
-change there are new cells, and old ones are never taken for them. Only the process that asked
+the source of the task with what it imports of this package, the robots' URDFs. A sweep that was
+killed, even by ``kill -9``, finds the finished cells the next time and computes the others; after
+any change there are new cells, and old ones are never taken for them. Only the process that asked
 writes files, each atomically.
 
 The answers come in the order of the cells, whatever the number of workers, and each worker keeps
@@ -13,15 +13,11 @@ to one thread, so the same cells give the same numbers on one machine.
 
 from __future__ import annotations
 
-import ast
 import hashlib
-import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +26,11 @@ from tqdm import tqdm
 
 from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, plain, prepare_folder, write_json
+from iiwa_dnn.provenance import fingerprint
 from iiwa_dnn.record import Record
-from iiwa_dnn.robot import available_robots, load_robot
 
 Settings = Mapping[str, Any]
 
-_PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
 _PATIENCE = 10.0  # how long to look for a scheduler [s]
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -167,51 +162,6 @@ class Sweep:
             # One cell a message: a finished one is written at once.
             parallel = joblib.Parallel(batch_size=1, return_as="generator_unordered")
             yield from parallel(calls)
-
-
-@cache
-def fingerprint(task: Task) -> dict[str, Any]:
-    """What a task's numbers depend on besides its settings: package versions, source and URDFs."""
-    digest = hashlib.sha256()
-    for path in sources(Path(inspect.getfile(task))):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    for robot in available_robots():
-        urdf = load_robot(robot).path
-        digest.update(b"" if urdf is None else urdf.read_bytes())
-    versions = {name: version(name) for name in _PACKAGES}
-    return {"versions": versions, "source": digest.hexdigest()[:24]}
-
-
-def sources(start: Path) -> list[Path]:
-    """A Python file and all modules of this package that it imports, directly or not.
-
-    Read from the source, so that it does not matter what else the process has imported. The
-    package's own ``__init__`` is left out: it hands names on and computes nothing.
-    """
-    found, todo = {start}, [start]
-    while todo:
-        for node in ast.walk(ast.parse(todo.pop().read_bytes())):
-            names: list[str] = []
-            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
-                names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-            elif isinstance(node, ast.Import):
-                names = [alias.name for alias in node.names]
-            new = {path for name in names for path in _files(name)} - found
-            found |= new
-            todo += new
-    return sorted(found)
-
-
-def _files(module: str) -> Iterator[Path]:
-    """The files of a module of this package and of the packages it lies in."""
-    root, *parts = module.split(".")
-    if root != "iiwa_dnn":
-        return
-    for depth in range(1, len(parts) + 1):
-        base = Path(__file__).parent.joinpath(*parts[:depth])
-        for path in (base.with_suffix(".py"), base / "__init__.py"):
-            if path.is_file():
-                yield path
 
 
 def _compute(

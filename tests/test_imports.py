@@ -36,6 +36,7 @@ ORDER = (
     "metrics",
     "statistics",
     "simulation",
+    "provenance",
     "sweeps",
     "experiments",
     "decimation",
@@ -43,6 +44,7 @@ ORDER = (
     "plots",
     "paper_plots",
     "report",
+    "paper_findings",
     "paper_report",
     "rendering",
     "pictures",
@@ -58,7 +60,7 @@ ORDER = (
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
 AFTER_THE_RECORD = {
-    "decimation", "panels", "plots", "paper_plots", "report", "paper_report",
+    "decimation", "panels", "plots", "paper_plots", "report", "paper_findings", "paper_report",
     "rendering", "pictures", "viewer",
 }  # fmt: skip
 BEFORE_THEM = {"exceptions", "checks", "files", "record", "torques", "metrics", "statistics"}

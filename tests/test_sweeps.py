@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from helpers_sweeps import cells, draw
-from iiwa_dnn import sweeps
+from iiwa_dnn import provenance, sweeps
 from iiwa_dnn.exceptions import FileError, IiwaDnnError, InvalidInputError
 from iiwa_dnn.experiments.runs import HeartRun, measure
 from iiwa_dnn.sweeps import Outcome, Sweep
@@ -195,7 +195,7 @@ def test_a_scheduler_is_found_by_its_address(tmp_path: Path, log: Path) -> None:
 
 def test_the_source_of_a_run_is_what_a_run_imports() -> None:
     package = Path(sweeps.__file__).parent
-    found = sweeps.sources(Path(inspect.getfile(measure)))
+    found = provenance.sources(Path(inspect.getfile(measure)))
     names = {"/".join(path.relative_to(package).with_suffix("").parts) for path in found}
     # Read from the source, it holds all that a fresh process has loaded after the import, but for
     # what the package's own __init__ brings in.
@@ -224,9 +224,10 @@ def test_a_changed_import_changes_the_source(
         "other.py": "",
     }.items():
         (package / name).write_text(text, encoding="utf-8")
-    monkeypatch.setattr(sweeps, "__file__", str(package / "sweeps.py"))
-    found = [path.relative_to(package).as_posix() for path in sweeps.sources(package / "task.py")]
-    assert found == ["deep/__init__.py", "deep/three.py", "deep/two.py", "one.py", "task.py"]
+    monkeypatch.setattr(provenance, "__file__", str(package / "provenance.py"))
+    found = provenance.sources(package / "task.py")
+    names = [path.relative_to(package).as_posix() for path in found]
+    assert names == ["deep/__init__.py", "deep/three.py", "deep/two.py", "one.py", "task.py"]
 
 
 def test_one_bar_for_the_whole_sweep(

@@ -47,7 +47,8 @@ class Heart(Reference):
         """See :meth:`Reference.displacement`."""
         p = phase(t, self.period)
         y = 13 * np.cos(p) - 5 * np.cos(2 * p) - 2 * np.cos(3 * p) - np.cos(4 * p) - 5
-        return self.scale * np.concatenate((16 * np.sin(p) ** 3, y, 0 * p), axis=-1)
+        path: NDArray[np.float64] = np.concatenate((16 * np.sin(p) ** 3, y, 0 * p), axis=-1)
+        return self.scale * path
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """See :meth:`Reference.velocity`."""
@@ -55,4 +56,5 @@ class Heart(Reference):
         x = 48 * np.sin(p) ** 2 * np.cos(p)
         y = -13 * np.sin(p) + 10 * np.sin(2 * p) + 6 * np.sin(3 * p) + 4 * np.sin(4 * p)
         rate = 2 * np.pi / self.period
-        return rate * self.scale * np.concatenate((x, y, 0 * p), axis=-1)
+        path: NDArray[np.float64] = np.concatenate((x, y, 0 * p), axis=-1)
+        return rate * self.scale * path

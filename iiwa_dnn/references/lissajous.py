@@ -59,7 +59,8 @@ class Lissajous(Reference):
         """See :meth:`Reference.velocity`."""
         amplitudes, turns, phases = self._parameters()
         rates = (2.0 * np.pi / self.period) * turns
-        return amplitudes * rates * np.cos(turns * phase(t, self.period) + phases)
+        moved: NDArray[np.float64] = np.cos(turns * phase(t, self.period) + phases)
+        return amplitudes * rates * moved
 
     def _parameters(self) -> list[NDArray[np.float64]]:
         """Amplitudes, turns and phases, each of shape (3,)."""
