@@ -134,6 +134,8 @@ class Sweep:
             if content["identity"] != self._identity(cell):
                 return None
             values: dict[str, Any] = content["values"]
+            if content["record"] and not (self.folder / f"{name}.npz").is_file():
+                return None
         except (OSError, ValueError, KeyError, TypeError):
             return None
         return values
@@ -143,7 +145,8 @@ class Sweep:
         values: dict[str, Any] = plain(outcome.values)
         if outcome.record is not None:
             outcome.record.save(self.folder / f"{name}.npz")
-        content = {"identity": self._identity(cell), "values": values}
+        kept = outcome.record is not None
+        content = {"identity": self._identity(cell), "record": kept, "values": values}
         write_json(self.folder / f"{name}.json", content)
         return values
 

@@ -108,6 +108,10 @@ def test_a_kept_record_is_found_again(tmp_path: Path, log: Path) -> None:
     np.testing.assert_array_equal(sweep.record(kept).q, first)
     with pytest.raises(FileError):
         sweep.record(plain)
+    (sweep.folder / f"{sweep.name(kept)}.npz").unlink()
+    sweep.run([plain, kept], workers=1)
+    assert computed(log) == [0, 0, 0], "without its record a cell is not finished"
+    np.testing.assert_array_equal(sweep.record(kept).q, first)
 
 
 @pytest.mark.parametrize("how", [{"workers": 2}, {"workers": 2, "dask": "local"}])

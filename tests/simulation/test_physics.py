@@ -116,6 +116,21 @@ def test_the_push_has_the_impulse_that_is_asked_for(robot):
     assert isinstance(plant._data, mujoco.MjData)
 
 
+def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
+    def lag(record: Record) -> int:
+        """Steps by which the arm's velocity follows the network's."""
+        steps = record.steps
+        misfits = [
+            np.abs(record.dq[shift:] - record.dq_solver[: steps - shift]).max()
+            for shift in range(15)
+        ]
+        return int(np.argmin(misfits))
+
+    prompt = heart_in_physics(robot, duration=1.0)
+    late = heart_in_physics(robot, duration=1.0, disturbances=Disturbances(delay=7))
+    assert lag(late) == lag(prompt) + 7
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_the_bound_holds_for_other_seeds(robot, seed):
     record = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=seed, duration=2.5)
