@@ -114,10 +114,10 @@ class DNNSolver:
         self._state = self.network.initial_state(qp)
 
     def _failed(self, residuals: float) -> Status:
-        if math.isfinite(residuals):
-            return Status.NOT_SETTLED
-        self.reset()  # a state that is not a number would spoil every later call
-        return Status.NOT_FINITE
+        # On a program without a solution the multipliers grow without bound, or are no numbers
+        # any more; carried on, they would spoil every later call.
+        self.reset()
+        return Status.NOT_SETTLED if math.isfinite(residuals) else Status.NOT_FINITE
 
 
 def solve_problem(

@@ -132,6 +132,18 @@ def test_a_state_that_is_not_a_number_is_reported_and_forgotten() -> None:
     assert np.abs(after.x - x).max() < 1e-6
 
 
+def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
+    good, x = known_qp(np.random.default_rng(11), 4, 2, 1)
+    rows = np.vstack([good.A[:1], good.A[:1]])
+    bad = QP(good.P, good.q, A=rows, b=[0.0, 1.0], lb=good.lb, ub=good.ub)
+    solver = DNNSolver()
+    for _ in range(3):
+        assert solver.solve(bad).status is Status.NOT_SETTLED
+        after = solver.solve(good)
+        assert after.found
+        assert np.abs(after.x - x).max() < 1e-6
+
+
 @pytest.mark.parametrize("tol", [0.0, -1.0, float("nan"), float("inf")])
 def test_tolerance_must_be_positive(tol: float) -> None:
     with pytest.raises(InvalidInputError, match="tol"):
