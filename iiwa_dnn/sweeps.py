@@ -163,7 +163,7 @@ class Sweep:
         count = min(workers or joblib.cpu_count(), len(todo))
         with _backend(count, dask):
             # One cell a message: a finished one is written at once.
-            # max_nbytes: no files in shared memory, which a killed sweep would leave behind.
+            # max_nbytes: no arrays in shared memory, which a killed sweep would leave behind.
             parallel = joblib.Parallel(
                 batch_size=1, return_as="generator_unordered", max_nbytes=None
             )
