@@ -68,3 +68,10 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDA
         raise InvalidInputError(argument, "must be finite", value)
     array.setflags(write=False)
     return array
+
+
+def read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A view of `array` that cannot be written into."""
+    view = array[...]
+    view.setflags(False)  # write=False: by position it takes half the time
+    return view

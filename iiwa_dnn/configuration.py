@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.robot import Robot
 
 _WORLD_AXES = pin.LOCAL_WORLD_ALIGNED
+_jacobian, _place_tip = pin.computeFrameJacobian, pin.updateFramePlacement
 
 
 class Configuration:
     """Joint positions of a robot, with the pose and the Jacobian of its tip up to date.
 
-    Every array is a read-only copy: what a configuration says stays true, whatever becomes of
+    Every array is a copy, and read-only: what a configuration says stays true, whatever becomes of
     ``q`` and ``data`` afterwards. Positions outside the joint limits are accepted.
+
+    Attributes:
+        arrays: ``(q, pose, jacobian)`` as compiled code takes them. They are not protected, since
+            numba takes a protected array five times as slowly; do not write into them.
 
     Args:
         robot: The robot.
@@ -31,24 +35,35 @@ class Configuration:
     """
 
     # Built at every control step, so: slots, and no numpy call that is not needed.
-    __slots__ = ("_data", "_inertia", "_jacobian", "_pose", "_q", "_robot")
-    _jacobian: NDArray[np.float64]
-    _pose: NDArray[np.float64]
+    __slots__ = ("_data", "_inertia", "_robot", "arrays")
+    arrays: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
-        self._q = q = _joint_vector(q, robot.q_lower.shape)
+        self._place(robot, _joint_vector(q, robot.q_lower.shape), data)
+
+    @classmethod
+    def from_checked(
+        cls, robot: Robot, q: NDArray[np.float64], data: pin.Data | None = None
+    ) -> Configuration:
+        """A configuration over an existing array ``q`` (n,), which is neither copied nor checked.
+
+        For a loop that computes ``q`` itself and does not write into it again.
+        """
+        conf = cls.__new__(cls)
+        conf._place(robot, q, data)
+        return conf
+
+    def _place(self, robot: Robot, q: NDArray[np.float64], data: pin.Data | None) -> None:
         self._robot = robot
         self._data = data
         self._inertia: NDArray[np.float64] | None = None
         model, tip_id = robot.model, robot.tip_id
         if data is None:
             data = model.createData()
-        # Both are new arrays, not views of the scratch memory.
-        self._jacobian = pin.computeFrameJacobian(model, data, q, tip_id, _WORLD_AXES)
-        # The call above has placed the joints, so this one need not run over the chain again.
-        self._pose = pin.updateFramePlacement(model, data, tip_id).homogeneous
-        self._jacobian.setflags(write=False)
-        self._pose.setflags(write=False)
+        # Both results are new arrays, not views of the scratch memory. The first call has placed
+        # the joints, so the second need not run over the chain again.
+        jacobian = _jacobian(model, data, q, tip_id, _WORLD_AXES)
+        self.arrays = (q, _place_tip(model, data, tip_id).homogeneous, jacobian)
 
     @property
     def robot(self) -> Robot:
@@ -58,22 +73,22 @@ class Configuration:
     @property
     def q(self) -> NDArray[np.float64]:
         """Joint positions [rad], shape (n,)."""
-        return self._q
+        return checks.read_only(self.arrays[0])
 
     @property
     def pose(self) -> NDArray[np.float64]:
         """Pose of the tip in the world as a homogeneous matrix, shape (4, 4)."""
-        return self._pose
+        return checks.read_only(self.arrays[1])
 
     @property
     def position(self) -> NDArray[np.float64]:
         """Position of the tip in the world [m], shape (3,)."""
-        return self._pose[:3, 3]
+        return checks.read_only(self.arrays[1][:3, 3])
 
     @property
     def rotation(self) -> NDArray[np.float64]:
         """Orientation of the tip, shape (3, 3): columns are the tip's axes in the world."""
-        return self._pose[:3, :3]
+        return checks.read_only(self.arrays[1][:3, :3])
 
     @property
     def jacobian(self) -> NDArray[np.float64]:
@@ -82,7 +97,7 @@ class Configuration:
         Rows 0 to 2 are [m/rad], rows 3 to 5 [rad/rad], along the world's axes, at the tip's origin
         (Pinocchio's LOCAL_WORLD_ALIGNED).
         """
-        return self._jacobian
+        return checks.read_only(self.arrays[2])
 
     @property
     def inertia(self) -> NDArray[np.float64]:
@@ -94,30 +109,26 @@ class Configuration:
         if self._inertia is None:
             model = self._robot.model
             data = model.createData() if self._data is None else self._data
-            self._inertia = inertia = pin.crba(model, data, self._q)  # a copy of data's
-            inertia.setflags(write=False)
-        return self._inertia
+            self._inertia = pin.crba(model, data, self.arrays[0])  # a copy of data's
+        return checks.read_only(self._inertia)
 
     def __repr__(self) -> str:
-        q = np.array2string(self._q, precision=4, separator=", ")
+        q = np.array2string(self.arrays[0], precision=4, separator=", ")
         return f"<Configuration of {self._robot.name}: q = {q} rad>"
 
     def __reduce__(self) -> tuple[object, ...]:
         # Cheaper to compute again than to carry, and the scratch memory stays behind.
-        return Configuration, (self._robot, self._q)
+        return Configuration, (self._robot, self.arrays[0])
 
 
 def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """A checked, read-only copy of joint positions."""
+    """A checked copy of joint positions."""
     try:
         vector = np.array(q, np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError("q", "must be numbers", q) from error
     if vector.shape != shape:
         raise InvalidInputError("q", f"must have shape {shape}, not {vector.shape}", q)
-    # A sum of floats is finite unless one of them is not, or they overflow: the quick test errs on
-    # one side only, and np.isfinite decides.
-    if not isfinite(sum(vector.tolist())) and not np.isfinite(vector).all():
+    if not np.isfinite(vector).all():
         raise InvalidInputError("q", "must be finite", q)
-    vector.setflags(write=False)
     return vector

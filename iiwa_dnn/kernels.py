@@ -172,6 +172,34 @@ def velocity_bounds(q, limits, gain, lb, ub):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
+def move(q, dq, k, velocity, dt):
+    """Write the velocity (n,) into row k of dq, and where it leads within dt into row k + 1 of q."""
+    for i in range(velocity.size):
+        dq[k, i] = velocity[i]
+        q[k + 1, i] = q[k, i] + dt * velocity[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def window_mean(samples, count, sample):
+    """Put the sample (n,) that comes after `count` others into the ring `samples` (window, n).
+
+    Returns:
+        The mean of the window, (n,), or of the samples that there are.
+    """
+    window, n = samples.shape
+    samples[count % window] = sample
+    filled = min(count + 1, window)
+    mean = np.zeros(n)
+    # A running sum would be quicker and would drift by its rounding.
+    for k in range(filled):
+        for i in range(n):
+            mean[i] += samples[k, i]
+    for i in range(n):
+        mean[i] /= filled
+    return mean
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def velocity_program(
     data, p, mode, q, pose, jacobian, target, limits, home, kinetic, parameters
 ):  # fmt: skip
@@ -248,6 +276,68 @@ def field(data, n, m, p, project, s, rates, active):
         rates[at_z + j] = rate
         largest = larger(largest, abs(rate))
     return largest
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def extreme_eigenvalues(K, n):
+    """Smallest and largest eigenvalue of the symmetric K (n n), which is overwritten.
+
+    Cyclic Jacobi rotations (G. H. Golub, C. F. Van Loan, "Matrix Computations", section 8.5): a
+    call of LAPACK costs more than all of them for seven joints.
+    """
+    for _ in range(50):
+        off, size = 0.0, 0.0
+        for i in range(n):
+            size += K[i * n + i] * K[i * n + i]
+            for k in range(i):
+                off += K[i * n + k] * K[i * n + k]
+        # Second order: an off-diagonal of eps moves an eigenvalue by eps^2 over their distance.
+        if not off > 1e-26 * (size + off):
+            break
+        for i in range(1, n):
+            for k in range(i):
+                below = K[i * n + k]
+                if below == 0.0:
+                    continue
+                theta = 0.5 * (K[i * n + i] - K[k * n + k]) / below
+                t = 1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0))
+                if theta < 0.0:
+                    t = -t
+                c = 1.0 / np.sqrt(t * t + 1.0)
+                s = t * c
+                K[i * n + i] += t * below
+                K[k * n + k] -= t * below
+                K[i * n + k] = K[k * n + i] = 0.0
+                for j in range(n):
+                    if j != i and j != k:
+                        one, other = K[k * n + j], K[i * n + j]
+                        K[k * n + j] = K[j * n + k] = c * one - s * other
+                        K[i * n + j] = K[j * n + i] = s * one + c * other
+    smallest, largest = K[0], K[0]
+    for i in range(1, n):
+        smallest, largest = min(smallest, K[i * n + i]), larger(largest, K[i * n + i])
+    return smallest, largest
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def stable_step(data, n, m, p, active):
+    """The bound of `iiwa_dnn.networks.ProjectionNetwork.stable_step` for an active set."""
+    _, at_G, at_A, _ = offsets(n, m, p)
+    K = np.zeros(n * n)
+    for j in range(p + m):
+        row = at_A + j * n if j < p else at_G + (j - p) * n
+        if j < p or active[j - p] != 0.0:
+            for i in range(n):
+                for k in range(n):
+                    K[i * n + k] += data[row + i] * data[row + k]
+    for i in range(n):
+        K[i * n + i] += active[m + i] + active[m + n + i]
+    _, coupling = extreme_eigenvalues(K, n)
+    K[:] = data[: n * n]
+    smallest, largest = extreme_eigenvalues(K, n)
+    # Passive multipliers and clipped variables decay at rate one: never more than 2.
+    bound = 2.0 / max(largest, 1.0)
+    return min(bound, max(smallest, 0.0) / coupling) if coupling > 0.0 else bound
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

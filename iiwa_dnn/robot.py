@@ -32,7 +32,8 @@ class Robot:
         locked: Names of the URDF's joints that were frozen on loading.
         path: The URDF file, where the robot came from one.
         tip_id: Pinocchio's index of the tip frame.
-        limits: ``q_lower``, ``q_upper`` and ``dq_max`` as the rows of one array, shape (3, n).
+        limits: ``q_lower``, ``q_upper`` and ``dq_max`` as the rows of one array, shape (3, n), for
+            compiled code; do not write into it (`Configuration.arrays` says why it could be).
 
     Raises:
         NotFoundError: If the model has no frame ``tip``.
@@ -60,7 +61,6 @@ class Robot:
         _check_order("q_lower", self.q_lower, self.q_upper)
         _check_positive("dq_max", self.dq_max)
         limits = np.stack([self.q_lower, self.q_upper, self.dq_max])
-        limits.setflags(write=False)
         object.__setattr__(self, "limits", limits)
 
     @property

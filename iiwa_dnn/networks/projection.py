@@ -78,23 +78,14 @@ class ProjectionNetwork:
         Returns:
             The bound; zero where P is singular, since then no step is known to be stable.
         """
-        n, m = qp.q.size, qp.h.size
+        n, m, p = qp.sizes
         if state is None:
-            active = np.concatenate([np.ones(m, bool), qp.ub < np.inf, qp.lb > -np.inf])
             # Both bounds of one variable are active together only if they coincide.
-            active[m : m + n] |= active[m + n :]
-            active[m + n :] = qp.lb == qp.ub
+            bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
+            active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
         else:
-            active = self._field(qp, state, np.empty(state.size)) > 0.0
-        rows = np.vstack([qp.A, qp.G[active[:m]]]) if m else qp.A
-        gram = rows.T @ rows
-        gram[np.diag_indices(n)] += active[m : m + n].astype(float) + active[m + n :]
-        eigenvalues = np.linalg.eigvalsh(qp.P)
-        smallest, largest = max(float(eigenvalues[0]), 0.0), max(float(eigenvalues[-1]), 1.0)
-        coupling = float(np.linalg.eigvalsh(gram)[-1])
-        # Passive multipliers and clipped variables decay at rate one: never more than 2.
-        bound = 2.0 / largest
-        return min(bound, smallest / coupling) if coupling > 0.0 else bound
+            active = self._field(qp, state, np.empty(state.size))
+        return float(kernels.stable_step(qp.data, n, m, p, active))
 
     def _field(self, qp: QP, state: Vector, rates: Vector) -> Vector:
         """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""

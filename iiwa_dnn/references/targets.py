@@ -8,7 +8,7 @@ from typing import SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite_array
+from iiwa_dnn.checks import finite_array, read_only
 
 _SIZE = 18
 
@@ -18,8 +18,9 @@ class Target:
 
     Attributes:
         data: All numbers, [position | rotation row by row | linear | angular velocity], (18,). One
-            array, so that a control step hands it to compiled code in one piece.
-        position: Desired position [m], shape (3,), a view like the next three.
+            array, so that a control step hands it to compiled code in one piece; do not write
+            into it (it is not protected, as `Configuration.arrays` are not).
+        position: Desired position [m], shape (3,), a read-only view like the next three.
         rotation: Desired orientation, shape (3, 3).
         linear_velocity: Desired linear velocity [m/s], shape (3,).
         angular_velocity: Desired angular velocity [rad/s], shape (3,).
@@ -34,12 +35,12 @@ class Target:
         linear_velocity: ArrayLike = (0.0, 0.0, 0.0),
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Copy the four arrays into one, read-only.
+        """Copy the four arrays into one.
 
         Raises:
             InvalidInputError: An array is not finite or has a wrong shape; it is named.
         """
-        data = np.concatenate(
+        self.data: NDArray[np.float64] = np.concatenate(
             [
                 finite_array("position", position, (3,)),
                 finite_array("rotation", rotation, (3, 3)).ravel(),
@@ -47,8 +48,6 @@ class Target:
                 finite_array("angular_velocity", angular_velocity, (3,)),
             ]
         )
-        data.setflags(write=False)
-        self.data: NDArray[np.float64] = data
 
     @classmethod
     def from_data(cls, data: NDArray[np.float64]) -> Target:
@@ -59,19 +58,19 @@ class Target:
 
     @property
     def position(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
-        return self.data[:3]
+        return read_only(self.data[:3])
 
     @property
     def rotation(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[3:12].reshape(3, 3)
+        return read_only(self.data[3:12].reshape(3, 3))
 
     @property
     def linear_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[12:15]
+        return read_only(self.data[12:15])
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[15:]
+        return read_only(self.data[15:])
 
     def __repr__(self) -> str:
         position = np.array2string(self.position, precision=4, separator=", ")
@@ -82,8 +81,8 @@ class Targets:
     """Targets at k times; ``targets[i]`` is the i-th :class:`Target`, a view of this array.
 
     Attributes:
-        data: One target a row, (k, 18), read-only.
-        position: Desired positions [m], shape (k, 3).
+        data: One target a row, (k, 18); do not write into it.
+        position: Desired positions [m], shape (k, 3), a read-only view like the next three.
         rotation: Desired orientations, shape (k, 3, 3).
         linear_velocity: Desired linear velocities [m/s], shape (k, 3).
         angular_velocity: Desired angular velocities [rad/s], shape (k, 3).
@@ -105,24 +104,23 @@ class Targets:
         data[:, 3:12] = rotation.reshape(-1, 9)
         data[:, 12:15] = linear_velocity
         data[:, 15:] = angular_velocity
-        data.setflags(write=False)
         self.data: NDArray[np.float64] = data
 
     @property
     def position(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
-        return self.data[:, :3]
+        return read_only(self.data[:, :3])
 
     @property
     def rotation(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[:, 3:12].reshape(-1, 3, 3)
+        return read_only(self.data[:, 3:12].reshape(-1, 3, 3))
 
     @property
     def linear_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[:, 12:15]
+        return read_only(self.data[:, 12:15])
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return self.data[:, 15:]
+        return read_only(self.data[:, 15:])
 
     def __len__(self) -> int:
         return len(self.data)

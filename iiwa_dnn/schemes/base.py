@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple, Protocol, TypeVar
 
@@ -39,23 +40,29 @@ class Scheme(Protocol):
 
 @lru_cache
 def identity(n: int) -> Matrix:
-    """The read-only (n, n) identity matrix."""
-    eye = np.eye(n)
-    eye.setflags(write=False)
-    return eye
+    """The (n, n) identity matrix, the same array for every caller."""
+    return np.eye(n)
 
 
 class Weights(NamedTuple):
     """The numbers of a velocity program that do not change along a run.
 
     Attributes:
-        orientation: Form of the orientation rows.
+        mode: Form of the orientation rows, an index of `ORIENTATIONS`.
+        rows: Equality rows p: 3 of the position and those of the orientation.
         values: The blend of kinetic energy (1) and cyclic motion (0), and the gains towards home,
             of the position, of the orientation and near the limits [1/s]; (5,).
     """
 
-    orientation: Orientation
+    mode: int
+    rows: int
     values: Vector
+
+    @classmethod
+    def of(cls, orientation: Orientation, values: Sequence[float]) -> Weights:
+        """The weights of a scheme with this form of the orientation rows."""
+        rows = 3 + ROW_COUNT[orientation]
+        return cls(MODE_INDEX[orientation], rows, np.array(values, dtype=np.float64))
 
 
 def velocity_program(
@@ -82,12 +89,11 @@ def velocity_program(
     Returns:
         A QP in n variables with 3 position rows and 3, 4 or 0 orientation rows.
     """
-    orientation, values = weights
-    q = conf.q
-    n, p = q.size, 3 + ROW_COUNT[orientation]
-    data = np.empty(n * n + 3 * n + p * (n + 1))
+    mode, p, values = weights
+    q, pose, jacobian = conf.arrays
+    n = q.size
+    data = np.empty(n * (n + 3) + p * (n + 1))
     kernels.velocity_program(
-        data, p, MODE_INDEX[orientation], q, conf.pose, conf.jacobian, target.data,
-        limits, home, kinetic, values,
-    )  # fmt: skip
+        data, p, mode, q, pose, jacobian, target.data, limits, home, kinetic, values
+    )
     return QP.from_data(data, (n, 0, p))

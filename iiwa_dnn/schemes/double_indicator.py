@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.schemes.base import Weights, identity, velocity_program
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
@@ -74,10 +74,10 @@ class DoubleIndicator:
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         checks.one_of("kinetic", self.kinetic, KINETICS)
         gains = (self.drift_gain, self.position_gain, self.orientation_gain, self.limit_gain)
-        weights = Weights(self.orientation, np.array([self.weight, *gains]))
+        weights = Weights.of(self.orientation, [self.weight, *gains])
         object.__setattr__(self, "_weights", weights)
         if self.home is not None:
-            home = checks.finite_array("home", self.home, (-1,))
+            home = checks.finite_array("home", self.home, (-1,)).copy()
             object.__setattr__(self, "home", tuple(home.tolist()))
             object.__setattr__(self, "_home", home)
 
@@ -98,13 +98,13 @@ class DoubleIndicator:
         Raises:
             InvalidInputError: `home` has another length than the robot has joints.
         """
-        home = self._home
+        q, home, robot = conf.arrays[0], self._home, conf.robot
         if home is None:
-            home = conf.q
-        elif home.size != conf.q.size:
-            raise InvalidInputError("home", f"has {home.size} values for {conf.q.size} joints")
-        kinetic = self._kinetic_matrix(conf)
-        return velocity_program(conf, target, self._weights, conf.robot.limits, home, kinetic)
+            home = q
+        elif home.size != q.size:
+            raise InvalidInputError("home", f"has {home.size} values for {q.size} joints")
+        kinetic = identity(q.size) if self.kinetic == "identity" else conf.inertia
+        return velocity_program(conf, target, self._weights, robot.limits, home, kinetic)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """dq^T G(q) dq: [rad^2/s^2] with G = I, [J] (twice the energy) with the inertia."""
@@ -117,6 +117,3 @@ class DoubleIndicator:
         """Name and parameters, as values that JSON can hold."""
         parameters = {field.name: getattr(self, field.name) for field in fields(self) if field.init}
         return {"name": "double-indicator", **parameters}
-
-    def _kinetic_matrix(self, conf: Configuration) -> Matrix:
-        return conf.inertia if self.kinetic == "inertia" else identity(conf.q.size)

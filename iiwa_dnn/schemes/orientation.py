@@ -64,9 +64,8 @@ def orientation_rows(
     Returns:
         ``(rows, rhs)`` of shapes (k, n) and (k,) with k = 3, 4 or 0.
     """
+    _, pose, jacobian = conf.arrays
     count = ROW_COUNT[mode]
-    rows, rhs = np.empty((count, conf.q.size)), np.empty(count)
-    kernels.orientation_rows(
-        MODE_INDEX[mode], conf.pose, conf.jacobian, target.data, gain, rows, rhs
-    )
+    rows, rhs = np.empty((count, jacobian.shape[1])), np.empty(count)
+    kernels.orientation_rows(MODE_INDEX[mode], pose, jacobian, target.data, gain, rows, rhs)
     return rows, rhs

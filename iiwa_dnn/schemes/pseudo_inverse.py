@@ -55,9 +55,9 @@ class PseudoInverse:
     def build_qp(self, conf: Configuration, target: Target) -> QP:
         """The least-norm problem as a QP in n variables, without bounds."""
         n = conf.q.size
-        values = np.array([1.0, 0.0, self.position_gain, self.orientation_gain, 1.0])
-        weights = Weights(self.orientation, values)
-        return velocity_program(conf, target, weights, _no_limits(n), conf.q, identity(n))
+        gains = [1.0, 0.0, self.position_gain, self.orientation_gain, 1.0]
+        weights = Weights.of(self.orientation, gains)
+        return velocity_program(conf, target, weights, _no_limits(n), conf.arrays[0], identity(n))
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """The closed form A^+ b [rad/s], (n,), through numpy's singular value decomposition."""
@@ -80,5 +80,4 @@ def _no_limits(n: int) -> Matrix:
     """Limits of `Robot.limits`' shape that hold nothing back."""
     limits = np.full((3, n), np.inf)
     limits[0] = -np.inf
-    limits.setflags(write=False)
     return limits

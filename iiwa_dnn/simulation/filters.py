@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from iiwa_dnn import checks
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.qp import Vector
 
 
@@ -38,8 +38,6 @@ class MovingAverage:
             return sample
         if self._count == 0:
             self._samples = np.zeros((self.window, sample.size))
-        self._samples[self._count % self.window] = sample
+        mean: Vector = kernels.window_mean(self._samples, self._count, sample)
         self._count += 1
-        # A running sum would be quicker and would drift by its rounding.
-        mean: Vector = self._samples.sum(axis=0) / min(self._count, self.window)
         return mean
