@@ -1,7 +1,8 @@
-"""The inner loops that are compiled with numba; nothing is compiled elsewhere.
+"""The inner loops that are compiled with numba; only `kernels*.py` are compiled.
 
-First the assembly of a control step's program, then the network that answers it. A quadratic
-program travels as `QP.data` with its sizes n, m, p, and is read in place:
+First the assembly of a control step's program, then the network that answers it, of which the
+implicit integrator stands in `kernels_implicit.py`. A quadratic program travels as `QP.data` with
+its sizes n, m, p, and is read in place:
 
     P[i, k]  data[i n + k]          G[j, i]  data[at_G + j n + i]     lb[i]  data[at_lb + i]
     q[i]     data[at_q + i]         A[j, i]  data[at_A + j n + i]     ub[i]  data[at_lb + n + i]
@@ -416,19 +417,14 @@ def condensed_matrix(data, n, m, p, step, active, K):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
-    """One linearly implicit Euler step of the network without its primal projection.
+def reduced_rates(data, n, m, p, rates, active, step, rhs, new):
+    """Write the right-hand side of a linearly implicit step, its multipliers eliminated, into rhs.
 
-    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n) and
-    `rhs` (n) are scratch.
-
-    Returns:
-        False if the condensed matrix is not positive definite; `new` is then meaningless.
+    With dx = 0 the multipliers would change by what new[n:] then holds.
     """
     _, at_G, at_A, _ = offsets(n, m, p)
     at_z, at_u = n + p, n + p + m
     decay = step / (1.0 + step)
-    # With dx = 0 the multipliers would change by `new`; the rest follows from dx below.
     for j in range(p):
         new[n + j] = step * rates[n + j]
     for k in range(m + 2 * n):
@@ -440,9 +436,13 @@ def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
         for j in range(m):
             value -= data[at_G + j * n + i] * new[at_z + j]
         rhs[i] = value
-    condensed_matrix(data, n, m, p, step, active, K)
-    if not cholesky_solve(K, n, rhs, new):
-        return False
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def recover_multipliers(data, n, m, p, s, active, step, new):
+    """Make a state of dx in new[:n] and of what `reduced_rates` left in new[n:]."""
+    _, at_G, at_A, _ = offsets(n, m, p)
+    at_z, at_u = n + p, n + p + m
     for j in range(p):
         value = 0.0
         for i in range(n):
@@ -459,159 +459,24 @@ def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
         new[at_u + n + i] -= step * active[m + n + i] * new[i]
     for k in range(s.size):
         new[k] += s[k]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
+    """One linearly implicit Euler step of the network without its primal projection.
+
+    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n) and
+    `rhs` (n) are scratch.
+
+    Returns:
+        False if the condensed matrix is not positive definite; `new` is then meaningless.
+    """
+    reduced_rates(data, n, m, p, rates, active, step, rhs, new)
+    condensed_matrix(data, n, m, p, step, active, K)
+    if not cholesky_solve(K, n, rhs, new):
+        return False
+    recover_multipliers(data, n, m, p, s, active, step, new)
     return True
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _implicit_multipliers(data, n, m, p, s, step, slacks, new):
-    """Multipliers after a backward Euler step to new[:n]; fills slacks (p + m + 2n)."""
-    _, at_G, at_A, at_lb = offsets(n, m, p)
-    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    keep = 1.0 / (1.0 + step)
-    for j in range(p):
-        value = -data[at_b + j]
-        for i in range(n):
-            value += data[at_A + j * n + i] * new[i]
-        slacks[j] = value
-        new[n + j] = s[n + j] + step * value
-    for k in range(m + 2 * n):
-        if k < m:
-            value = -data[at_h + k]
-            for i in range(n):
-                value += data[at_G + k * n + i] * new[i]
-        elif k < m + n:
-            value = new[k - m] - data[at_ub + k - m]
-        else:
-            value = data[at_lb + k - m - n] - new[k - m - n]
-        slacks[p + k] = value
-        old = s[n + p + k]
-        new[n + p + k] = max(old * keep, old + step * value)
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _line_search(data, n, m, p, s, step, slacks, change, direction, gradient):
-    """Minimise the convex piecewise quadratic of `backward_euler` along `direction`.
-
-    Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
-    inside a bracket ends at the root.
-    """
-    _, at_G, at_A, _ = offsets(n, m, p)
-    keep = 1.0 / (1.0 + step)
-    start = 0.0
-    curvature = 0.0
-    for i in range(n):
-        start += gradient[i] * direction[i]
-        value = direction[i] / step
-        for k in range(n):
-            value += data[i * n + k] * direction[k]
-        curvature += value * direction[i]
-    for j in range(p):
-        value = 0.0
-        for i in range(n):
-            value += data[at_A + j * n + i] * direction[i]
-        curvature += step * value * value
-    constant = start
-    for k in range(m + 2 * n):
-        if k < m:
-            value = 0.0
-            for i in range(n):
-                value += data[at_G + k * n + i] * direction[i]
-        elif k < m + n:
-            value = direction[k - m]
-        else:
-            value = -direction[k - m - n]
-        change[k] = value
-        old = s[n + p + k]
-        constant -= max(old * keep, old + step * slacks[p + k]) * value
-    low, high, length = 0.0, np.inf, 1.0
-    for _ in range(50):
-        slope = constant + length * curvature
-        second = curvature
-        for k in range(m + 2 * n):
-            old = s[n + p + k]
-            moving = old + step * (slacks[p + k] + length * change[k])
-            if moving > old * keep:
-                slope += moving * change[k]
-                second += step * change[k] * change[k]
-            else:
-                slope += old * keep * change[k]
-        if abs(slope) <= 1e-3 * abs(start):
-            break
-        if slope > 0.0:
-            high = length
-        else:
-            low = length
-        length -= slope / second
-        if not low < length < high:
-            length = 0.5 * (low + high) if high < np.inf else 2.0 * low
-    return length
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def backward_euler(data, n, m, p, s, step, new, tol, max_newton):
-    """One backward Euler step of the network without its primal projection.
-
-    new = s + step F(new). Eliminating the multipliers leaves the stationarity of a strongly
-    convex, piecewise quadratic function of x, for every step length; it is minimised by a
-    semismooth Newton iteration with an exact line search, started at new[:n]. That is why a
-    step cannot cycle, however many bounds are active.
-
-    The iteration stops when the gradient is at most `tol`, or after `max_newton` rounds.
-
-    Returns:
-        Newton iterations, or -1 where a matrix was not positive definite to working precision.
-    """
-    at_q, at_G, at_A, _ = offsets(n, m, p)
-    at_z, at_u = n + p, n + p + m
-    keep = 1.0 / (1.0 + step)
-    gradient, direction, rhs, K = np.empty(n), np.empty(n), np.empty(n), np.empty(n * n)
-    slacks, change = np.empty(p + m + 2 * n), np.empty(m + 2 * n)
-    active = np.empty(m + 2 * n)
-    for iteration in range(max_newton):
-        _implicit_multipliers(data, n, m, p, s, step, slacks, new)
-        size = 0.0
-        for i in range(n):
-            value = data[at_q + i] + new[at_u + i] - new[at_u + n + i] + (new[i] - s[i]) / step
-            for k in range(n):
-                value += data[i * n + k] * new[k]
-            for j in range(p):
-                value += data[at_A + j * n + i] * new[n + j]
-            for j in range(m):
-                value += data[at_G + j * n + i] * new[at_z + j]
-            gradient[i] = value
-            rhs[i] = -value
-            size = larger(size, abs(value))
-        if not size > tol:
-            return iteration
-        for k in range(m + 2 * n):
-            old = s[at_z + k]
-            active[k] = old + step * slacks[p + k] > old * keep
-        condensed_matrix(data, n, m, p, step, active, K)
-        if not cholesky_solve(K, n, rhs, direction):
-            return -1
-        length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient)
-        for i in range(n):
-            new[i] += length * direction[i]
-    _implicit_multipliers(data, n, m, p, s, step, slacks, new)
-    return max_newton
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def advance_implicit(data, n, m, p, s, step, count, tol):
-    """Advance `s` in place by `count` backward Euler steps of fixed length, solved to `tol`.
-
-    Returns:
-        Linear systems solved, or -1 where one could not be.
-    """
-    new = s.copy()
-    total = 0
-    for _ in range(count):
-        systems = backward_euler(data, n, m, p, s, step, new, tol, 100)
-        if systems < 0:
-            return -1
-        total += systems
-        s[:] = new
-    return total
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -683,58 +548,3 @@ def kkt_point(data, n, m, p, s, point):
             aim -= data[at_G + j * n + i] * point[at_z + j]
         point[at_z + m + i] = aim - min(max(aim, data[at_lb + i]), data[at_ub + i])
     return point_residuals(data, n, m, p, point)
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def settle_implicit(data, n, m, p, s, point, tol, max_steps, long_step):
-    """Advance `s` in place, with growing implicit steps, until its KKT residuals are below `tol`.
-
-    Each round first tries one linearly implicit step of length `long_step`: near the solution
-    that is a Newton step, and it is kept if it halves the largest rate. Otherwise a fully solved
-    backward Euler step is taken, which is safe at any length; its length grows tenfold a round.
-
-    Returns:
-        ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
-        [rho], and the residuals of `point`.
-    """
-    size, flags = s.size, m + 2 * n
-    work = np.empty(3 * size + 2 * flags + n * n + n)
-    rates, new_rates, new = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
-    active = work[3 * size : 3 * size + flags]
-    new_active = work[3 * size + flags : 3 * size + 2 * flags]
-    K, rhs = work[3 * size + 2 * flags : -n], work[-n:]
-    step = 10.0
-    systems, time, stalled = 0, 0.0, 0
-    primal, dual, gap = np.inf, np.inf, np.inf
-    rate = field(data, n, m, p, False, s, rates, active)
-    for _ in range(max_steps):
-        if not rate > tol:
-            primal, dual, gap = kkt_point(data, n, m, p, s, point)
-            if primal <= tol and dual <= tol and gap <= tol:
-                return systems, time, primal, dual, gap
-            # Small rates and a large gap: large multipliers. Go on, but not for ever.
-            stalled += 1
-            if stalled > 10 or rate != rate:
-                break
-        systems += 1
-        if linearly_implicit_step(data, n, m, p, s, rates, active, long_step, K, rhs, new):
-            new_rate = field(data, n, m, p, False, new, new_rates, new_active)
-            if new_rate <= 0.5 * rate:
-                s[:] = new
-                rates, new_rates = new_rates, rates
-                active, new_active = new_active, active
-                rate = new_rate
-                time += long_step
-                continue
-        new[:] = s
-        solved = backward_euler(data, n, m, p, s, step, new, min(1e-2, 0.1 * rate), 100)
-        if solved < 0:
-            step *= 0.1
-            continue
-        systems += solved
-        s[:] = new
-        time += step
-        step = min(step * 10.0, 1e6)
-        rate = field(data, n, m, p, False, s, rates, active)
-    primal, dual, gap = kkt_point(data, n, m, p, s, point)
-    return systems, time, primal, dual, gap

@@ -274,6 +274,13 @@ class Status(str, Enum):
     """The budget of steps ended before the residuals were small enough."""
     NOT_FINITE = "not finite"
     """The data or the state is no longer a number."""
+    PRIMAL_INFEASIBLE = "primal infeasible"
+    """No point satisfies the constraints: Farkas multipliers prove it."""
+    UNBOUNDED = "dual infeasible (unbounded)"
+    """The cost falls for ever along a direction that no constraint ends: the direction proves it.
+
+    The program is unbounded then, unless no point is feasible in the first place.
+    """
 
 
 class Residuals(NamedTuple):
@@ -348,6 +355,11 @@ class Solution(NamedTuple):
         return Residuals(self.primal, self.dual, self.gap)
 
     @property
+    def certificate(self) -> Vector | None:
+        """The proof that there is no solution, where the status claims one (`Refutation`)."""
+        return None
+
+    @property
     def found(self) -> bool:
         """True only when every residual is at most the tolerance that was asked for."""
         return self.status is Status.SOLVED
@@ -358,7 +370,7 @@ class Solution(NamedTuple):
         A solution that was not found carries no ``x``; what the network reached is in
         ``extras["last_x"]``, so that nobody takes it for an answer.
         """
-        extras = {
+        extras: dict[str, Any] = {
             "status": self.status.value,
             "iterations": self.iterations,
             "network_time": self.network_time,
@@ -367,6 +379,8 @@ class Solution(NamedTuple):
             "duality_gap": self.gap,
         }
         if not self.found:
+            if self.certificate is not None:
+                extras["certificate"] = self.certificate
             return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
         x = self.x
         return qpsolvers.Solution(
@@ -379,3 +393,30 @@ class Solution(NamedTuple):
             z=self.z if problem.G is not None else None,
             z_box=self.z_box if problem.lb is not None or problem.ub is not None else None,
         )
+
+
+class Refutation(Solution):
+    """A solution that was not found, with the proof that there is none.
+
+    A class of its own, so that the solutions of a control loop carry no field for it.
+    """
+
+    _certificate: Vector
+
+    @classmethod
+    def of(cls, last: Solution, status: Status, certificate: Vector) -> Refutation:
+        """The last word on a program, with a certificate that was verified.
+
+        Args:
+            last: Where the network was given up.
+            status: ``PRIMAL_INFEASIBLE`` or ``UNBOUNDED``.
+            certificate: ``[y | z | z_box]`` of size p + m + n, or the direction, (n,).
+        """
+        refutation = cls(*last._replace(status=status))
+        refutation._certificate = certificate
+        return refutation
+
+    @property
+    def certificate(self) -> Vector:
+        """``[y | z | z_box]`` if the program is infeasible, the direction (n,) if unbounded."""
+        return self._certificate

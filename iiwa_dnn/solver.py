@@ -8,9 +8,10 @@ import numpy as np
 import qpsolvers
 
 from iiwa_dnn import checks, kernels
+from iiwa_dnn.certificates import find_certificate
 from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks import ProjectionNetwork
-from iiwa_dnn.qp import QP, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Refutation, Solution, Status, Vector
 
 
 class DNNSolver:
@@ -84,7 +85,8 @@ class DNNSolver:
         # No residual may be above the tolerance, and none NaN.
         solved = primal <= tol and dual <= tol and gap <= tol
         status = Status.SOLVED if solved else self._failed(primal + dual + gap)
-        return Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
+        solution = Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
+        return solution if solved else self._refuted(qp, solution)
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration` and no more, settled or not.
@@ -112,6 +114,13 @@ class DNNSolver:
         n, m, p = self._sizes = qp.sizes
         self._point_size = 2 * n + m + p
         self._state = self.network.initial_state(qp)
+
+    def _refuted(self, qp: QP, last: Solution) -> Solution:
+        """The same solution, with a proof that there is none where one is found."""
+        if last.status is not Status.NOT_SETTLED:
+            return last
+        certificate = find_certificate(qp, last.point)
+        return Refutation.of(last, *certificate) if certificate is not None else last
 
     def _failed(self, residuals: float) -> Status:
         # On a program without a solution the multipliers grow without bound, or are no numbers

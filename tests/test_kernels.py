@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 import scipy.linalg
 
-from iiwa_dnn import kernels
+from iiwa_dnn import kernels, kernels_dense
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-14, 1e-8, 1e-3, 1.0, 2.5, np.pi - 1e-3, np.pi - 1e-7])
@@ -56,3 +56,26 @@ def test_the_larger_of_two_keeps_a_nan() -> None:
     assert kernels.larger(2.0, 1.0) == 2.0
     assert np.isnan(kernels.larger(np.nan, 1.0))
     assert np.isnan(kernels.larger(1.0, np.nan))
+
+
+def test_vector_code_is_numpys() -> None:
+    rng = np.random.default_rng(2)
+    for n in (1, 2, 3, 4, 5, 7, 8, 16, 30, 51):
+        root = rng.standard_normal((n, n))
+        matrix, vector, out = root @ root.T + np.eye(n), rng.standard_normal(n), np.empty(n)
+        upper = np.triu(matrix).ravel()
+        assert kernels_dense.solve_upper(upper.copy(), n, vector, out)
+        np.testing.assert_allclose(out, np.linalg.solve(matrix, vector), rtol=1e-8, atol=1e-11)
+        spoilt = upper.copy()
+        spoilt[-1] = -1.0
+        assert not kernels_dense.solve_upper(spoilt, n, vector, out)
+        assert kernels_dense.dot(upper, n - 1, vector, 0, 1) == upper[n - 1] * vector[0]
+        assert kernels_dense.dot(vector, 0, vector, 0, n) == pytest.approx(vector @ vector)
+        with_outer = upper.copy()
+        kernels_dense.add_outer(with_outer, -2.0, np.concatenate([[9.0], vector]), 1, n)
+        expected = np.triu(matrix - 2.0 * np.outer(vector, vector))
+        np.testing.assert_allclose(with_outer.reshape(n, n), expected, rtol=1e-12, atol=1e-13)
+        total = np.zeros(n * n)
+        kernels_dense.add_multiple(total, upper, 0.5, with_outer, n)
+        expected = np.triu(matrix) + 0.5 * expected
+        np.testing.assert_allclose(total.reshape(n, n), expected, rtol=1e-12, atol=1e-13)

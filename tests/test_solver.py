@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import qpsolvers
 import scipy.sparse as spa
+from qpsolvers import problems
 
 import iiwa_dnn
 from helpers_qp import known_qp
@@ -46,6 +47,20 @@ def test_general_problems_with_everything_active(seed: int) -> None:
     assert np.abs(solution.x - x).max() < 1e-5
 
 
+DENSE = [name for name in dir(problems) if name.startswith("get_") and "sparse" not in name]
+
+
+@pytest.mark.parametrize("name", DENSE)
+def test_every_dense_problem_of_qpsolvers(name: str) -> None:
+    made = getattr(problems, name)()
+    problem = made if isinstance(made, qpsolvers.Problem) else made[0]
+    solution = iiwa_dnn.solve_problem(problem)
+    assert solution.found
+    assert solution.primal_residual() <= 1e-8
+    assert solution.dual_residual() <= 1e-8
+    assert solution.duality_gap() <= 1e-8
+
+
 def test_multipliers_have_qpsolvers_signs() -> None:
     # min (x - t)^2/2: pushed against ub, against lb, against G, and free.
     problem = qpsolvers.Problem(
@@ -85,7 +100,11 @@ def test_tolerance_is_kept_or_not_claimed() -> None:
 
 def test_contradictory_equalities_are_not_found() -> None:
     qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 1.0], [1.0, 1.0]], b=[0.0, 1.0])
-    assert iiwa_dnn.solve_problem(qp).found is False
+    solution = iiwa_dnn.solve_problem(qp)
+    assert solution.found is False
+    assert solution.extras["status"] == "primal infeasible"
+    y = solution.extras["certificate"][:2]
+    np.testing.assert_allclose(y, [1.0, -1.0], atol=1e-12)  # 0 x = 0 - 1
 
 
 def test_warm_start_needs_fewer_systems_and_reset_forgets() -> None:
@@ -138,7 +157,7 @@ def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
     bad = QP(good.P, good.q, A=rows, b=[0.0, 1.0], lb=good.lb, ub=good.ub)
     solver = DNNSolver()
     for _ in range(3):
-        assert solver.solve(bad).status is Status.NOT_SETTLED
+        assert solver.solve(bad).status is Status.PRIMAL_INFEASIBLE
         after = solver.solve(good)
         assert after.found
         assert np.abs(after.x - x).max() < 1e-6

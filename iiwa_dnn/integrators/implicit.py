@@ -16,8 +16,10 @@ active; this cannot.
 
 **Two kinds of step.** `settle` first tries a single linearised step with a very long h, which near
 the equilibrium is a Newton step; a warm start in a control loop needs only that. If it does not
-halve the rates, a fully solved step follows whose h grows tenfold a round. The budget is bounded:
-`max_steps` rounds of at most 101 linear systems each.
+halve the rates, a fully solved step follows whose h grows tenfold a round, from 10 to 1e6. Where
+rounding is in the way, linearised steps of other lengths are tried too. The budget is bounded, and
+mostly not used: once three of the longest steps have not halved the rates, the state is running
+off, and `iiwa_dnn.certificates` looks for the proof that there is no solution.
 
 **What is left out.** The projection of x is not integrated here: at the equilibrium the
 multipliers alone keep the bounds, so the answer is the same. The answer that is handed out is
@@ -35,7 +37,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from iiwa_dnn import checks, kernels
+from iiwa_dnn import checks, kernels_implicit
 from iiwa_dnn.exceptions import NoSolutionError
 from iiwa_dnn.integrators.base import Settled
 from iiwa_dnn.networks import ProjectionNetwork
@@ -49,13 +51,13 @@ class ImplicitEuler:
     Attributes:
         step: Longest step of `advance`, in units of rho.
         long_step: Length of the linearised step that `settle` tries first, in units of rho.
-        max_steps: Budget of `settle` in rounds.
+        max_steps: Budget of `settle` in linear systems.
     """
 
     order: ClassVar[int] = 1
     step: float = 1.0
     long_step: float = 1e7
-    max_steps: int = 200
+    max_steps: int = 1000
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -73,19 +75,18 @@ class ImplicitEuler:
             NoSolutionError: A step's linear system is singular to working precision.
         """
         count = max(1, math.ceil(duration / self.step))
-        systems = int(
-            kernels.advance_implicit(qp.data, *qp.sizes, state, duration / count, count, 1e-12)
-        )
+        length = duration / count
+        systems = kernels_implicit.advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
         if systems < 0:
             raise NoSolutionError("an implicit step is singular to working precision")
-        return systems
+        return int(systems)
 
     def settle(
         self, network: ProjectionNetwork, qp: QP, state: Vector, point: Vector, tol: float
     ) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`."""
         n, m, p = qp.sizes
-        settled: Settled = kernels.settle_implicit(
+        settled: Settled = kernels_implicit.settle_implicit(
             qp.data, n, m, p, state, point, tol, self.max_steps, self.long_step
         )
         return settled

@@ -1,0 +1,1 @@
+"""Programs to measure solvers with, and the measurements: read by scripts, not by the package."""
