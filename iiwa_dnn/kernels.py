@@ -172,10 +172,14 @@ def velocity_bounds(q, limits, gain, lb, ub):
         ub[i] = min(max(gain * (limits[1, i] - q[i]), -fastest), fastest)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def move(q, dq, k, velocity, dt):
-    """Write the velocity (n,) into row k of dq, and where it leads within dt into row k + 1 of q."""
+@njit(cache=True, error_model="numpy")
+def move(q, dq, dq_solver, k, velocity, answer, dt):
+    """Write `velocity` and the solver's `answer` (n,) into rows k, and where it leads into q.
+
+    Rounded as numpy would: no product is contracted with its sum.
+    """
     for i in range(velocity.size):
+        dq_solver[k, i] = answer[i]
         dq[k, i] = velocity[i]
         q[k + 1, i] = q[k, i] + dt * velocity[i]
 

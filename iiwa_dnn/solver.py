@@ -9,7 +9,7 @@ import qpsolvers
 
 from iiwa_dnn import checks, kernels
 from iiwa_dnn.certificates import find_certificate
-from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler, Integrator
+from iiwa_dnn.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.qp import QP, Refutation, Solution, Status, Vector
 
@@ -65,6 +65,31 @@ class DNNSolver:
         """
         if self._sizes is not None:
             self._state[: self._sizes[0]] += noise
+
+    def warm_state(self, sizes: tuple[int, int, int]) -> Vector | None:
+        """The state itself, where the last program had these sizes; otherwise None."""
+        return self._state if sizes == self._sizes else None
+
+    def numbers(self, duration: float = 0.0) -> Vector | None:
+        """What `kernels_control.control_step` needs to stand in for `solve` or `advance`.
+
+        Args:
+            duration: Time to advance [s]; 0 stands for `solve`.
+
+        Returns:
+            The seven numbers, or None where network or integrator has no compiled form.
+        """
+        network, settler, follower = self.network, self.settler, self.follower
+        if type(network) is not ProjectionNetwork:
+            return None
+        projected = float(network.primal_projection)
+        if duration > 0.0 and type(follower) is ExplicitEuler:
+            ahead, substeps = duration / network.rho, follower.substeps or 0
+            return np.array([self.tol, 0.0, 0.0, ahead, projected, substeps, SAFETY])
+        if duration == 0.0 and type(settler) is ImplicitEuler:
+            budget, long_step = settler.max_steps, settler.long_step
+            return np.array([self.tol, budget, long_step, 0.0, projected, 0.0, SAFETY])
+        return None
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and say how well it has.

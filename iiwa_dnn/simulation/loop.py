@@ -11,16 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks, kernels
-from iiwa_dnn.checkpool import CheckPool, Job
+from iiwa_dnn.answers import Answers
+from iiwa_dnn.checkpool import CheckPool
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.controller import Command, Controller, Mode
+from iiwa_dnn.controller import Controller, Mode
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Solution, Status, Vector
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.record import Record
-from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references import Reference
+from iiwa_dnn.references.targets import Targets
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes import Scheme, compiled_program
 from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
 from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, gaussian_noise
@@ -137,6 +139,8 @@ class Simulation:
         start = Configuration(robot, q0, self._scratch)
         self._controller = Controller(scheme.anchored(start), self._solver, mode, dt)
         self._robot, self._reference = robot, reference
+        program = compiled_program(self._controller.scheme, robot)
+        self._is_plain = program is not None and not program.inertia  # so G = I
         self._dt, self._motion = dt, MOTIONS[motion]
         checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
         self._noise_at = noise_at
@@ -167,7 +171,6 @@ class Simulation:
             "versions": {name: version(name) for name in _PACKAGES},
         }
         self.steps = steps
-        self._expected = Status.SOLVED if mode == "converged" else Status.ADVANCED
         self._allocate(start.q)
 
     def run(self, progress: Progress | None = None) -> Record:
@@ -187,13 +190,16 @@ class Simulation:
         status, done = COMPLETED, 0
         while done < self.steps and status == COMPLETED:
             count = min(BLOCK, self.steps - done)
-            self._block = block = _Block(self._reference, done, count, self._dt)
+            # One target a stage, in the order in which the method of motion asks.
+            times = np.add.outer(done + np.arange(count), self._motion.nodes) * self._dt
+            targets = self._reference.sample(times.ravel())
+            self._block = block = _Block(targets, self._controller.answers(times.size))
             taken = 0
             while taken < count and status == COMPLETED:
                 status = self._step(done + taken)
                 taken += 1
             self._record_block(done, taken)
-            pool.submit(*block.job())
+            pool.submit(block.answers.programs, block.answers.sizes, block.answers.all_x)
             done += taken
             if progress is not None:
                 progress(taken)
@@ -217,15 +223,14 @@ class Simulation:
         self._iterations = np.empty(steps, dtype=np.int64)
 
     def _velocity_at(self, q: Vector, t: float) -> Vector:
-        """The controller's answer at a stage, noted in the block."""
+        """The controller's answer at the next stage, noted in the block; t is in the targets."""
         block = self._block
+        answers = block.answers
         conf = Configuration.from_checked(self._robot, q, self._scratch)
-        command = self._controller.step(conf, block.target(t))
-        block.confs.append(conf)
-        block.commands.append(command)
-        if command.solution.status is not self._expected:
-            block.failed = command.solution
-        return command.dq
+        count = answers.count
+        if count % self._motion.stages == 0:
+            block.start = conf
+        return self._controller.answer(conf, block.targets[count], answers)
 
     def _step(self, k: int) -> str:
         """Take step k, note it in the block, and return the status that the run has after it."""
@@ -237,21 +242,28 @@ class Simulation:
                 seen = q + noise
         velocity = self._motion.step(self._velocity_at, seen, k * dt, dt)
         if seen is not q:  # the controller saw another posture than the robot has
-            true = Configuration.from_checked(self._robot, q, self._scratch)
-            block.confs[-self._motion.stages] = true
-        if block.failed is not None:
-            return self._stop(k, block.failed)
-        self._dq_solver[k] = velocity
-        if noise is not None and self._noise_at == "velocity":
-            velocity = velocity + noise
-        elif noise is not None and self._noise_at == "network":
-            self._solver.disturb(noise)
-        kernels.move(self._q, self._dq, k, self._average(velocity), dt)
+            block.start = Configuration.from_checked(self._robot, q, self._scratch)
+            block.answers.poses[-self._motion.stages] = block.start.pose
+        if block.answers.unsolved:
+            return self._stop(k)
+        answer = velocity
+        if noise is not None:
+            if self._noise_at == "velocity":
+                velocity = velocity + noise
+            elif self._noise_at == "network":
+                self._solver.disturb(noise)
+        if self._filter_window > 1:
+            velocity = self._average(velocity)
+        kernels.move(self._q, self._dq, self._dq_solver, k, velocity, answer, dt)
+        if not self._is_plain:
+            index = self._controller.scheme.kinetic_index
+            self._kinetic_index[k] = index(block.start, velocity)
         return COMPLETED
 
-    def _stop(self, k: int, failed: Solution) -> str:
+    def _stop(self, k: int) -> str:
         """Leave the robot at rest in step k, and say why."""
-        self._dq_solver[k] = self._dq[k] = 0.0
+        *_, failed = self._block.answers.unsolved.values()
+        self._dq_solver[k] = self._dq[k] = self._kinetic_index[k] = 0.0
         self._q[k + 1] = self._q[k]
         return (
             f"stopped at step {k} (t = {k * self._dt:g} s): the network did not settle, "
@@ -261,23 +273,16 @@ class Simulation:
     def _record_block(self, first: int, steps: int) -> None:
         """Write the block's steps into the arrays of the run."""
         block, stages = self._block, self._motion.stages
-        rows = slice(first, first + steps)
-        starts = block.confs[::stages]
-        # Not np.stack, which takes three times as long over small arrays.
-        poses = np.concatenate([conf.arrays[1] for conf in starts]).reshape(steps, 4, 4)
+        answers, rows = block.answers, slice(first, first + steps)
+        if self._is_plain:
+            self._kinetic_index[rows] = np.square(self._dq[rows]).sum(axis=1)
+        poses = answers.poses[::stages]
         self._position[rows], self._rotation[rows] = poses[:, :3, 3], poses[:, :3, :3]
-        at_steps = slice(0, 2 * steps, 2)
+        at_steps = slice(0, steps * stages, stages)
         self._position_desired[rows] = block.targets.position[at_steps]
         self._rotation_desired[rows] = block.targets.rotation[at_steps]
-        index = self._controller.scheme.kinetic_index
-        self._kinetic_index[rows] = [
-            index(conf, dq) for conf, dq in zip(starts, self._dq[rows], strict=True)
-        ]
-        solutions = [command.solution for command in block.commands]
-        residuals = np.array([solution[-3:] for solution in solutions])
-        self._kkt_residual[rows] = residuals.reshape(steps, -1).max(axis=1)
-        iterations = np.array([solution.iterations for solution in solutions])
-        self._iterations[rows] = iterations.reshape(steps, stages).sum(axis=1)
+        self._kkt_residual[rows] = answers.residuals.reshape(steps, -1).max(axis=1)
+        self._iterations[rows] = answers.iterations.reshape(steps, stages).sum(axis=1)
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
@@ -312,23 +317,16 @@ def _step_count(duration: float, dt: float) -> int:
 
 
 class _Block:
-    """What a stretch of steps leaves behind, one entry a stage, until it is recorded."""
+    """What a stretch of steps starts from and leaves behind, one entry a stage.
 
-    def __init__(self, reference: Reference, first: int, steps: int, dt: float) -> None:
-        self._first, self._dt = first, dt
-        # Two targets a step: the methods of motion ask at its ends and at its middle.
-        self.targets = reference.sample((2 * first + np.arange(2 * steps + 1)) * (0.5 * dt))
-        self.confs: list[Configuration] = []
-        self.commands: list[Command] = []
-        self.failed: Solution | None = None
+    Attributes:
+        targets: Where the tip should be.
+        answers: What the controller decided; recorded and checked at the block's end.
+        start: Where the step that is being taken began.
+    """
 
-    def target(self, t: float) -> Target:
-        """The target at a stage's time [s]."""
-        return self.targets[round(2.0 * t / self._dt) - 2 * self._first]
+    __slots__ = ("answers", "start", "targets")
+    start: Configuration
 
-    def job(self) -> Job:
-        """The programs and the answers, for the check."""
-        count, sizes = len(self.commands), self.commands[0].qp.sizes
-        programs = np.concatenate([command.qp.data for command in self.commands])
-        answers = np.concatenate([command.dq for command in self.commands])
-        return programs.reshape(count, -1), sizes, answers.reshape(count, -1)
+    def __init__(self, targets: Targets, answers: Answers) -> None:
+        self.targets, self.answers = targets, answers
