@@ -13,9 +13,9 @@ from iiwa_dnn.exceptions import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler
+from iiwa_dnn.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.metrics import compute_metrics, failures
-from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.networks import DualNetwork, PrimalDualNetwork, ProjectionNetwork
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.record import Record
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
@@ -28,6 +28,7 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP",
+    "AdaptiveRungeKutta",
     "Agreement",
     "Circle",
     "Command",
@@ -36,6 +37,7 @@ __all__ = [
     "CrossCheck",
     "DNNSolver",
     "DoubleIndicator",
+    "DualNetwork",
     "ExplicitEuler",
     "FileError",
     "Heart",
@@ -47,6 +49,7 @@ __all__ = [
     "MissingDependencyError",
     "NoSolutionError",
     "NotFoundError",
+    "PrimalDualNetwork",
     "ProjectionNetwork",
     "PseudoInverse",
     "Record",

@@ -3,5 +3,6 @@
 from iiwa_dnn.integrators.base import Integrator, Settled
 from iiwa_dnn.integrators.explicit import ExplicitEuler
 from iiwa_dnn.integrators.implicit import ImplicitEuler
+from iiwa_dnn.integrators.runge_kutta import AdaptiveRungeKutta
 
-__all__ = ["ExplicitEuler", "ImplicitEuler", "Integrator", "Settled"]
+__all__ = ["AdaptiveRungeKutta", "ExplicitEuler", "ImplicitEuler", "Integrator", "Settled"]
