@@ -2,6 +2,7 @@
 
 from importlib.metadata import version
 
+from iiwa_dnn.batch import BatchSolution, solve_batch
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import Command, Controller
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
@@ -30,6 +31,7 @@ __all__ = [
     "QP",
     "AdaptiveRungeKutta",
     "Agreement",
+    "BatchSolution",
     "Circle",
     "Command",
     "Configuration",
@@ -67,5 +69,6 @@ __all__ = [
     "failures",
     "load_robot",
     "simulate",
+    "solve_batch",
     "solve_problem",
 ]
