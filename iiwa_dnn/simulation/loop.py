@@ -32,7 +32,7 @@ COMPLETED = "completed"
 MAX_STEPS = 20_000_000
 """More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
 
-BLOCK = 500
+BLOCK = 1000
 """Steps between two hand-overs to the record and to the check."""
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
@@ -230,7 +230,7 @@ class Simulation:
         count = answers.count
         if count % self._motion.stages == 0:
             block.start = conf
-        return self._controller.answer(conf, block.targets[count], answers)
+        return self._controller.answer(conf, block.targets.data[count], answers)
 
     def _step(self, k: int) -> str:
         """Take step k, note it in the block, and return the status that the run has after it."""
