@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -52,7 +53,9 @@ def _run(options: argparse.Namespace, folder: Path) -> None:
     streams = all_streams(options.steps, options.cold)
     rounds = sum(-(-len(stream.programs) // CHUNK) for stream in streams) * len(PEERS)
     measured: list[dict[str, Any]] = []
-    with tqdm(total=rounds, unit="chunk", disable=options.quiet) as bar:
+    # Solvers that fail say so in many ways; here it is counted.
+    with warnings.catch_warnings(), tqdm(total=rounds, unit="chunk", disable=options.quiet) as bar:
+        warnings.simplefilter("ignore")
         for stream in streams:
             rows = measure_stream(stream, PEERS, bar.update)
             measured.append(
