@@ -193,6 +193,9 @@ class Proxqp(Peer):
             self.model = proxqp.dense.QP(n, p, m, True)
             settings = self.model.settings
             settings.eps_abs, settings.eps_rel = TOL, 0.0
+            # Without it, some answers have gaps far above the tolerance.
+            settings.check_duality_gap = True
+            settings.eps_duality_gap_abs, settings.eps_duality_gap_rel = TOL, 0.0
             if self.warm:
                 settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
             self.model.init(*arrays)

@@ -30,6 +30,8 @@ LIMITS = """\
   the others stop there. An answer whose residual is above 1e-8 counts as failed, though its time
   counts.
 - This package's solver takes programs as checked. A first call, which compiles, is left out.
+- The random programs are often degenerate: more constraints hold at the solution than there are
+  variables, some without a multiplier. That is where quadprog gives up.
 - Warm means that a solver starts from its last answer, where it can. quadprog cannot.
 """
 
