@@ -34,7 +34,6 @@ ORDER = (
     "certificates",
     "solver",
     "batch",
-    "benchmarks",
     "crosscheck",
     "checkpool",
     "answers",
@@ -62,6 +61,7 @@ ORDER = (
     "paper_cli",
     "physics_cli",
     "view_cli",
+    "benchmarks",
     "__main__",
     "__init__",
 )
