@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn import checks
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.qp import QP, Matrix, Vector
 
 if TYPE_CHECKING:
@@ -113,21 +113,23 @@ class CrossCheck:
         Returns:
             Gaps and residuals, one row a program and one column a reference.
         """
-        count, k, n = len(x), len(self.solvers), sizes[0]
-        residuals, references = np.full((count, k), np.inf), np.full((count, k, n), np.nan)
+        count, k = len(x), len(self.solvers)
+        n, m, p = sizes
+        points = np.full((count, k, 2 * n + m + p), np.nan)
         # Solvers may take minutes over one NaN.
         askable = np.flatnonzero(~np.isnan(programs).any(axis=1)) if k else ()
         for i in askable:
-            qp = QP.from_data(programs[i], sizes)
-            problem = qp.to_qpsolvers()
+            problem = QP.from_data(programs[i], sizes).to_qpsolvers()
             for j, name in enumerate(self.solvers):
                 reference = self._solve(name, problem)
-                if reference is None or reference.x is None:
-                    continue
-                given = qp.residuals(reference.x, reference.y, reference.z, reference.z_box)
-                residuals[i, j] = residual = given.largest
-                if residual <= self.reference_tolerance:
-                    references[i, j] = reference.x
+                if reference is not None and reference.x is not None:
+                    _copy_point(reference, sizes, points[i, j])
+        residuals = np.empty((count, k))
+        kernels.largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
+        references = np.where(
+            residuals[..., np.newaxis] <= self.reference_tolerance, points, np.nan
+        )
+        references = references[..., :n]
         step = x[:, np.newaxis] - references
         cost = programs[:, : n * n].reshape(count, n, n)
         linear = programs[:, n * n : n * (n + 1)]
@@ -157,6 +159,18 @@ class CrossCheck:
         except Exception:  # whatever a reference raises, it has no answer
             return None
         return solution if solution.found else None
+
+
+def _copy_point(
+    solution: qpsolvers.Solution, sizes: tuple[int, int, int], point: Vector
+) -> None:  # fmt: skip
+    """Write a solution into `point`, laid out as `Solution.point`; what it lacks becomes zero."""
+    n, m, p = sizes
+    point[:n] = solution.x
+    point[n : n + p] = 0.0 if solution.y is None else solution.y
+    if m:
+        point[n + p : n + p + m] = 0.0 if solution.z is None else solution.z
+    point[n + p + m :] = 0.0 if solution.z_box is None else solution.z_box
 
 
 def _solve_sparse(problem: qpsolvers.Problem, options: dict[str, Any]) -> qpsolvers.Solution:

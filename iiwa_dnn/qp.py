@@ -195,16 +195,18 @@ class QP:
         """The same problem for qpsolvers; parts without rows are left out, as it expects."""
         import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
-        bounded = np.isfinite(self.lb).any() or np.isfinite(self.ub).any()
+        _, m, p = self.sizes
+        lb, ub = self.lb, self.ub
+        bounded = lb.max() > -np.inf or ub.min() < np.inf
         return qpsolvers.Problem(
             self.P,
             self.q,
-            self.G if self.h.size else None,
-            self.h if self.h.size else None,
-            self.A if self.b.size else None,
-            self.b if self.b.size else None,
-            self.lb if bounded else None,
-            self.ub if bounded else None,
+            self.G if m else None,
+            self.h if m else None,
+            self.A if p else None,
+            self.b if p else None,
+            lb if bounded else None,
+            ub if bounded else None,
         )
 
     def arrays(self) -> tuple[Matrix, Vector, Matrix, Vector, Matrix, Vector, Vector, Vector]:

@@ -11,7 +11,6 @@ import qpsolvers
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp
 from helpers_simulation import heart, near_target, paper_start, run
-from iiwa_dnn import crosscheck
 from iiwa_dnn.crosscheck import SOLVERS, Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.metrics import compute_metrics, failures
@@ -160,7 +159,7 @@ def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch
     def fail(*args: object, **options: object) -> None:
         raise qpsolvers.exceptions.SolverError("out of order")
 
-    monkeypatch.setattr(crosscheck.qpsolvers, "solve_problem", fail)
+    monkeypatch.setattr(qpsolvers, "solve_problem", fail)
     agreement = BOTH.check(heart_qp(), np.zeros(7))
     assert np.isnan(agreement.solution_gap).all()
     np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
