@@ -34,6 +34,7 @@ ORDER = (
     "benchmarks",
     "crosscheck",
     "checkpool",
+    "policies",
     "controller",
     "record",
     "torques",
