@@ -16,7 +16,6 @@ from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.solver import DNNSolver
 
-
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 
