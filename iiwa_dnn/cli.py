@@ -1,7 +1,7 @@
 """What the scripts share: arguments, messages and exit codes.
 
 Exit code 0: done, and every check agreed. 1: a step disagreed, was not solved, or broke a limit.
-2: bad input, one line on standard error.
+2: bad input, one line on standard error. 130 and 143: ended by Ctrl-C, by SIGTERM.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from iiwa_dnn.crosscheck import CrossCheck
 from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError
 from iiwa_dnn.experiments import paper
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.metrics import failures
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references import Heart
@@ -50,6 +51,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: error: {message} (--help lists the options)\n")
 
 
+@ended_by_signals()
 def track_heart(arguments: Sequence[str] | None = None) -> int:
     """Draw the heart, check every step, write the run; the script of the same name.
 

@@ -17,6 +17,7 @@ ORDER = (
     "checks",
     "files",
     "kernels_dense",
+    "interrupts",
     "kernels",
     "kernels_implicit",
     "urdf",
