@@ -52,6 +52,7 @@ def velocity_limit_excess(record: Record) -> FloatArray:
     return excess
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an overflow reads None
 def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 

@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import sys
+import tokenize
+import warnings
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -45,7 +49,7 @@ _OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {"torque": ("N", "n")}
 # What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
-    NotImplementedError, RuntimeError,
+    NotImplementedError, RuntimeError, tokenize.TokenError,
 )  # fmt: skip
 
 
@@ -172,7 +176,9 @@ class Record:
             FileError: If the file is missing, damaged or not a record.
         """
         try:
-            with Path(path).open("rb") as file:
+            with Path(path).open("rb") as file, warnings.catch_warnings():
+                # Of a head that is not quite right NumPy warns before it gives up.
+                warnings.simplefilter("ignore", UserWarning)
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
@@ -183,6 +189,7 @@ class Record:
             stored_gap = stored.pop("crosscheck_gap")
             settings = json.loads(str(stored.pop("settings")))
             record = cls(settings=settings, **stored)
+            same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
         except FileError:
             raise
         except OSError as error:
@@ -191,7 +198,7 @@ class Record:
             raise FileError(path, f"not a record: {one_line(error)}") from error
         except _DAMAGE as error:
             raise FileError(path, f"not a record, or damaged: {one_line(error)}") from error
-        if not np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True):
+        if not same_gap:
             raise FileError(path, "crosscheck_gap is not the largest solution_gap of each step")
         return record
 
@@ -225,21 +232,34 @@ def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict
     try:
         checked: dict[str, Any] = plain(settings)
         for key in limits:
-            if len(checked[key]) != n:
-                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", checked[key])
-        if len(checked["check"]["solvers"]) != k:
+            values = checked[key]
+            if len(values) != n or not all(value is None or _is_number(value) for value in values):
+                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
+        names = checked["check"]["solvers"]
+        if len(names) != k or not all(isinstance(name, str) for name in names):
             problem = f"must name {k} solvers, one for each column of solution_gap"
             raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
         check, times = checked["check"], (checked["dt"], checked["duration"])
         tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
-        if not (min(times) > 0 and min(tolerances) >= 0):
+        numbers = all(map(_is_number, (*times, *tolerances)))
+        if not (numbers and min(times) > 0 and min(tolerances) >= 0):
             problem = "dt and duration must be positive, and no tolerance negative"
             raise InvalidInputError("settings", problem, (*times, *tolerances))
-        if checked["mode"] not in MODES or not isinstance(checked["status"], str):
-            problem = f"mode must be one of {MODES}, status a text"
+        if not math.isfinite(checked["duration"] / checked["dt"]):
+            raise InvalidInputError("settings", "duration / dt is not finite", times)
+        texts = all(isinstance(checked[key], str) for key in ("robot", "status"))
+        if checked["mode"] not in MODES or not texts:
+            problem = f"mode must be one of {MODES}, robot and status a text"
             raise InvalidInputError("settings", problem, checked["mode"])
     except KeyError as error:
         raise InvalidInputError("settings", f"{error} is missing", settings) from error
     except TypeError as error:
         raise InvalidInputError("settings", str(error), settings) from error
     return checked
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value out of JSON is a number that a float can hold; its integers know no end."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import Matrix
 
 NoiseEntry = Literal["velocity", "network", "measurement"]
@@ -19,6 +20,10 @@ answer was taken, so the network has one control step to work it off; a network 
 every step forgets it. ``measurement`` [rad]: added to the joint angles that the controller sees;
 the robot, and the record, keep the true ones.
 """
+
+
+LARGEST = 1e3
+"""The most noise that is accepted, [rad/s] or [rad]: no robot has it, and far more overflows."""
 
 
 def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
@@ -35,9 +40,11 @@ def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
         Noise in the unit of `sigma`, of shape (steps, joints).
 
     Raises:
-        InvalidInputError: `sigma` is negative or not finite, or `seed` is negative.
+        InvalidInputError: `sigma` is negative, not finite or above ``LARGEST``, or `seed` is
+            negative.
     """
-    checks.not_negative("noise", sigma)
+    if checks.not_negative("noise", sigma) > LARGEST:
+        raise InvalidInputError("noise", f"must be at most {LARGEST:g}, not {sigma:g}", sigma)
     checks.integer("seed", seed, 0)
     if sigma == 0.0:
         return np.zeros((steps, joints))
