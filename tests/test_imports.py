@@ -36,6 +36,8 @@ ORDER = (
     "crosscheck",
     "checkpool",
     "policies",
+    "feedback",
+    "estimation",
     "controller",
     "record",
     "torques",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.qp import Matrix, Vector
 
 NoiseEntry = Literal["velocity", "network", "measurement"]
 NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
@@ -49,3 +51,39 @@ def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
     if sigma == 0.0:
         return np.zeros((steps, joints))
     return sigma * np.random.default_rng(seed).standard_normal((steps, joints))
+
+
+@dataclass(frozen=True)
+class VelocityDisturbance:
+    """A disturbance of every joint's velocity that no average removes.
+
+    It is added where the noise ``velocity`` is: ``bias + slope t + amplitude sin(2 pi f t)``.
+
+    Attributes:
+        bias: Constant part [rad/s].
+        slope: Growth of the ramp [rad/s^2].
+        amplitude: Of the sinusoid [rad/s].
+        frequency: f, of the sinusoid [Hz].
+    """
+
+    bias: float = 0.0
+    slope: float = 0.0
+    amplitude: float = 0.0
+    frequency: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        for name in ("bias", "slope", "amplitude"):
+            if checks.finite(name, value := getattr(self, name)) > LARGEST or value < -LARGEST:
+                raise InvalidInputError(name, f"must be within {LARGEST:g}, not {value:g}", value)
+        checks.positive("frequency", self.frequency)
+
+    def at(self, times: Vector) -> Vector:
+        """The disturbance [rad/s] at times (k,) [s], the same for all joints; (k,)."""
+        wave = np.sin(2.0 * math.pi * self.frequency * times)
+        disturbance: Vector = self.bias + self.slope * times + self.amplitude * wave
+        return disturbance
+
+    def settings(self) -> dict[str, Any]:
+        """The numbers, as values that JSON can hold."""
+        return asdict(self)
