@@ -128,7 +128,7 @@ def resolve(qp: QP, failed: Solution, policy: Policy, solver: DNNSolver) -> Reso
             program.
     """
     if np.isnan(qp.data).any() or not np.isfinite(qp.b).all():
-        return _stopped(qp, failed, np.zeros(qp.sizes[0], np.int8))
+        return stopped(qp, failed)
     reach = largest_fraction(qp)
     if reach.fraction >= _FEASIBLE:
         reference = ask_reference(qp, solver.tol)
@@ -139,7 +139,7 @@ def resolve(qp: QP, failed: Solution, policy: Policy, solver: DNNSolver) -> Reso
         problem = qp.to_qpsolvers()
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
     if policy == "stop":
-        return _stopped(qp, failed, reach.sides)
+        return stopped(qp, failed, reach.sides)
     if policy == "slow" and not np.isnan(reach.fraction):
         return _replaced(Action.SLOW, qp, solver, reach)
     return _replaced(Action.RELAX, qp, solver, least_violation(qp))
@@ -247,9 +247,16 @@ def _replaced(action: Action, qp: QP, solver: DNNSolver, reach: Reach) -> Resolu
     return Resolution(action, attainable, unsettled, fraction, reach.sides)
 
 
-def _stopped(qp: QP, failed: Solution, sides: Sides) -> Resolution:
-    """No velocity, with the residuals of the answer that was not to be had."""
+def stopped(qp: QP, failed: Solution, sides: Sides | None = None) -> Resolution:
+    """No velocity, with the residuals of the answer that was not to be had.
+
+    Args:
+        qp: The step's program, n variables.
+        failed: The network's last word on it.
+        sides: Which bounds stood in the way, (n,), where that is known.
+    """
     still = failed._replace(point=np.zeros_like(failed.point))
+    sides = np.zeros(qp.sizes[0], np.int8) if sides is None else sides
     return Resolution(Action.STOP, qp, still, 0.0, sides)
 
 

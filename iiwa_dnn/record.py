@@ -44,12 +44,25 @@ _SHAPES: dict[str, tuple[str | int, ...]] = {
     "reference_residual": ("N", "k"),
 }
 # Only runs that have them; a file without them is whole.
-_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {"torque": ("N", "n")}
+_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
+    "torque": ("N", "n"),
+    "bound_multiplier": ("N", "n"),
+    "clipped": ("N", "n"),
+    "action": ("N",),
+    "fraction": ("N",),
+    "blocking": ("N", "n"),
+}
+_WHOLE: dict[str, type[np.signedinteger[Any]]] = {
+    "iterations": np.int64,
+    "clipped": np.int8,
+    "action": np.int8,
+    "blocking": np.int8,
+}
 
 # What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
-    NotImplementedError, RuntimeError, tokenize.TokenError,
+    NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
 )  # fmt: skip
 
 
@@ -80,6 +93,16 @@ class Record:
         settings: What was asked for, in JSON types; an infinite limit reads None.
         torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
             run that has no masses.
+        bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
+            one, negative at a lower one, 0 where the bound does not act; by how much the
+            objective falls for each rad/s that the bound gives way. None where none ever acted.
+        clipped: Which joints' commands were clipped to their bounds on leaving the controller,
+            (N, n), 1 or 0; None where none ever was.
+        action: What was done at each step in place of the network's answer, (N,): codes of
+            `iiwa_dnn.policies.Action`. None where its answer was always taken, as in the next two.
+        fraction: Share of a control period by which the reference's clock advanced, (N,).
+        blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
+            1 for a position limit's, 2 for a velocity limit, 0 where none is in the way.
         wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
@@ -101,6 +124,11 @@ class Record:
     reference_residual: FloatArray
     settings: dict[str, Any]
     torque: FloatArray | None = None
+    bound_multiplier: FloatArray | None = None
+    clipped: NDArray[np.int8] | None = None
+    action: NDArray[np.int8] | None = None
+    fraction: FloatArray | None = None
+    blocking: NDArray[np.int8] | None = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
@@ -206,7 +234,7 @@ class Record:
 def _read_only_copy(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
     """Copy an array, so that nothing done to the original later can change the record."""
     array = np.asarray(value)
-    kinds, target = ("iu", np.int64) if name == "iterations" else ("fiu", np.float64)
+    kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
     # An empty list is an array of floats to NumPy, whatever it was meant to hold.
     if array.dtype.kind not in kinds and array.size:
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)

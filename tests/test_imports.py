@@ -20,6 +20,7 @@ ORDER = (
     "interrupts",
     "kernels",
     "kernels_implicit",
+    "kernels_clip",
     "urdf",
     "robot",
     "shapes",
@@ -41,6 +42,7 @@ ORDER = (
     "controller",
     "record",
     "torques",
+    "incidents",
     "metrics",
     "statistics",
     "simulation",
@@ -71,7 +73,16 @@ AFTER_THE_RECORD = {
     "decimation", "panels", "plots", "paper_plots", "report", "paper_findings", "paper_report",
     "rendering", "pictures", "viewer",
 }  # fmt: skip
-BEFORE_THEM = {"exceptions", "checks", "files", "record", "torques", "metrics", "statistics"}
+BEFORE_THEM = {
+    "exceptions",
+    "checks",
+    "files",
+    "record",
+    "torques",
+    "incidents",
+    "metrics",
+    "statistics",
+}
 # What draws the robot itself needs its shapes too, and nothing else of it.
 DRAW_THE_ROBOT = {"rendering", "pictures", "viewer"}
 SHAPES = {"robot", "shapes", "mujoco_model", "offscreen"}
@@ -107,6 +118,8 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
         where = f"{'.'.join(module)}:{line}: imports {'.'.join(name)}"
         if name[0] == "numba" and own.split("_")[0] != "kernels":
             found.append(f"{where}, but only kernels*.py are compiled")
+        if name[0] == "numba" and not own.startswith("kernels"):
+            found.append(f"{where}, but only kernels.py is compiled")
         if name[0] != "iiwa_dnn":
             continue
         other = name[1] if len(name) > 1 and name[1] in ORDER else "__init__"

@@ -15,15 +15,24 @@ from iiwa_dnn.checkpool import CheckPool, Job
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import Command, Controller, Mode
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Solution, Status, Vector
+from iiwa_dnn.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.exceptions import InvalidInputError, NoSolutionError
+from iiwa_dnn.feedback import IntegralFeedback
+from iiwa_dnn.policies import POLICIES, Action, Policy
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.record import Record
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.filters import MovingAverage
+from iiwa_dnn.simulation.incidents import Incidents
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
-from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, gaussian_noise
+from iiwa_dnn.simulation.noise import (
+    NOISE_ENTRIES,
+    NoiseEntry,
+    VelocityDisturbance,
+    gaussian_noise,
+)
 from iiwa_dnn.solver import DNNSolver
 
 COMPLETED = "completed"
@@ -73,8 +82,12 @@ class Simulation:
     added to the velocity, the filter averages it, and the robot moves by dt times the result.
     Noise may enter elsewhere instead (`iiwa_dnn.simulation.noise.NOISE_ENTRIES`).
 
-    A step that the network cannot solve ends the run there with the robot at rest; the record's
-    status says so.
+    What leaves the controller is clipped to the scheme's velocity bounds at the robot's true joint
+    angles, as a drive does that watches its own limits; so noise cannot break a limit.
+
+    At a step that the network cannot solve a policy decides (`iiwa_dnn.policies`), and the record
+    says so. Such a step is an Euler step, whatever the motion. Where a policy slows down, the
+    reference's clock does, and the record's desired positions are those of that clock.
     """
 
     def __init__(
@@ -90,7 +103,11 @@ class Simulation:
         motion: Motion = "euler",
         noise: float = 0.0,
         noise_at: NoiseEntry = "velocity",
+        disturbance: VelocityDisturbance | None = None,
         filter_window: int = 1,
+        integral_gain: float = 0.0,
+        estimator: NoiseModel | None = None,
+        policy: Policy = "slow",
         seed: int = 0,
         tol: float = 1e-9,
         check: CrossCheck | None = None,
@@ -111,7 +128,14 @@ class Simulation:
                 added to: [rad/s], or [rad] for ``measurement``.
             noise_at: ``"velocity"``, the one commanded; ``"network"``, x of the network's state;
                 ``"measurement"``, the joint angles that the controller sees.
+            disturbance: What is added to every joint's velocity beside the noise.
             filter_window: Samples that the moving average takes; 1 is no filter.
+            integral_gain: Feedback of the error's integral [1/s^2] (`iiwa_dnn.feedback`).
+            estimator: The controller sees the joint angles through a Kalman filter that is told
+                this of the noise (`iiwa_dnn.estimation`), and takes the estimated bias off its
+                command; None: it sees what is measured.
+            policy: What to do at a step without a solution: ``"slow"``, ``"relax"``, ``"stop"`` or
+                ``"raise"``.
             seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the
                 last digits of what ProxQP is said to be off by: it does not repeat itself.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
@@ -130,18 +154,24 @@ class Simulation:
             raise InvalidInputError(
                 "motion", "must be euler in continuous mode: the network has one clock", motion
             )
+        checks.one_of("policy", policy, POLICIES)
         steps = _step_count(length, dt)
         self._solver = DNNSolver(tol=tol) if solver is None else solver
         self._check = CrossCheck() if check is None else check
         self._scratch = robot.model.createData()
         start = Configuration(robot, q0, self._scratch)
-        self._controller = Controller(scheme.anchored(start), self._solver, mode, dt)
+        self._controller = Controller(scheme.anchored(start), self._solver, mode, dt, policy)
         self._robot, self._reference = robot, reference
         self._dt, self._motion = dt, MOTIONS[motion]
         checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
         self._noise_at = noise_at
         drawn = gaussian_noise(noise, steps, robot.dof, seed)
         self._noise = drawn if noise > 0.0 else None
+        times = dt * np.arange(steps, dtype=np.float64)
+        self._disturbance = None if disturbance is None else disturbance.at(times)
+        checks.not_negative("integral_gain", integral_gain)
+        self._integral = IntegralFeedback(integral_gain) if integral_gain else None
+        self._estimator = None if estimator is None else JointEstimator(estimator, dt)
         checks.integer("filter_window", filter_window, 1)
         self._filter_window = filter_window
         self._settings: dict[str, Any] = {
@@ -157,7 +187,11 @@ class Simulation:
             "motion": motion,
             "noise": noise,
             "noise_at": noise_at,
+            "disturbance": None if disturbance is None else disturbance.settings(),
             "filter_window": filter_window,
+            "integral_gain": integral_gain,
+            "estimator": None if estimator is None else estimator.settings(),
+            "policy": policy,
             "seed": seed,
             "tol": self._solver.tol,
             "rho": self._solver.network.rho,
@@ -167,31 +201,44 @@ class Simulation:
             "versions": {name: version(name) for name in _PACKAGES},
         }
         self.steps = steps
-        self._expected = Status.SOLVED if mode == "converged" else Status.ADVANCED
+        # The network's own answers keep the bounds; what is made of them may not.
+        altered = self._noise is not None or disturbance is not None or estimator is not None
+        altered = altered or filter_window > 1 or motion != "euler"
+        gain = self._controller.scheme.limit_gain
+        self._clips, self._gain = altered and gain is not None, gain or 0.0
         self._allocate(start.q)
 
     def run(self, progress: Progress | None = None) -> Record:
-        """Take every step, or stop at the first that was not solved.
+        """Take every step, or those until a policy stops.
 
         Args:
             progress: Called now and then with the number of steps done since the last call.
 
         Returns:
             The record of the steps taken, with the wall time of this call [s].
+
+        Raises:
+            NoSolutionError: A step has no solution and the policy is ``raise``.
         """
         began = time.perf_counter()
         self._solver.reset()
+        for part in (self._integral, self._estimator):
+            if part is not None:
+                part.reset()
+        self._incidents = Incidents(self.steps, self._robot, self._dt)
         # A window longer than the run never fills; so none is too long for the memory.
         self._average = MovingAverage(min(self._filter_window, self.steps))
         pool = CheckPool(self._check, self.steps * self._motion.stages)
         status, done = COMPLETED, 0
         while done < self.steps and status == COMPLETED:
             count = min(BLOCK, self.steps - done)
-            self._block = block = _Block(self._reference, done, count, self._dt)
-            taken = 0
-            while taken < count and status == COMPLETED:
-                status = self._step(done + taken)
-                taken += 1
+            # After a step that slowed the clock down a new block begins, with its own targets.
+            clock = done * self._dt - self._incidents.delay
+            self._block = block = _Block(self._reference, clock, count, self._dt)
+            while block.taken < count and status == COMPLETED and block.fraction == 1.0:
+                status = self._step(done + block.taken)
+                block.taken += 1
+            taken = block.taken
             self._record_block(done, taken)
             pool.submit(*block.job())
             done += taken
@@ -199,7 +246,7 @@ class Simulation:
                 progress(taken)
         last = Configuration(self._robot, self._q[done], self._scratch)
         self._position[done], self._rotation[done] = last.position, last.rotation
-        desired = self._reference.sample([done * self._dt])
+        desired = self._reference.sample([done * self._dt - self._incidents.delay])
         self._position_desired[done] = desired.position[0]
         self._rotation_desired[done] = desired.rotation[0]
         agreement = pool.finish().worst_of(self._motion.stages)
@@ -217,14 +264,21 @@ class Simulation:
         self._iterations = np.empty(steps, dtype=np.int64)
 
     def _velocity_at(self, q: Vector, t: float) -> Vector:
-        """The controller's answer at a stage, noted in the block."""
+        """The controller's answer at a stage, `t` [s] after the block's start; noted there."""
         block = self._block
         conf = Configuration.from_checked(self._robot, q, self._scratch)
-        command = self._controller.step(conf, block.target(t))
+        target = block.target(t)
+        if self._integral is not None:
+            # Once a step, and not while the arm cannot follow: the integral would wind up.
+            first_stage = len(block.commands) == block.taken * self._motion.stages
+            if first_stage and not self._incidents.pending:
+                self._integral.observe(conf, target, self._dt)
+            target = self._integral.apply(target)
+        command = self._controller.step(conf, target)
         block.confs.append(conf)
         block.commands.append(command)
-        if command.solution.status is not self._expected:
-            block.failed = command.solution
+        if command.resolution is not None and block.unsolved is None:
+            block.unsolved = command
         return command.dq
 
     def _step(self, k: int) -> str:
@@ -235,28 +289,52 @@ class Simulation:
             noise = self._noise[k]
             if self._noise_at == "measurement":
                 seen = q + noise
-        velocity = self._motion.step(self._velocity_at, seen, k * dt, dt)
+        if self._estimator is not None:
+            seen = self._estimator.update(seen)
+        try:
+            velocity = self._motion.step(self._velocity_at, seen, block.taken * dt, dt)
+        except NoSolutionError as error:
+            error.step = k
+            raise
+        self._incidents.pending = block.unsolved is not None
+        if block.unsolved is not None:
+            velocity = self._unsolved(k)
         if seen is not q:  # the controller saw another posture than the robot has
             true = Configuration.from_checked(self._robot, q, self._scratch)
             block.confs[-self._motion.stages] = true
-        if block.failed is not None:
-            return self._stop(k, block.failed)
         self._dq_solver[k] = velocity
+        if block.stopped:
+            self._dq[k], self._q[k + 1] = 0.0, q
+            return self._incidents.status(k)
+        if self._estimator is not None:
+            velocity = velocity - self._estimator.bias
+            self._estimator.predict(velocity)
         if noise is not None and self._noise_at == "velocity":
             velocity = velocity + noise
         elif noise is not None and self._noise_at == "network":
             self._solver.disturb(noise)
-        kernels.move(self._q, self._dq, k, self._average(velocity), dt)
+        if self._disturbance is not None:
+            velocity = velocity + self._disturbance[k]
+        velocity = self._average(velocity)
+        if self._clips:
+            velocity = self._incidents.clipped(k, q, self._gain, velocity)
+        kernels.move(self._q, self._dq, k, velocity, dt)
         return COMPLETED
 
-    def _stop(self, k: int, failed: Solution) -> str:
-        """Leave the robot at rest in step k, and say why."""
-        self._dq_solver[k] = self._dq[k] = 0.0
-        self._q[k + 1] = self._q[k]
-        return (
-            f"stopped at step {k} (t = {k * self._dt:g} s): the network did not settle, "
-            f"KKT residual {failed.residuals.largest:.1e}"
-        )
+    def _unsolved(self, k: int) -> Vector:
+        """Note what the policy decided in step k; returns the velocity of this Euler step."""
+        block, stages = self._block, self._motion.stages
+        first = block.taken * stages
+        # If only a later stage has no solution, the answer at the step's start will do.
+        command = block.commands[first]
+        block.commands[first:] = [command] * stages
+        block.confs[first:] = [block.confs[first]] * stages
+        block.unsolved = None
+        if command.resolution is not None:
+            self._incidents.note(k, command.resolution)
+            block.fraction = command.resolution.fraction
+            block.stopped = command.resolution.action is Action.STOP
+        return command.dq
 
     def _record_block(self, first: int, steps: int) -> None:
         """Write the block's steps into the arrays of the run."""
@@ -278,6 +356,9 @@ class Simulation:
         self._kkt_residual[rows] = residuals.reshape(steps, -1).max(axis=1)
         iterations = np.array([solution.iterations for solution in solutions])
         self._iterations[rows] = iterations.reshape(steps, stages).sum(axis=1)
+        n = self._robot.dof
+        bounds = np.concatenate([solution.point[-n:] for solution in solutions[::stages]])
+        self._incidents.multipliers(rows, bounds.reshape(steps, n))
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
@@ -297,6 +378,7 @@ class Simulation:
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": status},
+            **self._incidents.arrays(steps),
             wall_time_s=wall_time,
         )
 
@@ -314,17 +396,21 @@ def _step_count(duration: float, dt: float) -> int:
 class _Block:
     """What a stretch of steps leaves behind, one entry a stage, until it is recorded."""
 
-    def __init__(self, reference: Reference, first: int, steps: int, dt: float) -> None:
-        self._first, self._dt = first, dt
+    def __init__(self, reference: Reference, start: float, steps: int, dt: float) -> None:
+        """Take the targets of a stretch that starts at a time of the reference's clock [s]."""
+        self._dt = dt
         # Two targets a step: the methods of motion ask at its ends and at its middle.
-        self.targets = reference.sample((2 * first + np.arange(2 * steps + 1)) * (0.5 * dt))
+        self.targets = reference.sample(start + np.arange(2 * steps + 1) * (0.5 * dt))
         self.confs: list[Configuration] = []
         self.commands: list[Command] = []
-        self.failed: Solution | None = None
+        self.taken = 0
+        self.unsolved: Command | None = None
+        self.fraction = 1.0
+        self.stopped = False
 
     def target(self, t: float) -> Target:
-        """The target at a stage's time [s]."""
-        return self.targets[round(2.0 * t / self._dt) - 2 * self._first]
+        """The target at a stage's time since the block's start [s]."""
+        return self.targets[round(2.0 * t / self._dt)]
 
     def job(self) -> Job:
         """The programs and the answers, for the check."""
