@@ -46,7 +46,8 @@ class Controller:
             by one control period, as in the paper, and lags.
         dt: Control period [s], the time that the network advances in ``continuous`` mode.
         policy: What to do at a step that the network does not solve in ``converged`` mode
-            (`iiwa_dnn.policies`). In ``continuous`` mode it never settles and always answers.
+            (`iiwa_dnn.policies`); None: hand its last word to the caller. In ``continuous`` mode
+            it never settles and always answers.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Controller:
         solver: DNNSolver,
         mode: Mode = "converged",
         dt: float = 1e-4,
-        policy: Policy = "slow",
+        policy: Policy | None = None,
     ) -> None:
         """Bring the parts together.
 
@@ -66,7 +67,8 @@ class Controller:
                 `dt` not a positive time.
         """
         checks.one_of("mode", mode, MODES)
-        checks.one_of("policy", policy, POLICIES)
+        if policy is not None:
+            checks.one_of("policy", policy, POLICIES)
         checks.positive("dt", dt)
         gain = scheme.limit_gain
         if gain is not None and gain * dt > 1.0:
@@ -86,7 +88,7 @@ class Controller:
         qp = self.scheme.build_qp(conf, target)
         if self.mode == "converged":
             solution = self.solver.solve(qp)
-            if solution.status is not Status.SOLVED:
+            if solution.status is not Status.SOLVED and self.policy is not None:
                 resolution = resolve(qp, solution, self.policy, self.solver)
                 return Command(resolution.qp, resolution.solution, resolution)
             return Command(qp, solution)

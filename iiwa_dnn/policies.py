@@ -38,7 +38,7 @@ import qpsolvers
 from numpy.typing import NDArray
 
 from iiwa_dnn.exceptions import NoSolutionError
-from iiwa_dnn.qp import QP, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.solver import DNNSolver
 
 Policy = Literal["slow", "relax", "stop", "raise"]
@@ -49,6 +49,20 @@ ROTATION_LENGTH = 0.1
 1 rad/s weighs like a missing 0.1 m/s."""
 
 _FEASIBLE = 1.0 - 1e-9  # the linear program's own tolerance is 1e-10
+SINGULAR = 0.05
+"""Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
+There the joints would race for next to nothing, and over the singular pose and back at every step;
+``slow`` goes slower in proportion, so that the arm comes to rest there."""
+
+REST = 1e-3
+"""A fraction below it, in a singular pose, is none: the arm stands still."""
+
+DAMPING = 0.01
+"""Of ``relax``, by the violation [m/s]: what joint velocities cost, [(m/rad)^2 / (m/s)]. It bounds
+the rate at which a singular pose is approached, whatever is asked for."""
+
+_PENALTY = 1e5
+
 # At the very edge of what is feasible the multipliers may grow without bound; seen at one step in
 # 150 of random ones, where a little less has room enough.
 _SHARES = (1.0, 0.99, 0.9)
@@ -141,6 +155,9 @@ def resolve(qp: QP, failed: Solution, policy: Policy, solver: DNNSolver) -> Reso
     if policy == "stop":
         return stopped(qp, failed, reach.sides)
     if policy == "slow" and not np.isnan(reach.fraction):
+        reach = _braked(qp, reach)
+        if not reach.dq.any() and _rest_is_allowed(qp):
+            return _at_rest(qp, reach.sides)
         return _replaced(Action.SLOW, qp, solver, reach)
     return _replaced(Action.RELAX, qp, solver, least_violation(qp))
 
@@ -174,23 +191,45 @@ def largest_fraction(qp: QP) -> Reach:
     return Reach(min(float(found.x[n]) / scale, 1.0), dq, _sides(push))
 
 
-def least_violation(qp: QP) -> Reach:
-    """The joint velocity inside the bounds that violates the task rows least, weighted.
+def least_violation(qp: QP, damping: float | None = None) -> Reach:
+    """The joint velocity inside the bounds that violates the task rows least, weighted and damped.
 
-    Orientation rows count `ROTATION_LENGTH` beside the position's 1. Solved by the active-set
-    method of P. B. Stark and R. L. Parker, "Bounded-variable least-squares" (1995), in scipy.
+    Orientation rows count `ROTATION_LENGTH` beside the position's 1. Undamped, an arm that is
+    pulled beyond its reach would swing over the singular pose and back at every step; so the
+    squared joint velocity is added, times ``DAMPING`` and the violation that is left without it.
+    A violation that vanishes leaves no damping.
 
     Args:
         qp: A program without inequality rows, finite but for its bounds.
+        damping: The factor of the squared joint velocity; None: as said above.
 
     Returns:
         Fraction 1, since the clock runs on; the velocity; the bounds that stand in the way.
     """
-    from scipy.optimize import lsq_linear
-
     weights = np.full(qp.b.size, ROTATION_LENGTH)
     weights[:3] = 1.0
     rows, rhs = weights[:, np.newaxis] * qp.A, weights * qp.b
+    if damping is None:
+        left = float(np.linalg.norm(rhs - rows @ _bounded_least_squares(rows, rhs, qp)))
+        damping = DAMPING * left
+    n = qp.sizes[0]
+    rows = np.vstack([rows, np.sqrt(damping) * np.eye(n)])
+    rhs = np.append(rhs, np.zeros(n))
+    dq = _bounded_least_squares(rows, rhs, qp)
+    push = rows.T @ (rhs - rows @ dq)
+    slack = np.where(push > 0.0, qp.ub - dq, dq - qp.lb)
+    at_bound = slack <= 1e-12 * (1.0 + np.abs(dq))
+    return Reach(1.0, dq, _sides(np.where(at_bound, push, 0.0)))
+
+
+def _bounded_least_squares(rows: Matrix, rhs: Vector, qp: QP) -> Vector:
+    """The point inside the bounds of `qp` with the least |rows x - rhs|.
+
+    By the active-set method of P. B. Stark and R. L. Parker, "Bounded-variable least-squares"
+    (1995), in scipy.
+    """
+    from scipy.optimize import lsq_linear
+
     dq: Vector = np.clip(np.zeros(qp.sizes[0]), qp.lb, qp.ub)
     free = qp.lb < qp.ub  # a joint far outside its limits has one velocity left
     if free.any():
@@ -199,10 +238,7 @@ def least_violation(qp: QP) -> Reach:
         # By default it stops after n changes of its active set, which is too few.
         found = lsq_linear(rows[:, free], wanted, bounds, "bvls", tol=1e-14, max_iter=1000)
         dq[free] = np.clip(found.x, *bounds)
-    push = rows.T @ (rhs - rows @ dq)
-    slack = np.where(push > 0.0, qp.ub - dq, dq - qp.lb)
-    at_bound = slack <= 1e-12 * (1.0 + np.abs(dq))
-    return Reach(1.0, dq, _sides(np.where(at_bound, push, 0.0)))
+    return dq
 
 
 def ask_reference(qp: QP, tol: float) -> Solution | None:
@@ -240,11 +276,48 @@ def _replaced(action: Action, qp: QP, solver: DNNSolver, reach: Reach) -> Resolu
         reference = ask_reference(attainable, solver.tol)
         if reference is not None:
             return Resolution(action, attainable, reference, fraction, reach.sides)
-    # Inside the bounds and along the path, if not the best: nobody knows a better one.
+    dq = _nearly(attainable)
     residuals = attainable.residuals(dq, None, None, None)
     point = np.concatenate([dq, np.zeros(p + n)])
     unsettled = Solution(point, qp.sizes, Status.NOT_SETTLED, 0, 0.0, *residuals)
     return Resolution(action, attainable, unsettled, fraction, reach.sides)
+
+
+def _braked(qp: QP, reach: Reach) -> Reach:
+    """Less of a velocity for which the joints race and the tip hardly moves; see ``SINGULAR``."""
+    tip, joints = np.linalg.norm(qp.A @ reach.dq), np.linalg.norm(reach.dq)
+    if tip >= SINGULAR * joints or not _rest_is_allowed(qp):
+        return reach
+    share = float(tip / (SINGULAR * joints))
+    if share * reach.fraction < REST:
+        share = 0.0
+    return Reach(share * reach.fraction, share * reach.dq, reach.sides)
+
+
+def _rest_is_allowed(qp: QP) -> bool:
+    return bool((qp.lb <= 0.0).all() and (qp.ub >= 0.0).all())
+
+
+def _at_rest(qp: QP, sides: Sides) -> Resolution:
+    """No velocity, as the solution of a program: nothing is asked for but the least motion."""
+    still = QP.from_data(qp.data.copy(), qp.sizes)
+    still.b[:] = 0.0
+    still.q[:] = 0.0
+    n, m, p = qp.sizes
+    answer = Solution(np.zeros(2 * n + m + p), qp.sizes, Status.SOLVED, 0, 0.0, 0.0, 0.0, 0.0)
+    return Resolution(Action.SLOW, still, answer, 0.0, sides)
+
+
+def _nearly(qp: QP) -> Vector:
+    """The best point by the objective that fulfils the task nearly.
+
+    For programs on the edge, whose multipliers nobody finds: the task rows become a penalty.
+    """
+    # 0.5 x'P x + q'x = 0.5 |L'x + w|^2 with P = L L' and L w = q; P may be singular by a hair.
+    factor = np.linalg.cholesky(qp.P + 1e-12 * np.eye(qp.sizes[0]))
+    rows = np.vstack([factor.T, _PENALTY * qp.A])
+    rhs = np.append(-np.linalg.solve(factor, qp.q), _PENALTY * qp.b)
+    return _bounded_least_squares(rows, rhs, qp)
 
 
 def stopped(qp: QP, failed: Solution, sides: Sides | None = None) -> Resolution:

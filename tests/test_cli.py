@@ -316,12 +316,15 @@ def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # A heart of 3 m: out of the arm's reach.
-    assert call([*QUICK, "--scale", "0.1", "--duration", "2", "--out", str(tmp_path)]) == 1
+    far = [*QUICK, "--scale", "0.1", "--duration", "2", "--policy", "stop"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
     record, metrics = results(tmp_path)
     steps = len(record["dq"])
     assert steps < 2000
     assert metrics["settings"]["status"].startswith(f"stopped at step {steps - 1} ")
-    assert f"ended after {steps} of 2,000 steps" in capsys.readouterr().out
+    output = capsys.readouterr().out
+    assert f"ended after {steps} of 2,000 steps" in output
+    assert "against joint 4 lower velocity limit" in output
     np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
 
 

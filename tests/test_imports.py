@@ -118,8 +118,6 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
         where = f"{'.'.join(module)}:{line}: imports {'.'.join(name)}"
         if name[0] == "numba" and own.split("_")[0] != "kernels":
             found.append(f"{where}, but only kernels*.py are compiled")
-        if name[0] == "numba" and not own.startswith("kernels"):
-            found.append(f"{where}, but only kernels.py is compiled")
         if name[0] != "iiwa_dnn":
             continue
         other = name[1] if len(name) > 1 and name[1] in ORDER else "__init__"
