@@ -328,6 +328,40 @@ def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture
     np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
 
 
+def test_a_step_that_raises_writes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    far = [*QUICK, "--scale", "0.1", "--duration", "1", "--policy", "raise"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err == (
+        "track_heart: error: step 403: no joint velocity inside the bounds fulfils the task\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> None:
+    far = [*QUICK, "--scale", "0.008", "--speed", "0.06", "--duration", "1", "--policy", policy]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    record, metrics = results(tmp_path)
+    assert metrics["settings"]["status"] == "completed"
+    assert len(record["dq"]) == 1000
+    limits = 0.06 * np.deg2rad([98, 98, 100, 130, 140, 180, 180])
+    assert (np.abs(record["dq"]) <= limits + 1e-12).all()
+    assert metrics["incidents"][f"{policy}_steps"] > 300
+    assert metrics["incidents"]["blocking"][0]["joint"] == 4
+    report = (tmp_path / "report.md").read_text()
+    assert "joint 4 lower velocity limit" in report
+    if policy == "slow":  # exactly along the path, later
+        assert metrics["max_position_error_m"] < 1e-4
+        assert metrics["incidents"]["path_time_s"] < 0.9
+    else:  # in time, beside the path
+        assert metrics["max_position_error_m"] > 1e-3
+        assert metrics["incidents"]["path_time_s"] == pytest.approx(1.0)
+
+
 # Exit code 2
 
 
@@ -452,6 +486,13 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "joint limit negative": (["--joint-limit", "-1"], "joint-limit"),
     "joint limit 0": (["--joint-limit", "0"], "joint-limit"),
     "joint limit NaN": (["--joint-limit", "nan"], "joint-limit"),
+    "speed 0": (["--speed", "0"], "speed"),
+    "speed negative": (["--speed", "-0.5"], "speed"),
+    "speed NaN": (["--speed", "nan"], "speed"),
+    "gain negative": (["--gain", "-1"], "gain"),
+    "gain NaN": (["--gain", "nan"], "gain"),
+    "integral gain negative": (["--integral-gain", "-1"], "integral_gain"),
+    "unknown policy": (["--policy", "hope"], "'hope'"),
     "tolerance 0": (["--tolerance", "0"], "tolerance"),
     "tolerance NaN": (["--tolerance", "nan"], "tolerance"),
     "unknown mode": (["--mode", "discrete"], "'discrete'"),
@@ -540,7 +581,7 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     options = (
         "robot mode weight orientation joint-limit dt duration scale motion noise filter-window "
-        "seed check tolerance out no-plots quiet"
+        "seed check tolerance out no-plots quiet policy speed gain integral-gain"
     )
     for option in options.split():
         assert f"--{option}" in text

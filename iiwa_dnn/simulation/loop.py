@@ -294,8 +294,7 @@ class Simulation:
         try:
             velocity = self._motion.step(self._velocity_at, seen, block.taken * dt, dt)
         except NoSolutionError as error:
-            error.step = k
-            raise
+            raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
         self._incidents.pending = block.unsolved is not None
         if block.unsolved is not None:
             velocity = self._unsolved(k)
