@@ -2,6 +2,7 @@
 
 from importlib.metadata import version
 
+from iiwa_dnn.batch import BatchSolution, solve_batch
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import Command, Controller
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
@@ -13,9 +14,9 @@ from iiwa_dnn.exceptions import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler
+from iiwa_dnn.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.metrics import compute_metrics, failures
-from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.networks import DualNetwork, PrimalDualNetwork, ProjectionNetwork
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.record import Record
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
@@ -28,7 +29,9 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP",
+    "AdaptiveRungeKutta",
     "Agreement",
+    "BatchSolution",
     "Circle",
     "Command",
     "Configuration",
@@ -36,6 +39,7 @@ __all__ = [
     "CrossCheck",
     "DNNSolver",
     "DoubleIndicator",
+    "DualNetwork",
     "ExplicitEuler",
     "FileError",
     "Heart",
@@ -47,6 +51,7 @@ __all__ = [
     "MissingDependencyError",
     "NoSolutionError",
     "NotFoundError",
+    "PrimalDualNetwork",
     "ProjectionNetwork",
     "PseudoInverse",
     "Record",
@@ -64,5 +69,6 @@ __all__ = [
     "failures",
     "load_robot",
     "simulate",
+    "solve_batch",
     "solve_problem",
 ]

@@ -37,9 +37,12 @@ class Configuration:
     # Built at every control step, so: slots, and no numpy call that is not needed.
     __slots__ = ("_data", "_inertia", "_robot", "arrays")
     arrays: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
+    _inertia: NDArray[np.float64] | None
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
-        self._place(robot, _joint_vector(q, robot.q_lower.shape), data)
+        vector = _joint_vector(q, robot.q_lower.shape)
+        self._robot, self._data, self._inertia = robot, data, None
+        self.arrays = _kinematics(robot, vector, data)
 
     @classmethod
     def from_checked(
@@ -50,20 +53,9 @@ class Configuration:
         For a loop that computes ``q`` itself and does not write into it again.
         """
         conf = cls.__new__(cls)
-        conf._place(robot, q, data)
+        conf._robot, conf._data, conf._inertia = robot, data, None
+        conf.arrays = _kinematics(robot, q, data)
         return conf
-
-    def _place(self, robot: Robot, q: NDArray[np.float64], data: pin.Data | None) -> None:
-        self._robot = robot
-        self._data = data
-        self._inertia: NDArray[np.float64] | None = None
-        model, tip_id = robot.model, robot.tip_id
-        if data is None:
-            data = model.createData()
-        # Both results are new arrays, not views of the scratch memory. The first call has placed
-        # the joints, so the second need not run over the chain again.
-        jacobian = _jacobian(model, data, q, tip_id, _WORLD_AXES)
-        self.arrays = (q, _place_tip(model, data, tip_id).homogeneous, jacobian)
 
     @property
     def robot(self) -> Robot:
@@ -119,6 +111,19 @@ class Configuration:
     def __reduce__(self) -> tuple[object, ...]:
         # Cheaper to compute again than to carry, and the scratch memory stays behind.
         return Configuration, (self._robot, self.arrays[0])
+
+
+def _kinematics(
+    robot: Robot, q: NDArray[np.float64], data: pin.Data | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """``(q, pose, jacobian)``."""
+    model, tip_id = robot.model, robot.tip_id
+    if data is None:
+        data = model.createData()
+    # Both results are new arrays, not views of the scratch memory. The first call has placed the
+    # joints, so the second need not run over the chain again.
+    jacobian = _jacobian(model, data, q, tip_id, _WORLD_AXES)
+    return q, _place_tip(model, data, tip_id).homogeneous, jacobian
 
 
 def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:

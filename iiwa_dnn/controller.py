@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
-from iiwa_dnn import checks
+from iiwa_dnn import checks, kernels_control
+from iiwa_dnn.answers import Answers
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.policies import POLICIES, Policy, Resolution, resolve, stopped
-from iiwa_dnn.qp import QP, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes import Scheme, compiled_program, identity
 from iiwa_dnn.solver import DNNSolver
 
 Mode = Literal["converged", "continuous"]
@@ -78,6 +80,8 @@ class Controller:
         self.mode = mode
         self.dt = dt
         self.policy = policy
+        self._expected = Status.SOLVED if mode == "converged" else Status.ADVANCED
+        self._parts: _Parts | None = None
 
     def step(self, conf: Configuration, target: Target) -> Command:
         """Build this instant's program and let the network answer it.
@@ -85,14 +89,77 @@ class Controller:
         Raises:
             NoSolutionError: There is no solution and the policy is ``raise``.
         """
+        answers = self.answers(1)
+        self.answer(conf, target, answers)
+        return Command(answers.qp(0), answers.solution(0), answers.resolved.get(0))
+
+    def answers(self, capacity: int) -> Answers:
+        """Room for the answers of so many steps."""
+        return Answers(capacity, self._expected)
+
+    def answer(self, conf: Configuration, target: Target, answers: Answers) -> Vector:
+        """Take a step as `step` does, and add what it decided to `answers`.
+
+        Returns:
+            Joint velocity [rad/s], (n,), a view into `answers`.
+        """
+        parts = self._parts
+        if parts is None or parts.scheme is not self.scheme or parts.robot is not conf.robot:
+            self._parts = parts = self._take_apart(conf.robot)
+        _, _, program, network, sizes, kinetic = parts
+        count = answers.count
+        if network is not None:
+            state = self.solver.warm_state(sizes)
+            if state is not None:
+                if answers.sizes != sizes:
+                    answers.shape(sizes)
+                q, pose, jacobian = conf.arrays
+                mode, rows, weights, limits, home, _ = program
+                row = answers.rows[count]
+                if kernels_control.control_step(
+                    row, rows, mode, q, pose, jacobian, target.data, limits, home,
+                    program.kinetic(conf) if kinetic is None else kinetic, weights, state, network,
+                ):  # fmt: skip
+                    answers.count = count + 1
+                    x: Vector = row[answers.x_slice]
+                    return x
+        # The first step, one that does not succeed, and parts without a compiled form.
         qp = self.scheme.build_qp(conf, target)
         if self.mode == "converged":
             solution = self.solver.solve(qp)
-            if solution.status is not Status.SOLVED and self.policy is not None:
+        else:
+            solution = self.solver.advance(qp, self.dt)
+        if solution.status is not self._expected and self.policy is not None:
+            if self.mode == "converged":
                 resolution = resolve(qp, solution, self.policy, self.solver)
-                return Command(resolution.qp, resolution.solution, resolution)
-            return Command(qp, solution)
-        solution = self.solver.advance(qp, self.dt)
-        if solution.status is not Status.ADVANCED:  # no longer a number
-            return Command(qp, solution, stopped(qp, solution))
-        return Command(qp, solution)
+            else:
+                resolution = stopped(qp, solution)  # it is no longer a number
+            qp, solution = resolution.qp, resolution.solution
+            answers.resolved[count] = resolution
+        answers.add(qp, solution, conf.arrays[1])
+        return answers.x(count)
+
+    def _take_apart(self, robot: Robot) -> _Parts:
+        """What a compiled step needs, where scheme and solver have a compiled form."""
+        scheme, solver = self.scheme, self.solver
+        program = compiled_program(scheme, robot)
+        network = None
+        # A subclass that solves in a way of its own is asked, not its parent.
+        if program is not None and type(solver) is DNNSolver:
+            network = solver.numbers(0.0 if self.mode == "converged" else self.dt)
+        if program is None or network is None:
+            return _Parts(scheme, robot, program, None, (0, 0, 0), None)
+        sizes = (robot.dof, 0, program.rows)
+        kinetic = None if program.inertia else identity(robot.dof)
+        return _Parts(scheme, robot, program, network, sizes, kinetic)
+
+
+class _Parts(NamedTuple):
+    """What a compiled step needs, and whom it holds for."""
+
+    scheme: Scheme
+    robot: Robot
+    program: Any
+    network: Vector | None
+    sizes: tuple[int, int, int]
+    kinetic: Matrix | None

@@ -25,6 +25,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+# numba makes a float of a signed and an unsigned integer: the constant has to be unsigned too.
+ONE = np.uint64(1)
+
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def offsets(n, m, p):
@@ -172,10 +175,14 @@ def velocity_bounds(q, limits, gain, lb, ub):
         ub[i] = min(max(gain * (limits[1, i] - q[i]), -fastest), fastest)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def move(q, dq, k, velocity, dt):
-    """Write the velocity (n,) into row k of dq, and where it leads within dt into row k + 1 of q."""
+@njit(cache=True, error_model="numpy")
+def move(q, dq, dq_solver, k, velocity, answer, dt):
+    """Write `velocity` and the solver's `answer` (n,) into rows k, and where it leads into q.
+
+    Rounded as numpy would: no product is contracted with its sum.
+    """
     for i in range(velocity.size):
+        dq_solver[k, i] = answer[i]
         dq[k, i] = velocity[i]
         q[k + 1, i] = q[k, i] + dt * velocity[i]
 
@@ -362,11 +369,11 @@ def explicit_euler(data, n, m, p, project, s, step, count, tol):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def cholesky_solve(K, n, rhs, out):
-    """Solve K out = rhs for the leading n entries; K's lower half (row stride n) is overwritten.
+def cholesky_factor(K, n):
+    """Overwrite K's lower half (row stride n) by its Cholesky factor, with inverted diagonal.
 
     Returns:
-        False if K is not positive definite to working precision; `out` is then meaningless.
+        False if K is not positive definite to working precision; its content is then meaningless.
     """
     for i in range(n):
         for j in range(i):
@@ -380,6 +387,12 @@ def cholesky_solve(K, n, rhs, out):
         if not value > 0.0:
             return False
         K[i * n + i] = 1.0 / np.sqrt(value)  # the inverse: a division costs many products
+    return True
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def factor_solve(K, n, rhs, out):
+    """Solve with the factor of `cholesky_factor` in K, for the leading n entries of `out`."""
     for i in range(n):
         value = rhs[i]
         for k in range(i):
@@ -390,30 +403,43 @@ def cholesky_solve(K, n, rhs, out):
         for k in range(i + 1, n):
             value -= K[k * n + i] * out[k]
         out[i] = value * K[i * n + i]
-    return True
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def condensed_matrix(data, n, m, p, step, active, K):
-    """Write the lower half of P + I/step + step (A^T A + active rows^T active rows) into K."""
+    """Write the lower half of P + I/step + step (A^T A + active rows^T active rows) into K.
+
+    Equality rows go two at a time, which halves the passes over K; indices are unsigned, which
+    saves numba the question whether they are negative.
+    """
     _, at_G, at_A, _ = offsets(n, m, p)
+    size, row = np.uint64(n), np.uint64(at_A)
+    for i in range(size):
+        for k in range(i + ONE):
+            K[i * size + k] = data[i * size + k]
     for i in range(n):
-        for k in range(i + 1):
-            K[i * n + k] = data[i * n + k]
         K[i * n + i] += 1.0 / step + step * (active[m + i] + active[m + n + i])
-    for j in range(p):
-        row = at_A + j * n
-        for i in range(n):
-            scaled = step * data[row + i]
-            for k in range(i + 1):
-                K[i * n + k] += scaled * data[row + k]
+    for _ in range(p // 2):
+        other = row + size
+        for i in range(size):
+            first, second = step * data[row + i], step * data[other + i]
+            for k in range(i + ONE):
+                K[i * size + k] += first * data[row + k] + second * data[other + k]
+        row = other + size
+    if p % 2:
+        _add_row(data, row, step, size, K)
     for j in range(m):
         if active[j] != 0.0:
-            row = at_G + j * n
-            for i in range(n):
-                scaled = step * data[row + i]
-                for k in range(i + 1):
-                    K[i * n + k] += scaled * data[row + k]
+            _add_row(data, np.uint64(at_G + j * n), step, size, K)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _add_row(data, row, step, size, K):
+    """Add step v v^T to the lower half of K, v being the row of `data` that begins there."""
+    for i in range(size):
+        scaled = step * data[row + i]
+        for k in range(i + ONE):
+            K[i * size + k] += scaled * data[row + k]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -462,19 +488,22 @@ def recover_multipliers(data, n, m, p, s, active, step, new):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def linearly_implicit_step(data, n, m, p, s, rates, active, step, K, rhs, new):
+def linearly_implicit_step(data, n, m, p, s, rates, active, step, factored, K, rhs, new):
     """One linearly implicit Euler step of the network without its primal projection.
 
     Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n) and
-    `rhs` (n) are scratch.
+    `rhs` (n) are scratch; with `factored`, K holds the factor that the last call left, for the same
+    step length and active rows.
 
     Returns:
         False if the condensed matrix is not positive definite; `new` is then meaningless.
     """
     reduced_rates(data, n, m, p, rates, active, step, rhs, new)
-    condensed_matrix(data, n, m, p, step, active, K)
-    if not cholesky_solve(K, n, rhs, new):
-        return False
+    if not factored:
+        condensed_matrix(data, n, m, p, step, active, K)
+        if not cholesky_factor(K, n):
+            return False
+    factor_solve(K, n, rhs, new)
     recover_multipliers(data, n, m, p, s, active, step, new)
     return True
 

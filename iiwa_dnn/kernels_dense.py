@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-# numba makes a float of a signed and an unsigned integer: the constants have to be unsigned too.
-ONE = np.uint64(1)
+from iiwa_dnn.kernels import ONE
+
 FOUR = np.uint64(4)
 
 

@@ -24,6 +24,8 @@ FIRST_STEP = 10.0
 """Length of the first fully solved step, in units of rho; it grows tenfold a round."""
 LAST_STEP = 1e6
 """Where it ends: beyond, the linear systems are singular to working precision."""
+PLAIN = 16
+"""Up to this many variables the plain loops of `kernels.py` are quicker than vector code."""
 NEAR = 1e4
 """Rates up to this many tolerances are near the solution, where rounding is in the way."""
 TRIALS = np.array([1.0, 1e-2, 1e2, 1e-4, 1e4])
@@ -278,7 +280,7 @@ def settle_implicit(data, n, m, p, s, point, tol, max_systems, long_step):
     K, rhs = work[3 * size + 2 * flags : -n], work[-n:]
     step = FIRST_STEP
     systems, time, trial, stalled, travelling = 0, 0.0, 0, 0, 0
-    begun = False
+    begun, factored = False, False
     rate = field(data, n, m, p, False, s, rates, active)
     while systems < max_systems:
         if not rate > tol:
@@ -290,9 +292,12 @@ def settle_implicit(data, n, m, p, s, point, tol, max_systems, long_step):
             if stalled > 30 or rate != rate:
                 break
         systems += 1
+        factored = factored and trial == 0
         long = long_step * TRIALS[trial]
-        if systems == 1:
-            solved = linearly_implicit_step(data, n, m, p, s, rates, active, long, K, rhs, new)
+        if not begun and (systems == 1 or n <= PLAIN):
+            solved = linearly_implicit_step(
+                data, n, m, p, s, rates, active, long, factored, K, rhs, new
+            )
         else:
             if not begun:
                 implicit = np.empty(workspace_size(n, m, p))
@@ -304,6 +309,10 @@ def settle_implicit(data, n, m, p, s, point, tol, max_systems, long_step):
             halved = new_rate <= 0.5 * rate
             # Where rounding is near, less than a half is progress too.
             if halved or (rate <= NEAR * tol and new_rate <= 0.9 * rate):
+                # The same rows active and the same length: the same matrix once more.
+                factored = halved and not begun
+                for k in range(flags):
+                    factored = factored and active[k] == new_active[k]
                 s[:] = new
                 rates, new_rates = new_rates, rates
                 active, new_active = new_active, active

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import qpsolvers
 
-from iiwa_dnn import checks, kernels
+from iiwa_dnn import checks
 from iiwa_dnn.certificates import find_certificate
-from iiwa_dnn.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
+from iiwa_dnn.networks import Network, ProjectionNetwork
 from iiwa_dnn.qp import QP, Refutation, Solution, Status, Vector
 
 
@@ -29,7 +30,7 @@ class DNNSolver:
 
     def __init__(
         self,
-        network: ProjectionNetwork | None = None,
+        network: Network | None = None,
         tol: float = 1e-9,
         settler: Integrator | None = None,
         follower: Integrator | None = None,
@@ -40,7 +41,7 @@ class DNNSolver:
             InvalidInputError: `tol` is not a positive number.
         """
         checks.positive("tol", tol)
-        self.network = network if network is not None else ProjectionNetwork()
+        self.network: Network = network if network is not None else ProjectionNetwork()
         self.tol = tol
         self.settler: Integrator = settler if settler is not None else ImplicitEuler()
         self.follower: Integrator = follower if follower is not None else ExplicitEuler()
@@ -50,7 +51,7 @@ class DNNSolver:
 
     @property
     def state(self) -> Vector:
-        """The network's state [x | y | z | u | l], a copy; empty before the first call."""
+        """The network's state, a copy; empty before the first call."""
         copy: Vector = self._state.copy()
         return copy
 
@@ -62,9 +63,39 @@ class DNNSolver:
         """Add noise (n,) [the unit of x] to x of the network's state; the next call starts there.
 
         Before the first call there is no state yet, and nothing happens.
+
+        Raises:
+            InvalidInputError: The network computes x from its state, which does not hold it.
         """
+        if not self.network.carries_x:
+            raise InvalidInputError("network", "holds no x in its state that could be disturbed")
         if self._sizes is not None:
             self._state[: self._sizes[0]] += noise
+
+    def warm_state(self, sizes: tuple[int, int, int]) -> Vector | None:
+        """The state itself, where the last program had these sizes; otherwise None."""
+        return self._state if sizes == self._sizes else None
+
+    def numbers(self, duration: float = 0.0) -> Vector | None:
+        """What `kernels_control.control_step` needs to stand in for `solve` or `advance`.
+
+        Args:
+            duration: Time to advance [s]; 0 stands for `solve`.
+
+        Returns:
+            The seven numbers, or None where network or integrator has no compiled form.
+        """
+        network, settler, follower = self.network, self.settler, self.follower
+        if type(network) is not ProjectionNetwork:
+            return None
+        projected = float(network.primal_projection)
+        if duration > 0.0 and type(follower) is ExplicitEuler:
+            ahead, substeps = duration / network.rho, follower.substeps or 0
+            return np.array([self.tol, 0.0, 0.0, ahead, projected, substeps, SAFETY])
+        if duration == 0.0 and type(settler) is ImplicitEuler:
+            budget, long_step = settler.max_steps, settler.long_step
+            return np.array([self.tol, budget, long_step, 0.0, projected, 0.0, SAFETY])
+        return None
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and say how well it has.
@@ -98,13 +129,13 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        n, m, p = sizes = qp.sizes
+        sizes = qp.sizes
         if sizes != self._sizes:
             self._begin(qp)
         point = np.empty(self._point_size)
         network_time = duration / self.network.rho
         iterations = self.follower.advance(self.network, qp, self._state, network_time)
-        primal, dual, gap = kernels.kkt_point(qp.data, n, m, p, self._state, point)
+        primal, dual, gap = self.network.read(qp, self._state, point)
         total = primal + dual + gap
         status = Status.ADVANCED if math.isfinite(total) else self._failed(total)
         return Solution(point, sizes, status, iterations, network_time, primal, dual, gap)

@@ -40,15 +40,17 @@ def test_projection_on_the_range_is_numpys(rank: int) -> None:
         np.testing.assert_allclose(vector, expected, rtol=0, atol=1e-10)
 
 
-def test_cholesky_solve_is_numpys_and_refuses_what_is_not_definite() -> None:
+def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
     rng = np.random.default_rng(1)
     for n in (1, 2, 7, 30):
         root = rng.standard_normal((n, n))
         matrix, rhs, out = root @ root.T + np.eye(n), rng.standard_normal(n), np.empty(n)
-        assert kernels.cholesky_solve(matrix.ravel().copy(), n, rhs, out)
+        factor = matrix.ravel().copy()
+        assert kernels.cholesky_factor(factor, n)
+        kernels.factor_solve(factor, n, rhs, out)
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-9, atol=1e-12)
         matrix[-1, -1] = -1.0
-        assert not kernels.cholesky_solve(matrix.ravel().copy(), n, rhs, out)
+        assert not kernels.cholesky_factor(matrix.ravel().copy(), n)
 
 
 def test_the_larger_of_two_keeps_a_nan() -> None:

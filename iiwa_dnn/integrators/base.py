@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Protocol
 
-from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.networks import Network
 from iiwa_dnn.qp import QP, Vector
 
 Settled = tuple[int, float, float, float, float]
@@ -25,13 +25,11 @@ class Integrator(Protocol):
 
     order: ClassVar[int]
 
-    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho]; returns the iterations it took."""
         ...
 
-    def settle(
-        self, network: ProjectionNetwork, qp: QP, state: Vector, point: Vector, tol: float
-    ) -> Settled:
+    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
 
         Args:

@@ -25,6 +25,10 @@ off, and `iiwa_dnn.certificates` looks for the proof that there is no solution.
 multipliers alone keep the bounds, so the answer is the same. The answer that is handed out is
 put inside its bounds.
 
+**Other networks** have no compiled loops. Their backward Euler steps are solved by a Newton
+iteration on the whole state, and cut where it does not converge
+(`iiwa_dnn.integrators.pseudo_transient`).
+
 Sources: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
 SIAM J. Numer. Anal. 35 (1998), for the continuation; R. T. Rockafellar, "Augmented Lagrangians
 and applications of the proximal point algorithm in convex programming", Math. Oper. Res. 1
@@ -39,8 +43,9 @@ from typing import ClassVar
 
 from iiwa_dnn import checks, kernels_implicit
 from iiwa_dnn.exceptions import NoSolutionError
+from iiwa_dnn.integrators import pseudo_transient
 from iiwa_dnn.integrators.base import Settled
-from iiwa_dnn.networks import ProjectionNetwork
+from iiwa_dnn.networks import Network, ProjectionNetwork
 from iiwa_dnn.qp import QP, Vector
 
 
@@ -65,7 +70,7 @@ class ImplicitEuler:
         checks.positive("long_step", self.long_step)
         checks.integer("max_steps", self.max_steps, 1)
 
-    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
 
         Returns:
@@ -76,15 +81,22 @@ class ImplicitEuler:
         """
         count = max(1, math.ceil(duration / self.step))
         length = duration / count
-        systems = kernels_implicit.advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
+        if isinstance(network, ProjectionNetwork):
+            systems = kernels_implicit.advance_implicit(
+                qp.data, *qp.sizes, state, length, count, 1e-12
+            )
+        else:
+            systems = pseudo_transient.advance(network.flow(qp), state, length, count, 1e-12)
         if systems < 0:
             raise NoSolutionError("an implicit step is singular to working precision")
         return int(systems)
 
-    def settle(
-        self, network: ProjectionNetwork, qp: QP, state: Vector, point: Vector, tol: float
-    ) -> Settled:
+    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`."""
+        if not isinstance(network, ProjectionNetwork):
+            return pseudo_transient.settle(
+                network, qp, state, point, tol, self.max_steps, self.long_step
+            )
         n, m, p = qp.sizes
         settled: Settled = kernels_implicit.settle_implicit(
             qp.data, n, m, p, state, point, tol, self.max_steps, self.long_step

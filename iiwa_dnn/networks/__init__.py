@@ -1,5 +1,8 @@
 """Dynamic neural networks: ODEs whose equilibria are the KKT points of a quadratic program."""
 
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.dual import DualNetwork
+from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.projection import ProjectionNetwork
 
-__all__ = ["ProjectionNetwork"]
+__all__ = ["DualNetwork", "Flow", "Network", "PrimalDualNetwork", "ProjectionNetwork"]

@@ -25,12 +25,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn import checks, kernels
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn import kernels
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.qp import QP, Matrix, Vector
 
 
 @dataclass(frozen=True)
-class ProjectionNetwork:
+class ProjectionNetwork(Network):
     """The paper's network for one quadratic program after another.
 
     Attributes:
@@ -40,26 +41,27 @@ class ProjectionNetwork:
             backward Euler step becomes a convex problem (`iiwa_dnn.integrators.implicit`).
     """
 
-    rho: float = 9e-5
     primal_projection: bool = True
-
-    def __post_init__(self) -> None:
-        """Check the time constant."""
-        checks.positive("rho", self.rho)
 
     def state_size(self, qp: QP) -> int:
         """Number of states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
         return 3 * qp.q.size + qp.b.size + qp.h.size
 
-    def initial_state(self, qp: QP) -> Vector:
-        """The state at rest before any problem was seen: zero."""
-        return np.zeros(self.state_size(qp))
+    def flow(self, qp: QP) -> Flow:
+        """The right-hand side and its derivative for this program."""
 
-    def rates(self, qp: QP, state: Vector) -> Vector:
-        """The right-hand side, rho ds/dt, of shape (state_size,)."""
-        rates = np.empty(state.size)
-        self._field(qp, state, rates)
-        return rates
+        def rates(state: Vector) -> Vector:
+            result = np.empty(state.size)
+            self._field(qp, state, result)
+            return result
+
+        return Flow(rates, lambda state: self._jacobian(qp, state))
+
+    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+        """Write the point that the state stands for; returns its residuals."""
+        n, m, p = qp.sizes
+        residuals: tuple[float, float, float] = kernels.kkt_point(qp.data, n, m, p, state, point)
+        return residuals
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""A step, in units of rho, below which explicit Euler is stable.
@@ -86,6 +88,23 @@ class ProjectionNetwork:
         else:
             active = self._field(qp, state, np.empty(state.size))
         return float(kernels.stable_step(qp.data, n, m, p, active))
+
+    def _jacobian(self, qp: QP, state: Vector) -> Matrix:
+        """The derivative of the rates, (state_size, state_size)."""
+        n, _, p = qp.sizes
+        rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
+        active = self._field(qp, state, np.empty(state.size)) > 0.0
+        follows = np.concatenate([np.ones(p, dtype=bool), active])
+        jacobian = np.zeros((state.size, state.size))
+        jacobian[:n, :n], jacobian[:n, n:] = -qp.P, -rows.T
+        jacobian[n:, :n] = np.where(follows[:, None], rows, 0.0)
+        jacobian[n:, n:] = -np.diag(np.where(follows, 0.0, 1.0))
+        if self.primal_projection:
+            aim = state[:n] - (qp.P @ state[:n] + qp.q + rows.T @ state[n:])
+            outside = np.flatnonzero((aim <= qp.lb) | (aim >= qp.ub))
+            jacobian[outside] = 0.0
+            jacobian[outside, outside] = -1.0
+        return jacobian
 
     def _field(self, qp: QP, state: Vector, rates: Vector) -> Vector:
         """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""

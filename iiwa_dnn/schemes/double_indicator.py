@@ -29,7 +29,8 @@ from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import Weights, identity, velocity_program
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.base import VelocityProgram
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 Kinetic = Literal["identity", "inertia"]
@@ -62,7 +63,6 @@ class DoubleIndicator:
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
     _home: Vector | None = field(init=False, repr=False, compare=False, default=None)
-    _weights: Weights = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check every parameter; raises InvalidInputError naming it."""
@@ -73,9 +73,6 @@ class DoubleIndicator:
         checks.positive("limit_gain", self.limit_gain)
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         checks.one_of("kinetic", self.kinetic, KINETICS)
-        gains = (self.drift_gain, self.position_gain, self.orientation_gain, self.limit_gain)
-        weights = Weights.of(self.orientation, [self.weight, *gains])
-        object.__setattr__(self, "_weights", weights)
         if self.home is not None:
             home = checks.finite_array("home", self.home, (-1,)).copy()
             object.__setattr__(self, "home", tuple(home.tolist()))
@@ -98,19 +95,36 @@ class DoubleIndicator:
         Raises:
             InvalidInputError: `home` has another length than the robot has joints.
         """
-        q, home, robot = conf.arrays[0], self._home, conf.robot
-        if home is None:
-            home = q
-        elif home.size != q.size:
-            raise InvalidInputError("home", f"has {home.size} values for {q.size} joints")
-        kinetic = identity(q.size) if self.kinetic == "identity" else conf.inertia
-        return velocity_program(conf, target, self._weights, robot.limits, home, kinetic)
+        return self.program(conf.robot).build(conf, target)
+
+    def program(self, robot: Robot) -> VelocityProgram:
+        """What of the program does not change along a run.
+
+        Args:
+            robot: The robot, n joints.
+
+        Raises:
+            InvalidInputError: `home` has another length than the robot has joints.
+        """
+        home, drift_gain = self._home, self.drift_gain
+        if home is None:  # wherever the robot is: nothing draws it anywhere
+            home, drift_gain = np.zeros(robot.dof), 0.0
+        elif home.size != robot.dof:
+            raise InvalidInputError("home", f"has {home.size} values for {robot.dof} joints")
+        weights = [self.weight, drift_gain, self.position_gain, self.orientation_gain]
+        return VelocityProgram.of(
+            self.orientation,
+            [*weights, self.limit_gain],
+            robot.limits,
+            home,
+            self.kinetic == "inertia",
+        )
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """dq^T G(q) dq: [rad^2/s^2] with G = I, [J] (twice the energy) with the inertia."""
         velocity = np.asarray(dq, dtype=np.float64)
         if self.kinetic == "identity":
-            return float(velocity.dot(velocity))
+            return float(velocity @ velocity)
         return float(velocity @ conf.inertia @ velocity)
 
     def settings(self) -> dict[str, Any]:

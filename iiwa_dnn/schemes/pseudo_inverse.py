@@ -11,7 +11,6 @@ Transactions on Man-Machine Systems 10 (1969).
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,10 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.schemes.base import Weights, identity, velocity_program
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.base import VelocityProgram
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 
 RANK_TOLERANCE = 1e-10
@@ -59,10 +59,14 @@ class PseudoInverse:
 
     def build_qp(self, conf: Configuration, target: Target) -> QP:
         """The least-norm problem as a QP in n variables, without bounds."""
-        n = conf.q.size
-        gains = [1.0, 0.0, self.position_gain, self.orientation_gain, 1.0]
-        weights = Weights.of(self.orientation, gains)
-        return velocity_program(conf, target, weights, _no_limits(n), conf.arrays[0], identity(n))
+        return self.program(conf.robot).build(conf, target)
+
+    def program(self, robot: Robot) -> VelocityProgram:
+        """What of the program does not change along a run; the limits are infinite."""
+        n = robot.dof
+        limits = np.stack([np.full(n, -np.inf), np.full(n, np.inf), np.full(n, np.inf)])
+        weights = [1.0, 0.0, self.position_gain, self.orientation_gain, 1.0]
+        return VelocityProgram.of(self.orientation, weights, limits, np.zeros(n))
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """The closed form A^+ b [rad/s], (n,), through numpy's singular value decomposition."""
@@ -78,11 +82,3 @@ class PseudoInverse:
     def settings(self) -> dict[str, Any]:
         """Name and parameters, as values that JSON can hold."""
         return {"name": "pseudo-inverse", **asdict(self)}
-
-
-@lru_cache
-def _no_limits(n: int) -> Matrix:
-    """Limits of `Robot.limits`' shape that hold nothing back."""
-    limits = np.full((3, n), np.inf)
-    limits[0] = -np.inf
-    return limits

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks, kernels
-from iiwa_dnn.checkpool import CheckPool, Job
+from iiwa_dnn.answers import Answers
+from iiwa_dnn.checkpool import CheckPool
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.controller import Command, Controller, Mode
+from iiwa_dnn.controller import Controller, Mode
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.exceptions import InvalidInputError, NoSolutionError
@@ -21,9 +22,10 @@ from iiwa_dnn.feedback import IntegralFeedback
 from iiwa_dnn.policies import POLICIES, Action, Policy
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.record import Record
-from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references import Reference
+from iiwa_dnn.references.targets import Targets
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes import Scheme, compiled_program
 from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.incidents import Incidents
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
@@ -162,6 +164,8 @@ class Simulation:
         start = Configuration(robot, q0, self._scratch)
         self._controller = Controller(scheme.anchored(start), self._solver, mode, dt, policy)
         self._robot, self._reference = robot, reference
+        program = compiled_program(self._controller.scheme, robot)
+        self._is_plain = program is not None and not program.inertia  # so G = I
         self._dt, self._motion = dt, MOTIONS[motion]
         checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
         self._noise_at = noise_at
@@ -200,12 +204,12 @@ class Simulation:
             "check": self._check.settings(),
             "versions": {name: version(name) for name in _PACKAGES},
         }
-        self.steps = steps
         # The network's own answers keep the bounds; what is made of them may not.
         altered = self._noise is not None or disturbance is not None or estimator is not None
         altered = altered or filter_window > 1 or motion != "euler"
         gain = self._controller.scheme.limit_gain
         self._clips, self._gain = altered and gain is not None, gain or 0.0
+        self.steps = steps
         self._allocate(start.q)
 
     def run(self, progress: Progress | None = None) -> Record:
@@ -225,28 +229,32 @@ class Simulation:
         for part in (self._integral, self._estimator):
             if part is not None:
                 part.reset()
-        self._incidents = Incidents(self.steps, self._robot, self._dt)
+        self._incidents = incidents = Incidents(self.steps, self._robot, self._dt)
         # A window longer than the run never fills; so none is too long for the memory.
         self._average = MovingAverage(min(self._filter_window, self.steps))
         pool = CheckPool(self._check, self.steps * self._motion.stages)
-        status, done = COMPLETED, 0
+        status, done, room = COMPLETED, 0, BLOCK
         while done < self.steps and status == COMPLETED:
-            count = min(BLOCK, self.steps - done)
-            # After a step that slowed the clock down a new block begins, with its own targets.
-            clock = done * self._dt - self._incidents.delay
-            self._block = block = _Block(self._reference, clock, count, self._dt)
-            while block.taken < count and status == COMPLETED and block.fraction == 1.0:
-                status = self._step(done + block.taken)
-                block.taken += 1
-            taken = block.taken
+            count = min(room, self.steps - done)
+            # One target a stage, in the order in which the method of motion asks.
+            times = np.add.outer(done + np.arange(count), self._motion.nodes) * self._dt
+            times -= incidents.delay
+            targets = self._reference.sample(times.ravel())
+            self._block = block = _Block(targets, self._controller.answers(times.size))
+            taken = 0
+            while taken < count and status == COMPLETED and block.fraction == 1.0:
+                status = self._step(done + taken)
+                taken += 1
+            # A step that slows the clock down ends its block; so do, most likely, the next ones.
+            room = 1 if block.fraction != 1.0 else min(2 * room, BLOCK)
             self._record_block(done, taken)
-            pool.submit(*block.job())
+            pool.submit(block.answers.programs, block.answers.sizes, block.answers.all_x)
             done += taken
             if progress is not None:
                 progress(taken)
         last = Configuration(self._robot, self._q[done], self._scratch)
         self._position[done], self._rotation[done] = last.position, last.rotation
-        desired = self._reference.sample([done * self._dt - self._incidents.delay])
+        desired = self._reference.sample([done * self._dt - incidents.delay])
         self._position_desired[done] = desired.position[0]
         self._rotation_desired[done] = desired.rotation[0]
         agreement = pool.finish().worst_of(self._motion.stages)
@@ -264,22 +272,20 @@ class Simulation:
         self._iterations = np.empty(steps, dtype=np.int64)
 
     def _velocity_at(self, q: Vector, t: float) -> Vector:
-        """The controller's answer at a stage, `t` [s] after the block's start; noted there."""
+        """The controller's answer at the next stage, noted in the block; t is in the targets."""
         block = self._block
+        answers = block.answers
         conf = Configuration.from_checked(self._robot, q, self._scratch)
-        target = block.target(t)
-        if self._integral is not None:
-            # Once a step, and not while the arm cannot follow: the integral would wind up.
-            first_stage = len(block.commands) == block.taken * self._motion.stages
-            if first_stage and not self._incidents.pending:
+        count = answers.count
+        target = block.targets[count]
+        if count % self._motion.stages == 0:
+            block.start = conf
+            # Not while the arm cannot follow: the integral would wind up.
+            if self._integral is not None and not self._incidents.pending:
                 self._integral.observe(conf, target, self._dt)
+        if self._integral is not None:
             target = self._integral.apply(target)
-        command = self._controller.step(conf, target)
-        block.confs.append(conf)
-        block.commands.append(command)
-        if command.resolution is not None and block.unsolved is None:
-            block.unsolved = command
-        return command.dq
+        return self._controller.answer(conf, target, answers)
 
     def _step(self, k: int) -> str:
         """Take step k, note it in the block, and return the status that the run has after it."""
@@ -292,72 +298,70 @@ class Simulation:
         if self._estimator is not None:
             seen = self._estimator.update(seen)
         try:
-            velocity = self._motion.step(self._velocity_at, seen, block.taken * dt, dt)
+            velocity = self._motion.step(self._velocity_at, seen, k * dt, dt)
         except NoSolutionError as error:
             raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
-        self._incidents.pending = block.unsolved is not None
-        if block.unsolved is not None:
-            velocity = self._unsolved(k)
         if seen is not q:  # the controller saw another posture than the robot has
-            true = Configuration.from_checked(self._robot, q, self._scratch)
-            block.confs[-self._motion.stages] = true
-        self._dq_solver[k] = velocity
-        if block.stopped:
-            self._dq[k], self._q[k + 1] = 0.0, q
-            return self._incidents.status(k)
+            block.start = Configuration.from_checked(self._robot, q, self._scratch)
+            block.answers.poses[-self._motion.stages] = block.start.pose
+        if block.answers.resolved or self._incidents.pending:
+            velocity = self._resolved(k, velocity)
+            if block.stopped:
+                return self._incidents.status(k)
+        answer = velocity
         if self._estimator is not None:
             velocity = velocity - self._estimator.bias
             self._estimator.predict(velocity)
-        if noise is not None and self._noise_at == "velocity":
-            velocity = velocity + noise
-        elif noise is not None and self._noise_at == "network":
-            self._solver.disturb(noise)
+        if noise is not None:
+            if self._noise_at == "velocity":
+                velocity = velocity + noise
+            elif self._noise_at == "network":
+                self._solver.disturb(noise)
         if self._disturbance is not None:
             velocity = velocity + self._disturbance[k]
-        velocity = self._average(velocity)
+        if self._filter_window > 1:
+            velocity = self._average(velocity)
         if self._clips:
             velocity = self._incidents.clipped(k, q, self._gain, velocity)
-        kernels.move(self._q, self._dq, k, velocity, dt)
+        kernels.move(self._q, self._dq, self._dq_solver, k, velocity, answer, dt)
+        if not self._is_plain:
+            index = self._controller.scheme.kinetic_index
+            self._kinetic_index[k] = index(block.start, velocity)
         return COMPLETED
 
-    def _unsolved(self, k: int) -> Vector:
-        """Note what the policy decided in step k; returns the velocity of this Euler step."""
-        block, stages = self._block, self._motion.stages
-        first = block.taken * stages
-        # If only a later stage has no solution, the answer at the step's start will do.
-        command = block.commands[first]
-        block.commands[first:] = [command] * stages
-        block.confs[first:] = [block.confs[first]] * stages
-        block.unsolved = None
-        if command.resolution is not None:
-            self._incidents.note(k, command.resolution)
-            block.fraction = command.resolution.fraction
-            block.stopped = command.resolution.action is Action.STOP
-        return command.dq
+    def _resolved(self, k: int, velocity: Vector) -> Vector:
+        """Note what a policy decided in step k, if it did; returns the velocity of the step."""
+        block, answers = self._block, self._block.answers
+        first = answers.count - self._motion.stages
+        self._incidents.pending = any(i >= first for i in answers.resolved)
+        if not self._incidents.pending:
+            return velocity
+        # An Euler step; if only a later stage has no solution, the answer at its start will do.
+        answers.repeat(first)
+        resolution = answers.resolved.get(first)
+        if resolution is not None:
+            self._incidents.note(k, resolution)
+            block.fraction = resolution.fraction
+            block.stopped = resolution.action is Action.STOP
+        if block.stopped:
+            self._dq_solver[k] = self._dq[k] = self._kinetic_index[k] = 0.0
+            self._q[k + 1] = self._q[k]
+        return answers.x(first)
 
     def _record_block(self, first: int, steps: int) -> None:
         """Write the block's steps into the arrays of the run."""
         block, stages = self._block, self._motion.stages
-        rows = slice(first, first + steps)
-        starts = block.confs[::stages]
-        # Not np.stack, which takes three times as long over small arrays.
-        poses = np.concatenate([conf.arrays[1] for conf in starts]).reshape(steps, 4, 4)
+        answers, rows = block.answers, slice(first, first + steps)
+        if self._is_plain:
+            self._kinetic_index[rows] = np.square(self._dq[rows]).sum(axis=1)
+        poses = answers.poses[::stages]
         self._position[rows], self._rotation[rows] = poses[:, :3, 3], poses[:, :3, :3]
-        at_steps = slice(0, 2 * steps, 2)
+        at_steps = slice(0, steps * stages, stages)
         self._position_desired[rows] = block.targets.position[at_steps]
         self._rotation_desired[rows] = block.targets.rotation[at_steps]
-        index = self._controller.scheme.kinetic_index
-        self._kinetic_index[rows] = [
-            index(conf, dq) for conf, dq in zip(starts, self._dq[rows], strict=True)
-        ]
-        solutions = [command.solution for command in block.commands]
-        residuals = np.array([solution[-3:] for solution in solutions])
-        self._kkt_residual[rows] = residuals.reshape(steps, -1).max(axis=1)
-        iterations = np.array([solution.iterations for solution in solutions])
-        self._iterations[rows] = iterations.reshape(steps, stages).sum(axis=1)
-        n = self._robot.dof
-        bounds = np.concatenate([solution.point[-n:] for solution in solutions[::stages]])
-        self._incidents.multipliers(rows, bounds.reshape(steps, n))
+        self._kkt_residual[rows] = answers.residuals.reshape(steps, -1).max(axis=1)
+        self._iterations[rows] = answers.iterations.reshape(steps, stages).sum(axis=1)
+        self._incidents.multipliers(rows, answers.bound_multipliers[::stages])
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
@@ -393,27 +397,19 @@ def _step_count(duration: float, dt: float) -> int:
 
 
 class _Block:
-    """What a stretch of steps leaves behind, one entry a stage, until it is recorded."""
+    """What a stretch of steps starts from and leaves behind, one entry a stage.
 
-    def __init__(self, reference: Reference, start: float, steps: int, dt: float) -> None:
-        """Take the targets of a stretch that starts at a time of the reference's clock [s]."""
-        self._dt = dt
-        # Two targets a step: the methods of motion ask at its ends and at its middle.
-        self.targets = reference.sample(start + np.arange(2 * steps + 1) * (0.5 * dt))
-        self.confs: list[Configuration] = []
-        self.commands: list[Command] = []
-        self.taken = 0
-        self.unsolved: Command | None = None
-        self.fraction = 1.0
-        self.stopped = False
+    Attributes:
+        targets: Where the tip should be.
+        answers: What the controller decided; recorded and checked at the block's end.
+        start: Where the step that is being taken began.
+        fraction: How far the reference's clock went in the last step, in control periods.
+        stopped: Whether a policy ends the run.
+    """
 
-    def target(self, t: float) -> Target:
-        """The target at a stage's time since the block's start [s]."""
-        return self.targets[round(2.0 * t / self._dt)]
+    __slots__ = ("answers", "fraction", "start", "stopped", "targets")
+    start: Configuration
 
-    def job(self) -> Job:
-        """The programs and the answers, for the check."""
-        count, sizes = len(self.commands), self.commands[0].qp.sizes
-        programs = np.concatenate([command.qp.data for command in self.commands])
-        answers = np.concatenate([command.dq for command in self.commands])
-        return programs.reshape(count, -1), sizes, answers.reshape(count, -1)
+    def __init__(self, targets: Targets, answers: Answers) -> None:
+        self.targets, self.answers = targets, answers
+        self.fraction, self.stopped = 1.0, False

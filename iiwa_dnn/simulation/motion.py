@@ -44,15 +44,20 @@ class Method(NamedTuple):
 
     Attributes:
         step: Gives the mean velocity of a step.
-        stages: Velocities that it asks for.
+        nodes: When it asks for a velocity, in the order of its questions, in units of dt.
     """
 
     step: Step
-    stages: int
+    nodes: tuple[float, ...]
+
+    @property
+    def stages(self) -> int:
+        """How often it asks in one step."""
+        return len(self.nodes)
 
 
 MOTIONS: dict[str, Method] = {
-    "euler": Method(euler, 1),
-    "midpoint": Method(midpoint, 2),
-    "rk4": Method(rk4, 4),
+    "euler": Method(euler, (0.0,)),
+    "midpoint": Method(midpoint, (0.0, 0.5)),
+    "rk4": Method(rk4, (0.0, 0.5, 0.5, 1.0)),
 }

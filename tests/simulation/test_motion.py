@@ -70,6 +70,7 @@ def test_stages_are_at_the_ends_and_the_middle_of_the_step(motion: str, stages: 
 
     MOTIONS[motion].step(velocity, np.ones(2), 1.0, 0.5)
     assert len(times) == MOTIONS[motion].stages == stages
+    np.testing.assert_allclose(times, 1.0 + 0.5 * np.array(MOTIONS[motion].nodes), rtol=0)
     assert set(times) <= {1.0, 1.25, 1.5}
 
 

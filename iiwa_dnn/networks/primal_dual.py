@@ -1,0 +1,88 @@
+r"""The primal-dual network of a linear variational inequality.
+
+The KKT conditions say that :math:`u = [x; y; z]` solves a linear variational inequality on the set
+:math:`\Omega = \{lb \le x \le ub,\; z \ge 0\}`, with
+
+.. math::
+
+    H = \begin{pmatrix} P & A^T & G^T \\ -A & 0 & 0 \\ -G & 0 & 0 \end{pmatrix}, \qquad
+    c = \begin{pmatrix} q \\ b \\ h \end{pmatrix}, \qquad
+    \rho\,\dot u = (I + H^T)\,\bigl\{ \Pi_\Omega\bigl(u - (H u + c)\bigr) - u \bigr\} .
+
+H plus its transpose is positive semidefinite, which is all that is needed: with e the curly
+bracket, :math:`\tfrac{d}{dt}\tfrac12\|u - u^*\|^2 \le -\|e\|^2/\rho` for every solution
+:math:`u^*`. So it settles where P is singular too, if there is a solution, and explicit Euler gets
+nearer at every step below :math:`2/\|I + H\|^2`.
+
+Source: Y. Zhang, S. S. Ge, T. H. Lee, "A unified quadratic-programming-based dynamical system
+approach to joint torque optimization of physically constrained redundant manipulators", IEEE
+Transactions on Systems, Man, and Cybernetics B 34 (2004). The decrease is that of B. He, "A new
+method for a class of linear variational inequalities", Mathematical Programming 66 (1994).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iiwa_dnn import kernels
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.qp import QP, Matrix, Vector
+
+
+@dataclass(frozen=True)
+class PrimalDualNetwork(Network):
+    """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
+
+    def state_size(self, qp: QP) -> int:
+        """Number of states: x and one multiplier for each row."""
+        n, m, p = qp.sizes
+        return n + m + p
+
+    def flow(self, qp: QP) -> Flow:
+        """The right-hand side and its derivative for this program."""
+        H, (lower, upper) = _coupling(qp), _limits(qp)
+        constant = np.concatenate([qp.q, qp.b, qp.h])
+        eye = np.eye(constant.size)
+        outer = eye + H.T
+
+        def rates(state: Vector) -> Vector:
+            error = np.clip(state - (H @ state + constant), lower, upper) - state
+            result: Vector = outer @ error
+            return result
+
+        def jacobian(state: Vector) -> Matrix:
+            aim = state - (H @ state + constant)
+            inside = (aim > lower) & (aim < upper)
+            result: Matrix = outer @ (np.where(inside[:, None], eye - H, 0.0) - eye)
+            return result
+
+        return Flow(rates, jacobian)
+
+    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+        """Write the point that the state stands for; returns its residuals."""
+        primal, dual, gap = kernels.kkt_point(qp.data, *qp.sizes, state, point)
+        return primal, dual, gap
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        """A step, in units of rho, below which explicit Euler gets nearer to every solution."""
+        coupling = _coupling(qp)
+        return 2.0 / float(np.linalg.norm(np.eye(coupling.shape[0]) + coupling, 2)) ** 2
+
+
+def _coupling(qp: QP) -> Matrix:
+    """H, of shape (n + p + m, n + p + m)."""
+    n, m, p = qp.sizes
+    H = np.zeros((n + p + m, n + p + m))
+    H[:n, :n], H[:n, n : n + p], H[:n, n + p :] = qp.P, qp.A.T, qp.G.T
+    H[n : n + p, :n], H[n + p :, :n] = -qp.A, -qp.G
+    return H
+
+
+def _limits(qp: QP) -> tuple[Vector, Vector]:
+    """The set Omega: lower and upper limits of the state."""
+    _, m, p = qp.sizes
+    free = np.full(p, np.inf)
+    lower = np.concatenate([qp.lb, -free, np.zeros(m)])
+    return lower, np.concatenate([qp.ub, free, np.full(m, np.inf)])

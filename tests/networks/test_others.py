@@ -1,0 +1,250 @@
+"""The dual and the primal-dual network: their fields, equilibria, steps, and all integrators."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import iiwa_dnn
+from helpers_qp import known_qp
+from iiwa_dnn import (
+    QP,
+    AdaptiveRungeKutta,
+    DNNSolver,
+    DualNetwork,
+    ExplicitEuler,
+    ImplicitEuler,
+    InvalidInputError,
+    PrimalDualNetwork,
+    ProjectionNetwork,
+    Status,
+)
+from iiwa_dnn.benchmarks import programs
+from iiwa_dnn.networks import Network
+
+OTHERS = [DualNetwork(), PrimalDualNetwork()]
+NETWORKS = [ProjectionNetwork(), ProjectionNetwork(primal_projection=False), *OTHERS]
+
+
+def dual_rates(qp: QP, u: np.ndarray) -> np.ndarray:
+    """Zhang, Wang and Xia's equations, row by row."""
+    rows = [*qp.A, *qp.G, *np.eye(qp.q.size)]
+    lower = [*qp.b, *[-np.inf] * qp.h.size, *qp.lb]
+    upper = [*qp.b, *qp.h, *qp.ub]
+    x = np.linalg.inv(qp.P) @ (sum(row * value for row, value in zip(rows, u, strict=True)) - qp.q)
+    values = np.array([row @ x for row in rows])
+    return np.minimum(np.maximum(values - u, lower), upper) - values
+
+
+def primal_dual_rates(qp: QP, u: np.ndarray) -> np.ndarray:
+    """Zhang, Ge and Lee's equations, part by part, with (I + H^T) e written out."""
+    n, _, p = qp.sizes
+    x, y, z = u[:n], u[n : n + p], u[n + p :]
+    ex = np.clip(x - (qp.P @ x + qp.q + qp.A.T @ y + qp.G.T @ z), qp.lb, qp.ub) - x
+    ey = qp.A @ x - qp.b
+    ez = np.maximum(z + qp.G @ x - qp.h, 0.0) - z
+    return np.concatenate(
+        [ex + qp.P @ ex - qp.A.T @ ey - qp.G.T @ ez, ey + qp.A @ ex, ez + qp.G @ ex]
+    )
+
+
+@pytest.mark.parametrize(
+    ("network", "reference"),
+    [(OTHERS[0], dual_rates), (OTHERS[1], primal_dual_rates)],
+    ids=["dual", "primal-dual"],
+)
+def test_rates_are_the_sources_equations(network: Network, reference: object) -> None:
+    rng = np.random.default_rng(0)
+    for case in range(30):
+        qp, _ = known_qp(rng, 6, 2, case % 7, inequalities=case % 4)
+        qp.lb[0], qp.ub[1] = -np.inf, np.inf
+        state = 2.0 * rng.standard_normal(network.state_size(qp))
+        np.testing.assert_allclose(network.rates(qp, state), reference(qp, state), atol=1e-10)
+
+
+def test_seven_joints_and_seven_rows_make_14_states() -> None:
+    qp = QP(np.eye(7), np.zeros(7), A=np.ones((7, 7)), b=np.ones(7))
+    assert [network.state_size(qp) for network in OTHERS] == [14, 14]
+
+
+@pytest.mark.parametrize("network", NETWORKS, ids=repr)
+def test_jacobians_by_finite_differences(network: Network) -> None:
+    rng = np.random.default_rng(1)
+    for case in range(10):
+        qp, _ = known_qp(rng, 5, 2, case % 6, inequalities=3)
+        flow, state = network.flow(qp), 2.0 * rng.standard_normal(network.state_size(qp))
+        jacobian = flow.jacobian(state)
+        for i in range(state.size):
+            step = np.zeros(state.size)
+            step[i] = 1e-6
+            column = (flow.rates(state + step) - flow.rates(state - step)) / 2e-6
+            np.testing.assert_allclose(jacobian[:, i], column, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+def test_at_rest_exactly_at_kkt_points(network: Network) -> None:
+    rng = np.random.default_rng(2)
+    for case in range(20):
+        qp, x = known_qp(rng, 6, 2, case % 7, inequalities=3)
+        solver = DNNSolver(network)
+        solution = solver.solve(qp)
+        assert solution.found
+        assert np.abs(solution.x - x).max() < 1e-6
+        assert np.abs(network.rates(qp, solver.state)).max() < 1e-8
+        moved = solver.state + 1e-2 * rng.standard_normal(solver.state.size)
+        assert np.abs(network.rates(qp, moved)).max() > 1e-5
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+def test_explicit_euler_gets_nearer_below_the_stable_step(network: Network) -> None:
+    rng = np.random.default_rng(3)
+    for case in range(10):
+        qp, _ = known_qp(rng, 5, 2, case % 4, inequalities=2)
+        solver = DNNSolver(network)
+        assert solver.solve(qp).found
+        state = solver.state + rng.standard_normal(solver.state.size)
+        start = np.abs(network.rates(qp, state)).max()
+        ExplicitEuler(substeps=3000).advance(
+            network, qp, state, 3000 * 0.95 * network.stable_step(qp)
+        )
+        assert np.abs(network.rates(qp, state)).max() < 0.2 * start
+
+
+def test_the_primal_dual_step_decreases_the_distance_to_the_solution() -> None:
+    rng = np.random.default_rng(4)
+    network = PrimalDualNetwork()
+    for case in range(10):
+        qp, _ = known_qp(rng, 5, 2, case % 4, inequalities=2)
+        solver = DNNSolver(network)
+        assert solver.solve(qp).found
+        rest, state = solver.state, solver.state + 3.0 * rng.standard_normal(solver.state.size)
+        step = network.stable_step(qp)
+        for _ in range(200):
+            nearer = state + step * network.rates(qp, state)
+            assert np.linalg.norm(nearer - rest) <= np.linalg.norm(state - rest) + 1e-12
+            state = nearer
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+@pytest.mark.parametrize(
+    "integrator", [ExplicitEuler(), AdaptiveRungeKutta(), ImplicitEuler()], ids=repr
+)
+def test_every_integrator_settles_every_network(network: Network, integrator: object) -> None:
+    rng = np.random.default_rng(5)
+    for case in range(4):
+        qp, x = known_qp(rng, 4, case % 2, case % 3, inequalities=case % 2)
+        solver = DNNSolver(network, tol=1e-7, settler=integrator)
+        solution = iiwa_dnn.solve_problem(qp, solver=solver)
+        assert solution.found
+        assert solution.is_optimal(1e-7)
+        np.testing.assert_allclose(solution.x, x, atol=1e-4)
+
+
+@pytest.mark.parametrize("network", NETWORKS, ids=repr)
+@pytest.mark.parametrize("integrator", [ExplicitEuler, AdaptiveRungeKutta, ImplicitEuler])
+def test_order_by_regression_against_scipy(network: Network, integrator: type) -> None:
+    if integrator is ImplicitEuler and getattr(network, "primal_projection", False):
+        return  # it integrates the network without that projection, tests/integrators
+    qp, duration = known_qp(np.random.default_rng(3), 5, 2, 2, inequalities=2)[0], 1.0
+    start = np.zeros(network.state_size(qp))
+    exact = solve_ivp(
+        lambda _, state: network.rates(qp, state), (0.0, duration), start, method="DOP853",
+        rtol=1e-11, atol=1e-13, max_step=0.02,
+    ).y[:, -1]  # fmt: skip
+    counts, errors = np.array([400, 800, 1600]), []
+    for count in counts:
+        if integrator is AdaptiveRungeKutta:
+            tried = AdaptiveRungeKutta(rtol=1e-12, atol=float(1.0 / count**3))
+        elif integrator is ExplicitEuler:
+            tried = ExplicitEuler(substeps=int(count))
+        else:
+            tried = ImplicitEuler(step=duration / count)
+        state = start.copy()
+        tried.advance(network, qp, state, duration)
+        errors.append(np.abs(state - exact).max())
+    if integrator is AdaptiveRungeKutta:
+        # The error follows the tolerance; kinks keep the order from showing to the letter.
+        assert errors[-1] < 1e-6 * max(1.0, np.abs(exact).max())
+    else:
+        slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+        assert slope == pytest.approx(1.0, abs=0.2)
+
+
+def test_runge_kutta_is_of_third_order_where_the_field_is_smooth() -> None:
+    # Idle bounds and no inequalities: the network is linear, its flow a matrix exponential.
+    qp, _ = known_qp(np.random.default_rng(6), 4, 2, 0)
+    qp.lb[:], qp.ub[:] = -np.inf, np.inf
+    network = PrimalDualNetwork()
+    exact = solve_ivp(
+        lambda _, state: network.rates(qp, state), (0.0, 2.0), np.zeros(6), method="DOP853",
+        rtol=1e-13, atol=1e-14,
+    ).y[:, -1]  # fmt: skip
+    steps, errors = [], []
+    for tolerance in (1e-4, 1e-6, 1e-8):
+        state = np.zeros(6)
+        integrator = AdaptiveRungeKutta(rtol=1e-15, atol=tolerance)
+        steps.append(integrator.advance(network, qp, state, 2.0))
+        errors.append(np.abs(state - exact).max())
+    slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(AdaptiveRungeKutta.order, abs=0.4)
+
+
+def test_singular_cost_settles_but_not_with_the_dual_network() -> None:
+    qp = QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
+    solution = iiwa_dnn.solve_problem(qp, solver=DNNSolver(PrimalDualNetwork()))
+    assert solution.found
+    np.testing.assert_allclose(solution.x, [1.0, 0.0], atol=1e-7)
+    with pytest.raises(InvalidInputError, match="singular") as caught:
+        iiwa_dnn.solve_problem(qp, solver=DNNSolver(DualNetwork()))
+    assert caught.value.argument == "P"
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+def test_random_programs_are_solved_or_not_claimed(network: Network) -> None:
+    found, solver = 0, DNNSolver(network)
+    for seed in range(100):
+        qp, x = programs.strictly_convex(np.random.default_rng([7, seed]), None, 1e2)
+        solver.reset()
+        solution = solver.solve(qp)
+        found += solution.found
+        assert solution.iterations <= 1000 + 15
+        assert solution.certificate is None
+        if solution.found:
+            residuals = qp.residuals(solution.x, solution.y, solution.z, solution.z_box)
+            assert residuals.largest <= 1e-9
+            assert np.abs(solution.x - x).max() < 1e-5
+    assert found >= 95
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+def test_contradictions_are_proven_with_every_network(network: Network) -> None:
+    qp = QP(np.eye(3), np.ones(3), A=[[1.0, 1.0, 0.0], [2.0, 2.0, 0.0]], b=[0.0, 1.0])
+    solver = DNNSolver(network)
+    assert solver.solve(qp).status is Status.PRIMAL_INFEASIBLE
+    assert solver.solve(QP(qp.P, qp.q, A=qp.A, b=[0.0, 0.0])).found
+
+
+def test_what_is_disturbed_is_x_of_the_state() -> None:
+    qp, x = known_qp(np.random.default_rng(8), 4, 1, 1)
+    solver = DNNSolver(PrimalDualNetwork())
+    solver.solve(qp)
+    solver.disturb(np.full(4, 0.5))
+    np.testing.assert_allclose(solver.state[:4], x + 0.5, atol=1e-6)
+    with pytest.raises(InvalidInputError, match="network"):
+        DNNSolver(DualNetwork()).disturb(np.zeros(4))
+
+
+def test_impossible_settings_are_refused() -> None:
+    for make in (
+        lambda: DualNetwork(rho=0.0),
+        lambda: PrimalDualNetwork(rho=-1.0),
+        lambda: AdaptiveRungeKutta(rtol=0.0),
+        lambda: AdaptiveRungeKutta(atol=-1.0),
+        lambda: AdaptiveRungeKutta(max_steps=0),
+    ):
+        with pytest.raises(InvalidInputError):
+            make()
+    qp, _ = known_qp(np.random.default_rng(9), 4, 1, 1)
+    with pytest.raises(iiwa_dnn.NoSolutionError):
+        AdaptiveRungeKutta(max_steps=2).advance(DualNetwork(), qp, np.zeros(5), 10.0)
+    short = DNNSolver(DualNetwork(), settler=AdaptiveRungeKutta(max_steps=3)).solve(qp)
+    assert not short.found
