@@ -66,6 +66,7 @@ ORDER = (
     "live",
     "cli",
     "paper_cli",
+    "noise_cli",
     "physics_cli",
     "view_cli",
     "__main__",
