@@ -1,7 +1,7 @@
 """What the scripts share: arguments, messages and exit codes.
 
 Exit code 0: done, and every check agreed. 1: a step disagreed, was not solved, or broke a limit.
-2: bad input, one line on standard error.
+2: bad input, one line on standard error. 130 and 143: ended by Ctrl-C, by SIGTERM.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from typing import Any, NoReturn
 import numpy as np
 from tqdm import tqdm
 
+from iiwa_dnn import checks
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.controller import MODES
 from iiwa_dnn.crosscheck import CrossCheck
-from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError
+from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError, NoSolutionError
 from iiwa_dnn.experiments import paper
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.metrics import failures
+from iiwa_dnn.policies import POLICIES
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references import Heart
 from iiwa_dnn.report import save_run, summary
@@ -50,6 +53,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: error: {message} (--help lists the options)\n")
 
 
+@ended_by_signals()
 def track_heart(arguments: Sequence[str] | None = None) -> int:
     """Draw the heart, check every step, write the run; the script of the same name.
 
@@ -75,6 +79,9 @@ def track_heart(arguments: Sequence[str] | None = None) -> int:
         with bar:
             record = simulation.run(bar.update)
         metrics = save_run(record, folder, plots=options.plots)
+    except NoSolutionError as error:
+        print(f"{parser.prog}: error: {error}", file=sys.stderr)
+        return 1
     except IiwaDnnError as error:
         # One line, whatever stands in a file's name.
         print(f"{parser.prog}: error: {' '.join(str(error).split())}", file=sys.stderr)
@@ -109,6 +116,14 @@ def _track_parser() -> argparse.ArgumentParser:
         metavar="RAD|datasheet",
         help="position limit of every joint (2.5 for iiwa7, the URDF's for others)",
     )
+    add(
+        "--speed",
+        type=float,
+        default=1.0,
+        metavar="FRACTION",
+        help="velocity limits as a share of the data sheet's (%(default)s)",
+    )
+    add("--policy", choices=POLICIES, default="slow", help="without a solution (%(default)s)")
     add("--dt", type=float, default=1e-4, metavar="S", help="control period (%(default)s)")
     add("--duration", type=float, default=10.0, metavar="S", help="length (%(default)s)")
     add("--scale", type=float, default=3.45e-3, metavar="M", help="heart's a (%(default)s)")
@@ -121,6 +136,20 @@ def _track_parser() -> argparse.ArgumentParser:
         help="where it enters; at measurement, --noise is in rad (%(default)s)",
     )
     add("--filter-window", type=int, default=1, metavar="N", help="moving average (%(default)s)")
+    add(
+        "--gain",
+        type=float,
+        default=10.2,
+        metavar="1/S",
+        help="feedback of position and orientation (%(default)s)",
+    )
+    add(
+        "--integral-gain",
+        type=float,
+        default=0.0,
+        metavar="1/S^2",
+        help="feedback of the error's integral (%(default)s)",
+    )
     add("--seed", type=int, default=0, help="of the noise (%(default)s)")
     add("--check", choices=tuple(CHECKS), default="proxqp", help="reference (%(default)s)")
     add("--tolerance", type=float, default=1e-6, metavar="RAD/S", help="gap (%(default)s)")
@@ -136,11 +165,16 @@ def _simulation(options: argparse.Namespace) -> Simulation:
     is_papers = robot.name == "iiwa7"
     q0 = start_posture(robot, is_papers) if options.q0 is None else np.array(options.q0)
     robot = limited(robot, options.joint_limit, is_papers)
+    robot = robot.with_limits(velocity=checks.positive("speed", options.speed) * robot.dq_max)
     start = Configuration(robot, q0)
     return Simulation(
         robot,
         DoubleIndicator(
-            weight=options.weight, orientation=options.orientation, kinetic=options.kinetic
+            weight=options.weight,
+            position_gain=options.gain,
+            orientation_gain=options.gain,
+            orientation=options.orientation,
+            kinetic=options.kinetic,
         ),
         Heart(scale=options.scale).anchored(start),
         q0,
@@ -151,6 +185,8 @@ def _simulation(options: argparse.Namespace) -> Simulation:
         noise=options.noise,
         noise_at=options.noise_at,
         filter_window=options.filter_window,
+        integral_gain=options.integral_gain,
+        policy=options.policy,
         seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.answers import Answers
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.kernels_control import control_step
+from iiwa_dnn.policies import POLICIES, Policy, Resolution, resolve, stopped
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
@@ -25,11 +27,13 @@ class Command(NamedTuple):
 
     Attributes:
         qp: The program that was solved.
-        solution: The network's answer to it.
+        solution: The answer to it, the network's where there is no resolution.
+        resolution: What the policy decided where the network had no answer; else None.
     """
 
     qp: QP
     solution: Solution
+    resolution: Resolution | None = None
 
     @property
     def dq(self) -> Vector:
@@ -46,30 +50,51 @@ class Controller:
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances
             by one control period, as in the paper, and lags.
         dt: Control period [s], the time that the network advances in ``continuous`` mode.
+        policy: What to do at a step that the network does not solve in ``converged`` mode
+            (`iiwa_dnn.policies`); None: hand its last word to the caller. In ``continuous`` mode
+            it never settles and always answers.
     """
 
     def __init__(
-        self, scheme: Scheme, solver: DNNSolver, mode: Mode = "converged", dt: float = 1e-4
+        self,
+        scheme: Scheme,
+        solver: DNNSolver,
+        mode: Mode = "converged",
+        dt: float = 1e-4,
+        policy: Policy | None = None,
     ) -> None:
         """Bring the parts together.
 
+        A limit gain above 1 / dt would let a joint step over its limit; it is cut to that.
+
         Raises:
-            InvalidInputError: `mode` is not one of ``MODES``, or `dt` is not a positive time.
+            InvalidInputError: `mode` is not one of ``MODES``, `policy` not one of ``POLICIES``, or
+                `dt` not a positive time.
         """
         checks.one_of("mode", mode, MODES)
+        if policy is not None:
+            checks.one_of("policy", policy, POLICIES)
         checks.positive("dt", dt)
+        gain = scheme.limit_gain
+        if gain is not None and gain * dt > 1.0:
+            scheme = replace(scheme, limit_gain=1.0 / dt)  # type: ignore[type-var]
         self.scheme = scheme
         self.solver = solver
         self.mode = mode
         self.dt = dt
+        self.policy = policy
         self._expected = Status.SOLVED if mode == "converged" else Status.ADVANCED
         self._parts: _Parts | None = None
 
     def step(self, conf: Configuration, target: Target) -> Command:
-        """Build this instant's program and let the network answer it."""
+        """Build this instant's program and let the network answer it.
+
+        Raises:
+            NoSolutionError: There is no solution and the policy is ``raise``.
+        """
         answers = self.answers(1)
         self.answer(conf, target.data, answers)
-        return Command(answers.qp(0), answers.solution(0))
+        return Command(answers.qp(0), answers.solution(0), answers.resolved.get(0))
 
     def answers(self, capacity: int) -> Answers:
         """Room for the answers of so many steps."""
@@ -113,6 +138,13 @@ class Controller:
             solution = self.solver.solve(qp)
         else:
             solution = self.solver.advance(qp, self.dt)
+        if solution.status is not self._expected and self.policy is not None:
+            if self.mode == "converged":
+                resolution = resolve(qp, solution, self.policy, self.solver)
+            else:
+                resolution = stopped(qp, solution)  # it is no longer a number
+            qp, solution = resolution.qp, resolution.solution
+            answers.resolved[count] = resolution
         answers.add(qp, solution, conf.arrays[1])
         return answers.x(count)
 

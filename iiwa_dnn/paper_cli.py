@@ -19,6 +19,7 @@ from iiwa_dnn.experiments import ablation, paper, table1, table2
 from iiwa_dnn.experiments.runs import HeartRun, measure
 from iiwa_dnn.experiments.scope import FULL, QUICK, Scope
 from iiwa_dnn.files import prepare_folder, write_json
+from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.paper_findings import findings
 from iiwa_dnn.paper_plots import save_paper_figures
 from iiwa_dnn.paper_report import write_paper_report
@@ -28,6 +29,7 @@ from iiwa_dnn.sweeps import Sweep
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 
 
+@ended_by_signals()
 def reproduce_paper(arguments: Sequence[str] | None = None) -> int:
     """Run every experiment of the paper and write what came out; the script of the same name.
 

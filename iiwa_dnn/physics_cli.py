@@ -16,6 +16,7 @@ from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.crosscheck import CrossCheck
 from iiwa_dnn.exceptions import IiwaDnnError
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.metrics import failures
 from iiwa_dnn.offscreen import opengl_library
 from iiwa_dnn.pictures import frame_times, import_encoder, save_moments, save_video
@@ -37,6 +38,7 @@ from iiwa_dnn.simulation.disturbances import (
 from iiwa_dnn.simulation.physics import PhysicsSimulation
 
 
+@ended_by_signals()
 def simulate_physics(arguments: Sequence[str] | None = None) -> int:
     """Draw the heart in physics, check every step, write the run with pictures and a video.
 

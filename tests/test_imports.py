@@ -16,9 +16,11 @@ ORDER = (
     "offscreen",
     "checks",
     "files",
+    "interrupts",
     "kernels",
     "kernels_dense",
     "kernels_implicit",
+    "kernels_clip",
     "kernels_control",
     "kernels_batch",
     "urdf",
@@ -36,10 +38,14 @@ ORDER = (
     "batch",
     "crosscheck",
     "checkpool",
+    "policies",
+    "feedback",
+    "estimation",
     "answers",
     "controller",
     "record",
     "torques",
+    "incidents",
     "metrics",
     "statistics",
     "simulation",
@@ -59,6 +65,7 @@ ORDER = (
     "live",
     "cli",
     "paper_cli",
+    "noise_cli",
     "physics_cli",
     "view_cli",
     "benchmarks",
@@ -71,7 +78,16 @@ AFTER_THE_RECORD = {
     "decimation", "panels", "plots", "paper_plots", "report", "paper_findings", "paper_report",
     "rendering", "pictures", "viewer",
 }  # fmt: skip
-BEFORE_THEM = {"exceptions", "checks", "files", "record", "torques", "metrics", "statistics"}
+BEFORE_THEM = {
+    "exceptions",
+    "checks",
+    "files",
+    "record",
+    "torques",
+    "incidents",
+    "metrics",
+    "statistics",
+}
 # What draws the robot itself needs its shapes too, and nothing else of it.
 DRAW_THE_ROBOT = {"rendering", "pictures", "viewer"}
 SHAPES = {"robot", "shapes", "mujoco_model", "offscreen"}
