@@ -57,6 +57,8 @@ def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> N
     error = np.linalg.norm(record.position - record.position_desired, axis=1)
     assert error.max() > 0.05  # out of reach
     assert error[-1] < 1e-3  # and back
+    # Changes of the velocities in a second: shaking at every step would make 1e3 and more.
+    assert np.abs(np.diff(record.dq, axis=0)).sum() / record.t[-1] < 50.0
 
 
 @pytest.mark.parametrize("dt", [1e-3, 1e-2])
