@@ -36,7 +36,6 @@ ORDER = (
     "certificates",
     "solver",
     "batch",
-    "benchmarks",
     "crosscheck",
     "checkpool",
     "policies",
@@ -70,6 +69,7 @@ ORDER = (
     "noise_cli",
     "physics_cli",
     "view_cli",
+    "benchmarks",
     "__main__",
     "__init__",
 )
