@@ -1,9 +1,9 @@
 r"""What to do at a step whose program has no solution, or one that the network did not find.
 
 A program without a solution asks for a task velocity b that no joint velocity inside the bounds
-gives. Every policy that goes on replaces b by one that can be had and leaves the rest of the
-program alone, so joint and velocity limits are never relaxed, the objective still chooses among
-the joint velocities, and the network and its check get a program of the usual shape:
+gives. Every policy that goes on replaces b by one that can be had and leaves rows and bounds
+alone, so joint and velocity limits are never relaxed, and the check gets a program of the usual
+shape:
 
 ``slow``
     :math:`b' = s\,b` with the largest feasible :math:`s \in [0, 1]`, the solution of the linear
@@ -13,7 +13,8 @@ the joint velocities, and the network and its check get a program of the usual s
     limits has to come back, the task yields as with ``relax``.
 ``relax``
     :math:`b' = A \dot q'` with :math:`\dot q'` the point inside the bounds that violates the task
-    rows least, :math:`\min \|A \dot q' - b\|_W`. The clock runs on.
+    rows least, :math:`\min \|A \dot q' - b\|_W`, damped, and the objective is to be near it: a
+    wish to come back to the home posture would shake an arm that is stretched. The clock runs on.
 ``stop``
     No velocity; the run ends.
 ``raise``
@@ -157,9 +158,10 @@ def resolve(qp: QP, failed: Solution, policy: Policy, solver: DNNSolver) -> Reso
     if policy == "slow" and not np.isnan(reach.fraction):
         reach = _braked(qp, reach)
         if not reach.dq.any() and _rest_is_allowed(qp):
-            return _at_rest(qp, reach.sides)
-        return _replaced(Action.SLOW, qp, solver, reach)
-    return _replaced(Action.RELAX, qp, solver, least_violation(qp))
+            return _settled(Action.SLOW, qp, reach.dq, 0.0, reach.sides)
+        return _slowed(qp, solver, reach)
+    reach = least_violation(qp)
+    return _settled(Action.RELAX, qp, reach.dq, 1.0, reach.sides)
 
 
 def largest_fraction(qp: QP) -> Reach:
@@ -259,28 +261,25 @@ def ask_reference(qp: QP, tol: float) -> Solution | None:
     return Solution(point, qp.sizes, Status.SOLVED, 0, 0.0, *residuals)
 
 
-def _replaced(action: Action, qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
-    """The answer to the program with the b that `reach` gives."""
+def _slowed(qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
+    """The answer to the program with the share of b that `reach` gives."""
     n, _, p = qp.sizes
-    resting = np.clip(np.zeros(n), qp.lb, qp.ub)
-    along_b = action is Action.RELAX or not resting.any()
-    for share in _SHARES if along_b else _SHARES[:1]:
-        fraction = share * reach.fraction if action is Action.SLOW else 1.0
-        dq = share * reach.dq + (1.0 - share) * resting
+    for share in _SHARES if _rest_is_allowed(qp) else _SHARES[:1]:
+        fraction, dq = share * reach.fraction, share * reach.dq
         attainable = QP.from_data(qp.data.copy(), qp.sizes)
         # Not s b: this right-hand side has a solution to the last bit.
         attainable.b[:] = qp.A @ dq
         solution = solver.solve(attainable)
         if solution.found:
-            return Resolution(action, attainable, solution, fraction, reach.sides)
+            return Resolution(Action.SLOW, attainable, solution, fraction, reach.sides)
         reference = ask_reference(attainable, solver.tol)
         if reference is not None:
-            return Resolution(action, attainable, reference, fraction, reach.sides)
+            return Resolution(Action.SLOW, attainable, reference, fraction, reach.sides)
     dq = _nearly(attainable)
     residuals = attainable.residuals(dq, None, None, None)
     point = np.concatenate([dq, np.zeros(p + n)])
     unsettled = Solution(point, qp.sizes, Status.NOT_SETTLED, 0, 0.0, *residuals)
-    return Resolution(action, attainable, unsettled, fraction, reach.sides)
+    return Resolution(Action.SLOW, attainable, unsettled, fraction, reach.sides)
 
 
 def _braked(qp: QP, reach: Reach) -> Reach:
@@ -298,14 +297,19 @@ def _rest_is_allowed(qp: QP) -> bool:
     return bool((qp.lb <= 0.0).all() and (qp.ub >= 0.0).all())
 
 
-def _at_rest(qp: QP, sides: Sides) -> Resolution:
-    """No velocity, as the solution of a program: nothing is asked for but the least motion."""
-    still = QP.from_data(qp.data.copy(), qp.sizes)
-    still.b[:] = 0.0
-    still.q[:] = 0.0
+def _settled(action: Action, qp: QP, dq: Vector, fraction: float, sides: Sides) -> Resolution:
+    """A velocity that is decided already, as the solution of a program of the usual shape.
+
+    The program asks for what dq gives, and among that for what is nearest to dq.
+    """
+    decided = QP.from_data(qp.data.copy(), qp.sizes)
+    decided.b[:] = qp.A @ dq
+    decided.q[:] = -(qp.P @ dq)
     n, m, p = qp.sizes
-    answer = Solution(np.zeros(2 * n + m + p), qp.sizes, Status.SOLVED, 0, 0.0, 0.0, 0.0, 0.0)
-    return Resolution(Action.SLOW, still, answer, 0.0, sides)
+    point = np.concatenate([dq, np.zeros(n + m + p)])
+    residuals = decided.residuals(dq, None, None, None)
+    answer = Solution(point, qp.sizes, Status.SOLVED, 0, 0.0, *residuals)
+    return Resolution(action, decided, answer, fraction, sides)
 
 
 def _nearly(qp: QP) -> Vector:

@@ -56,6 +56,7 @@ ORDER = (
     "panels",
     "plots",
     "paper_plots",
+    "singular_plots",
     "report",
     "paper_findings",
     "paper_report",
@@ -75,7 +76,8 @@ ORDER = (
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
 AFTER_THE_RECORD = {
-    "decimation", "panels", "plots", "paper_plots", "report", "paper_findings", "paper_report",
+    "decimation", "panels", "plots", "paper_plots", "singular_plots", "report",
+    "paper_findings", "paper_report",
     "rendering", "pictures", "viewer",
 }  # fmt: skip
 BEFORE_THEM = {

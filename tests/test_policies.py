@@ -126,7 +126,7 @@ def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
 
 @pytest.mark.parametrize("orientation", ["so3", "block", "none"])
 @pytest.mark.parametrize("policy", ["slow", "relax"])
-def test_policies_that_go_on_keep_the_bounds_and_the_objective(
+def test_policies_that_go_on_keep_the_rows_and_the_bounds(
     policy: policies.Policy, orientation: str
 ) -> None:
     for seed in range(10):
@@ -139,6 +139,8 @@ def test_policies_that_go_on_keep_the_bounds_and_the_objective(
         assert answer.solution.status is Status.SOLVED
         # The same program but for b, and its best point by qpsolvers' own residuals.
         np.testing.assert_array_equal(answer.qp.P, qp.P)
+        np.testing.assert_array_equal(answer.qp.lb, qp.lb)
+        np.testing.assert_array_equal(answer.qp.ub, qp.ub)
         np.testing.assert_array_equal(answer.qp.A, qp.A)
         problem = answer.qp.to_qpsolvers()
         assert answer.solution.to_qpsolvers(problem).is_optimal(1e-8)
@@ -148,6 +150,7 @@ def test_policies_that_go_on_keep_the_bounds_and_the_objective(
             )
         else:
             assert answer.fraction == 1.0
+            np.testing.assert_array_equal(answer.solution.x, least_violation(qp).dq)
 
 
 def test_a_joint_outside_its_limits_comes_back_whatever_the_task_says() -> None:

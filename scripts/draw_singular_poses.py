@@ -1,0 +1,16 @@
+"""Draw what happens in singular poses into a folder: docs/images, or the one that is given."""
+
+import sys
+
+from iiwa_dnn.experiments.singular import stretched_run, tilted_run
+from iiwa_dnn.singular_plots import save_singular_figure
+
+if __name__ == "__main__":
+    vertical = {
+        f"{form}, {mode}": tilted_run(form, mode)
+        for form in ("so3", "block")
+        for mode in ("converged", "continuous")
+    }
+    stretched = {policy: stretched_run(policy) for policy in ("slow", "relax")}
+    folder = sys.argv[1] if len(sys.argv) > 1 else "docs/images"
+    print("\n".join(map(str, save_singular_figure(vertical, stretched, folder))))
