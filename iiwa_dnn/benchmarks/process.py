@@ -66,11 +66,10 @@ def measure_startup(rounds: int = 5) -> dict[str, float]:
 
 def measure_memory(duration: float = 2.0) -> dict[str, Any]:
     """Largest memory of a run and of one ten times as long, and the size of their records."""
-    with tempfile.TemporaryDirectory() as cache:
-        _python(_RUN, cache, "0.01")  # compiles
-        (short, short_record), (long, long_record) = (
-            json.loads(_python(_RUN, cache, str(length))) for length in (duration, 10 * duration)
-        )
+    _python(_RUN, None, "0.01")  # compiles, where that has not been done
+    (short, short_record), (long, long_record) = (
+        json.loads(_python(_RUN, None, str(length))) for length in (duration, 10 * duration)
+    )
     return {
         "peak_bytes": [short, long],
         "record_bytes": [short_record, long_record],
@@ -84,8 +83,9 @@ def _first_step(cache: str) -> float:
     return time.perf_counter() - began
 
 
-def _python(code: str, cache: str, *arguments: str) -> str:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
+def _python(code: str, cache: str | None, *arguments: str) -> str:
+    """Standard output of a script, its compiled code in `cache` or where numba puts it."""
+    environment = {**os.environ, **({} if cache is None else {"NUMBA_CACHE_DIR": cache})}
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
         env=environment, capture_output=True, text=True, check=True,
