@@ -58,12 +58,15 @@ ORDER = (
     "pictures",
     "viewer",
     "live",
+    "settings",
+    "command_line",
     "cli",
+    "solve_cli",
     "paper_cli",
     "physics_cli",
     "view_cli",
-    "__main__",
     "__init__",
+    "__main__",
 )
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
