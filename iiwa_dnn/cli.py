@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.arms import ARMS
 from iiwa_dnn.command_line import list_files, progress_bar, run_command, save_settings
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.crosscheck import CrossCheck
@@ -116,9 +117,10 @@ def _simulation(options: TrackSettings) -> Simulation:
 
 
 def start_posture(robot: Robot, is_papers: bool) -> Vector:
-    """Where to start when nobody says: the paper's posture, or the middle of each joint's range."""
-    if is_papers and robot.dof == len(PAPER_START):
-        return np.array(PAPER_START)
+    """Where to start when nobody says: the posture known for it, or the middle of each range."""
+    known = PAPER_START if is_papers else ARMS[robot.name].start if robot.name in ARMS else ()
+    if robot.dof == len(known):
+        return np.array(known)
     middle = 0.5 * (robot.q_lower + robot.q_upper)
     return np.where(np.isfinite(middle), middle, 0.0)
 

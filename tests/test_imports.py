@@ -21,6 +21,7 @@ ORDER = (
     "kernels_implicit",
     "kernels_control",
     "kernels_batch",
+    "arms",
     "urdf",
     "robot",
     "shapes",
