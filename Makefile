@@ -46,7 +46,7 @@ notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
 
 docs: $(STAMP)  ## build the documentation into site/, any warning an error
-	$(VENV_PYTHON) -m mkdocs build --strict --quiet $(ARGS)
+	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
 
 coverage: $(STAMP)  ## run the tests and show which lines of the package they reach
 	$(VENV_PYTHON) -m pytest --cov --cov-report=term-missing $(ARGS)

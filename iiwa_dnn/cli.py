@@ -58,8 +58,8 @@ def _track(settings: TrackSettings) -> int:
     folder = prepare_folder(settings.out)
     with progress_bar(simulation.steps, "step", settings.quiet) as bar:
         record = simulation.run(bar.update)
-    save_settings(settings, folder)
     metrics = save_run(record, folder, plots=settings.plots)
+    save_settings(settings, folder)
     return report_run(metrics, failures(record), folder, settings.quiet, settings.verbose)
 
 

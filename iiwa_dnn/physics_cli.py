@@ -51,8 +51,8 @@ def _physics(settings: PhysicsSettings) -> int:
     def moments(record: Record, folder: Path) -> list[Path]:
         return save_moments(robot, record, folder) if settings.pictures else []
 
-    save_settings(settings, folder)
     metrics = save_run(record, folder, plots=settings.plots, more=moments)
+    save_settings(settings, folder)
     if settings.video:
         with progress_bar(len(frame_times(record)), "frame", settings.quiet) as bar:
             save_video(robot, record, folder / "video.mp4", bar.update)
