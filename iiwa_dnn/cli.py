@@ -117,7 +117,7 @@ def _simulation(options: TrackSettings) -> Simulation:
 
 
 def start_posture(robot: Robot, is_papers: bool) -> Vector:
-    """Where to start when nobody says: the posture known for it, or the middle of each range."""
+    """Where to start [rad], (n,): the posture known for the robot, or the middle of each range."""
     known = PAPER_START if is_papers else ARMS[robot.name].start if robot.name in ARMS else ()
     if robot.dof == len(known):
         return np.array(known)
