@@ -3,7 +3,7 @@
 Ruff's pydocstyle rules see to it that there is a docstring. Here the annotations are read: where
 one is an array, the words about it must hold a shape such as ``(n,)``, or its parts as in
 ``[x | y]``; and those about joint angles, velocities, forces and times a unit such as ``[rad]``. A
-method that a protocol describes needs no description of its own.
+method that a protocol or a base class describes needs no description of its own.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _ARRAY = re.compile(r"\b(NDArray|ArrayLike|Vector|Matrix|FloatArray|Image)\b")
 _SHAPE = re.compile(
     r"\([^()]*(,|\.\.\.)[^()]*\)|\bsize\b|\bshape\b|\brow\b|likewise|\[\w+ \||\bnumber\b"
 )
-_UNIT = re.compile(r"\[[^\]]+\]|\bunit|dimensionless|\bpixel")
+_UNIT = re.compile(r"\[[^\]]+\]|\bunit|[Cc]ost vector")  # a program's q has any unit
 _PHYSICAL = re.compile(
     r"^(q|q0|dq|velocity|velocities|position|positions|linear_velocity|angular_velocity|torque|"
     r"lower|upper|q_lower|q_upper|dq_max|home|displacement|t|times|force|noise)$"
@@ -60,12 +60,17 @@ def sections(docstring: str) -> dict[str, str]:
     return found
 
 
+def says_for_others(node: ast.ClassDef) -> bool:
+    """Whether a class describes methods that others implement."""
+    return bool({"Protocol", "ABC"} & set(map(ast.unparse, node.bases)))
+
+
 def described_elsewhere() -> set[str]:
     """Methods of protocols and abstract methods: who implements one need not say it all again."""
     found = set()
     for path in FILES:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ClassDef) and "Protocol" in map(ast.unparse, node.bases):
+            if isinstance(node, ast.ClassDef) and says_for_others(node):
                 found |= {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
     return found
 
@@ -114,8 +119,8 @@ def arrays(path: Path) -> Iterator[Item]:
                 own = ast.get_docstring(item)
                 if own is None and item.name in said:  # a property that the class describes
                     continue
-                protocol = "Protocol" in map(ast.unparse, node.bases)
-                yield from of_function(item, f"{node.name}.", "" if protocol else f" {text}")
+                inherited = "" if says_for_others(node) else f" {text}"
+                yield from of_function(item, f"{node.name}.", inherited)
 
 
 def faults(path: Path) -> list[str]:

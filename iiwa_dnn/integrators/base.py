@@ -26,8 +26,6 @@ class Integrator(Protocol):
     order: ClassVar[int]
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` in place by `duration` [rho]; returns the iterations it took."""
-    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""
         ...
 

@@ -43,8 +43,6 @@ class ExplicitEuler:
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho].
-    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place by `duration` [rho].
 
         Returns:
             Sub-steps taken.

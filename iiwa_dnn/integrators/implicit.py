@@ -72,8 +72,6 @@ class ImplicitEuler:
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` in place by `duration` [rho] in equal steps no longer than `step`.
-    def advance(self, network: ProjectionNetwork, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place by `duration` [rho] in equal steps of at most `step`.
 
         Returns:
             Linear systems solved.

@@ -49,9 +49,6 @@ class ProjectionNetwork(Network):
 
     def flow(self, qp: QP) -> Flow:
         """The right-hand side and its derivative for this program."""
-    def initial_state(self, qp: QP) -> Vector:
-        """The state at rest before any problem was seen: zero, of shape (state_size,)."""
-        return np.zeros(self.state_size(qp))
 
         def rates(state: Vector) -> Vector:
             result = np.empty(state.size)
