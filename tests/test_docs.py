@@ -16,6 +16,8 @@ from pathlib import Path
 
 import pytest
 
+import iiwa_dnn
+
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
@@ -87,6 +89,18 @@ def test_links_and_named_tests_exist(path: Path) -> None:
     for file, name in _TEST.findall(text):
         assert (ROOT / file).is_file(), f"{path.name} names {file}"
         assert not name or name in defined(ROOT / file), f"{path.name} names {file}::{name}"
+
+
+def test_the_api_page_and_the_table_of_contents_are_complete() -> None:
+    api = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"auto(?:class|function):: iiwa_dnn\.(\w+)$", api, re.MULTILINE))
+    errors = {name for name in iiwa_dnn.__all__ if name.endswith("Error")}  # as a module
+    assert set(iiwa_dnn.__all__) - errors == listed
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    trees = re.findall(r"^```{toctree}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
+    named = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
+    assert named == pages
 
 
 def test_every_erratum_has_its_tests_and_every_test_its_erratum() -> None:
