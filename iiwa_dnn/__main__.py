@@ -11,6 +11,8 @@ import tyro
 
 from iiwa_dnn.command_line import unknown_command
 from iiwa_dnn.settings import (
+    BenchSettings,
+    NoiseSettings,
     PaperSettings,
     PhysicsSettings,
     SolveSettings,
@@ -40,6 +42,8 @@ class Entry(NamedTuple):
 COMMANDS = {
     "track": Entry("cli.track_heart", TrackSettings, "draw the heart, every step checked"),
     "paper": Entry("paper_cli.reproduce_paper", PaperSettings, "run the paper's experiments"),
+    "noise": Entry("noise_cli.study_noise", NoiseSettings, "compare the means against noise"),
+    "bench": Entry("benchmarks.cli.bench_solvers", BenchSettings, "measure the solvers"),
     "physics": Entry("physics_cli.simulate_physics", PhysicsSettings, "draw the heart in MuJoCo"),
     "view": Entry("view_cli.view", ViewSettings, "replay a run in the browser, or drive live"),
     "solve": Entry("solve_cli.solve", SolveSettings, "solve the quadratic program in a file"),
@@ -70,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _completion(*rest)
     if name not in COMMANDS:
         unknown_command(PROG, name, (*COMMANDS, "completion"))
-    module, _, function = COMMANDS[name].function.partition(".")
+    module, _, function = COMMANDS[name].function.rpartition(".")
     run: Callable[..., int] = getattr(import_module(f"iiwa_dnn.{module}"), function)
     return run(rest, prog=f"{PROG} {name}")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.policies import Resolution
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 
 FIGURES = 5 + 16
@@ -26,6 +27,7 @@ class Answers:
         rows: The array, (capacity, width).
         x_slice: Where in a row the primal point is.
         unsolved: Solutions that are none, by their number.
+        resolved: What a policy decided, by the number of the answer that it gave.
     """
 
     def __init__(self, capacity: int, status: Status) -> None:
@@ -34,6 +36,7 @@ class Answers:
         self.sizes = (0, 0, 0)
         self.rows: Matrix = np.empty((0, 0))
         self.unsolved: dict[int, Solution] = {}
+        self.resolved: dict[int, Resolution] = {}
         self._program = self._point = self.x_slice = slice(0, 0)
 
     def shape(self, sizes: tuple[int, int, int]) -> None:
@@ -97,6 +100,19 @@ class Answers:
     def all_x(self) -> Matrix:
         """The primal points, (count, n)."""
         return self.rows[: self.count, self.x_slice]
+
+    @property
+    def bound_multipliers(self) -> Matrix:
+        """`Solution.z_box` of each, (count, n)."""
+        stop = self._point.stop
+        return self.rows[: self.count, stop - self.sizes[0] : stop]
+
+    def repeat(self, first: int) -> None:
+        """Put answer `first` in the place of all after it."""
+        self.rows[first + 1 : self.count] = self.rows[first]
+        for numbered in (self.unsolved, self.resolved):
+            for i in range(first + 1, self.count):
+                numbered.pop(i, None)
 
     @property
     def iterations(self) -> Vector:

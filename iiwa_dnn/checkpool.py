@@ -9,8 +9,6 @@ from __future__ import annotations
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 
-import loky
-
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.qp import Matrix
 
@@ -44,6 +42,8 @@ class CheckPool:
                 where so few programs would not repay them.
         """
         if workers is None:
+            import loky
+
             workers = loky.cpu_count() - 1 if programs >= _WORTH_A_PROCESS else 0
         self.check = check
         self.workers = workers if check.solvers else 0
@@ -57,6 +57,8 @@ class CheckPool:
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:
+            import loky
+
             try:
                 # Not the standard library's pool: that one runs the caller's script once more in
                 # every worker, so a script without a __main__ guard would start itself again.

@@ -14,6 +14,13 @@ from iiwa_dnn.exceptions import InvalidInputError
 Vector3 = tuple[float, float, float]
 
 
+def finite(argument: str, value: object) -> float:
+    """The value as a float, or an InvalidInputError unless it is a finite number."""
+    if not isinstance(value, Real) or not math.isfinite(value):
+        raise InvalidInputError(argument, f"must be a finite number, not {value!r}", value)
+    return float(value)
+
+
 def positive(argument: str, value: object) -> float:
     """The value as a float, or an InvalidInputError unless it is a finite number above zero."""
     if not isinstance(value, Real) or not math.isfinite(value) or float(value) <= 0.0:

@@ -1,7 +1,7 @@
 """``track``: the heart drawn, and what the commands that run an arm share.
 
 Exit code 0: done, and every check agreed. 1: a step disagreed, was not solved, or broke a limit.
-2: bad input, one line on standard error.
+2: bad input, one line on standard error. 130 and 143: ended by Ctrl-C, by SIGTERM.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn import checks
 from iiwa_dnn.arms import ARMS
 from iiwa_dnn.command_line import list_files, progress_bar, run_command, save_settings
 from iiwa_dnn.configuration import Configuration
@@ -96,11 +97,16 @@ def _simulation(options: TrackSettings) -> Simulation:
     is_papers = robot.name == "iiwa7"
     q0 = np.array(options.q0) if options.q0 else start_posture(robot, is_papers)
     robot = limited(robot, options.joint_limit, is_papers)
+    robot = robot.with_limits(velocity=checks.positive("speed", options.speed) * robot.dq_max)
     start = Configuration(robot, q0)
     return Simulation(
         robot,
         DoubleIndicator(
-            weight=options.weight, orientation=options.orientation, kinetic=options.kinetic
+            weight=options.weight,
+            position_gain=options.gain,
+            orientation_gain=options.gain,
+            orientation=options.orientation,
+            kinetic=options.kinetic,
         ),
         Heart(scale=options.scale).anchored(start),
         q0,
@@ -111,6 +117,8 @@ def _simulation(options: TrackSettings) -> Simulation:
         noise=options.noise,
         noise_at=options.noise_at,
         filter_window=options.filter_window,
+        integral_gain=options.integral_gain,
+        policy=options.policy,
         seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),
     )

@@ -24,8 +24,9 @@ import tomli_w
 import tyro
 from tqdm import tqdm
 
-from iiwa_dnn.exceptions import FileError, IiwaDnnError, NotFoundError
+from iiwa_dnn.exceptions import FileError, IiwaDnnError, NoSolutionError, NotFoundError
 from iiwa_dnn.files import one_line, write_text
+from iiwa_dnn.interrupts import ended_by_signals
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -79,16 +80,21 @@ def run_command(
         arguments: As in `parse`.
 
     Returns:
-        The exit code; 2 after an error of the package, which ``--verbose`` shows in full first.
+        The exit code; after an error of the package 2, or 1 where a step had no solution.
+        ``--verbose`` shows the error in full first.
+
+    Raises:
+        SystemExit: Ctrl-C or SIGTERM came (`iiwa_dnn.interrupts`), or as in `parse`.
     """
     settings = parse(kind, prog, arguments)
     try:
-        return run(settings)
+        with ended_by_signals():
+            return run(settings)
     except IiwaDnnError as error:
         if getattr(settings, "verbose", False):
             traceback.print_exc()
         print(_error_line(prog, error), file=sys.stderr)
-        return 2
+        return 1 if isinstance(error, NoSolutionError) else 2
 
 
 def save_settings(settings: Any, folder: Path) -> Path:

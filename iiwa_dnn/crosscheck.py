@@ -9,14 +9,15 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import qpsolvers
-import scipy.sparse as spa
 
-from iiwa_dnn import checks
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.qp import QP, Matrix, Vector
+
+if TYPE_CHECKING:
+    import qpsolvers
 
 # Tight enough that a gap of 1e-6 rad/s says something about the network and not about the
 # reference. OSQP at its defaults (1e-3) would not do; polishing takes it to machine precision.
@@ -113,27 +114,29 @@ class CrossCheck:
             Gaps and residuals, one row a program and one column a reference.
         """
         count, k = len(x), len(self.solvers)
-        verdict = Agreement(*(np.full((count, k), fill) for fill in (np.nan, np.nan, np.inf)))
+        n, m, p = sizes
+        points = np.full((count, k, 2 * n + m + p), np.nan)
         # Solvers may take minutes over one NaN.
         askable = np.flatnonzero(~np.isnan(programs).any(axis=1)) if k else ()
         for i in askable:
-            row = programs[i]
-            qp = QP.from_data(row, sizes)
-            problem = qp.to_qpsolvers()
+            problem = QP.from_data(programs[i], sizes).to_qpsolvers()
             for j, name in enumerate(self.solvers):
                 reference = self._solve(name, problem)
-                if reference is None or reference.x is None:
-                    continue
-                residual = qp.residuals(reference.x, reference.y, reference.z, reference.z_box)
-                verdict.reference_residual[i, j] = residual.largest
-                if residual.largest <= self.reference_tolerance:
-                    step = x[i] - reference.x
-                    verdict.solution_gap[i, j] = np.abs(step).max()
-                    # As a difference of points: subtracting two objectives would cancel.
-                    verdict.objective_gap[i, j] = abs(
-                        step @ (qp.P @ (x[i] + reference.x)) / 2.0 + qp.q @ step
-                    )
-        return verdict
+                if reference is not None and reference.x is not None:
+                    _copy_point(reference, sizes, points[i, j])
+        residuals = np.empty((count, k))
+        kernels.largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
+        references = np.where(
+            residuals[..., np.newaxis] <= self.reference_tolerance, points, np.nan
+        )
+        references = references[..., :n]
+        step = x[:, np.newaxis] - references
+        cost = programs[:, : n * n].reshape(count, n, n)
+        linear = programs[:, n * n : n * (n + 1)]
+        # As a difference of points: subtracting two objectives would cancel.
+        curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
+        objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
+        return Agreement(np.abs(step).max(axis=2), objective_gap, residuals)
 
     def settings(self) -> dict[str, Any]:
         """What the record says of the check."""
@@ -145,6 +148,8 @@ class CrossCheck:
 
     def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
         """The reference's solution, or None where it has none."""
+        import qpsolvers
+
         options = self._options[name]
         try:
             if name == "osqp":
@@ -156,8 +161,23 @@ class CrossCheck:
         return solution if solution.found else None
 
 
+def _copy_point(
+    solution: qpsolvers.Solution, sizes: tuple[int, int, int], point: Vector
+) -> None:  # fmt: skip
+    """Write a solution into `point`, laid out as `Solution.point`; what it lacks becomes zero."""
+    n, m, p = sizes
+    point[:n] = solution.x
+    point[n : n + p] = 0.0 if solution.y is None else solution.y
+    if m:
+        point[n + p : n + p + m] = 0.0 if solution.z is None else solution.z
+    point[n + p + m :] = 0.0 if solution.z_box is None else solution.z_box
+
+
 def _solve_sparse(problem: qpsolvers.Problem, options: dict[str, Any]) -> qpsolvers.Solution:
     """OSQP's answer: it takes sparse matrices only, and qpsolvers warns when it converts."""
+    import qpsolvers
+    import scipy.sparse as spa
+
     sparse = qpsolvers.Problem(
         spa.csc_matrix(problem.P),
         problem.q,

@@ -550,6 +550,21 @@ def point_residuals(data, n, m, p, point):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
+def largest_residuals(programs, n, m, p, points, out):
+    """Write the largest residual of each point (N, k, size) into `out` (N, k).
+
+    Infinity where a point is not a number from its first entry on: there is none.
+    """
+    count, k, _ = points.shape
+    for i in range(count):
+        for j in range(k):
+            out[i, j] = np.inf
+            if points[i, j, 0] == points[i, j, 0]:
+                primal, dual, gap = point_residuals(programs[i], n, m, p, points[i, j])
+                out[i, j] = larger(larger(primal, dual), gap)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def kkt_point(data, n, m, p, s, point):
     """The primal-dual point that a state stands for, and its residuals ``(primal, dual, gap)``.
 

@@ -14,15 +14,15 @@ from iiwa_dnn.kernels_implicit import settle_implicit
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def control_step(
-    row, p, mode, q, pose, jacobian, target, limits, home, kinetic, parameters, state, network
-):  # fmt: skip
+def control_step(row, p, mode, q, pose, jacobian, target, kinetic, constants, state):
     """Write program and answer of one control step into `row`, laid out as in `Answers`.
 
-    The arguments from `p` to `parameters` are those of `velocity_program`. `network` holds the
-    tolerance, the budget and the first step of the implicit integrator; then the time to advance,
-    zero for settling, whether x is projected, how many explicit sub-steps are asked for (zero for
-    as many as stability needs) and which share of the stable step is used.
+    The arguments from `p` to `kinetic` are those of `velocity_program`. `constants` is, one array
+    being taken more quickly than five, [network (7) | parameters (5) | home (n) | limits (3 n)].
+    The network's numbers are the tolerance, the budget and the first step of the implicit
+    integrator; then the time to advance, zero for settling, whether x is projected, how many
+    explicit sub-steps are asked for (zero for as many as stability needs) and which share of the
+    stable step is used.
 
     Returns:
         False where the network did not settle or diverged; `state` is then what it was.
@@ -31,6 +31,8 @@ def control_step(
     at_point = n * (n + 3) + p * (n + 1)
     at_figures = at_point + 2 * n + p
     data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
+    network, parameters = constants[:7], constants[7:12]
+    home, limits = constants[12 : 12 + n], constants[12 + n :].reshape(3, n)
     velocity_program(
         data, p, mode, q, pose, jacobian, target, limits, home, kinetic, parameters
     )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.files import plain
+from iiwa_dnn.incidents import incident_failures, incident_metrics
 from iiwa_dnn.record import FloatArray, Record
 from iiwa_dnn.torques import physics_failures, physics_metrics
 
@@ -52,13 +53,15 @@ def velocity_limit_excess(record: Record) -> FloatArray:
     return excess
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an overflow reads None
 def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 
     The mean squared error ``mse_position_error_m2`` is the mean over the N+1 samples *and* the
     three axes, which is what the paper's MSE most likely is: a third of the mean squared distance.
     ``duration_s`` is the time simulated; what was asked for is ``settings["duration"]``. A run in
-    physics also has ``physics`` (`iiwa_dnn.torques.physics_metrics`).
+    physics also has ``physics`` (`iiwa_dnn.torques.physics_metrics`), one in which a bound or a
+    policy acted ``incidents`` (`iiwa_dnn.incidents.incident_metrics`).
 
     Args:
         record: The run.
@@ -88,6 +91,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "max_kkt_residual": _max(record.kkt_residual),
             "crosscheck": _crosscheck(record),
             **physics_metrics(record),
+            **incident_metrics(record),
             "settings": settings,
             "versions": record.settings.get("versions", {}),
         }
@@ -98,8 +102,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
     """Say in plain words why a run is not a success; its exit code is then 1.
 
-    A run fails if it ended early, if a step was not solved or broke a limit, and, in converged
-    mode, if a reference disagreed, gave no answer to be believed, or was not asked.
+    A run fails if it ended early, if a step was not solved, had no solution or broke a limit, and,
+    in converged mode, if a reference disagreed, gave no answer to be believed, or was not asked.
 
     Args:
         run: The record, or its metrics. From the record the reasons also say which joint and when.
@@ -111,6 +115,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
     return [
         *_early_end(metrics),
+        *incident_failures(metrics),
         *_unsolved(metrics, record),
         *_crosscheck_failures(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),

@@ -14,15 +14,16 @@ negative at ``lb``).
 from __future__ import annotations
 
 from enum import Enum
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import qpsolvers
-import scipy.sparse as spa
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import kernels
 from iiwa_dnn.exceptions import InvalidInputError
+
+if TYPE_CHECKING:
+    import qpsolvers
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -30,7 +31,7 @@ Matrix = NDArray[np.float64]
 
 def _numbers(name: str, value: Any) -> NDArray[np.float64]:
     """A dense array of floats."""
-    if spa.issparse(value):
+    if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
     try:
         return np.asarray(value, dtype=np.float64)
@@ -192,16 +193,20 @@ class QP:
 
     def to_qpsolvers(self) -> qpsolvers.Problem:
         """The same problem for qpsolvers; parts without rows are left out, as it expects."""
-        bounded = np.isfinite(self.lb).any() or np.isfinite(self.ub).any()
+        import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
+
+        _, m, p = self.sizes
+        lb, ub = self.lb, self.ub
+        bounded = lb.max() > -np.inf or ub.min() < np.inf
         return qpsolvers.Problem(
             self.P,
             self.q,
-            self.G if self.h.size else None,
-            self.h if self.h.size else None,
-            self.A if self.b.size else None,
-            self.b if self.b.size else None,
-            self.lb if bounded else None,
-            self.ub if bounded else None,
+            self.G if m else None,
+            self.h if m else None,
+            self.A if p else None,
+            self.b if p else None,
+            lb if bounded else None,
+            ub if bounded else None,
         )
 
     def arrays(self) -> tuple[Matrix, Vector, Matrix, Vector, Matrix, Vector, Vector, Vector]:
@@ -230,8 +235,11 @@ class QP:
             z_box: Multipliers of the bounds, (n,).
         """
         n, m, p = self.sizes
-        parts = ((x, n), (y, p), (z, m), (z_box, n))
-        point = np.concatenate([np.zeros(k) if part is None else part for part, k in parts])
+        point, at = np.zeros(2 * n + m + p), 0
+        for part, size in ((x, n), (y, p), (z, m), (z_box, n)):
+            if part is not None:
+                point[at : at + size] = part
+            at += size
         return Residuals(*kernels.point_residuals(self.data, n, m, p, point))
 
     def check_values(self) -> None:
@@ -370,6 +378,8 @@ class Solution(NamedTuple):
         A solution that was not found carries no ``x``; what the network reached is in
         ``extras["last_x"]``, so that nobody takes it for an answer.
         """
+        import qpsolvers
+
         extras: dict[str, Any] = {
             "status": self.status.value,
             "iterations": self.iterations,

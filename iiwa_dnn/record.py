@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import sys
+import tokenize
+import warnings
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -40,12 +44,25 @@ _SHAPES: dict[str, tuple[str | int, ...]] = {
     "reference_residual": ("N", "k"),
 }
 # Only runs that have them; a file without them is whole.
-_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {"torque": ("N", "n")}
+_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
+    "torque": ("N", "n"),
+    "bound_multiplier": ("N", "n"),
+    "clipped": ("N", "n"),
+    "action": ("N",),
+    "fraction": ("N",),
+    "blocking": ("N", "n"),
+}
+_WHOLE: dict[str, type[np.signedinteger[Any]]] = {
+    "iterations": np.int64,
+    "clipped": np.int8,
+    "action": np.int8,
+    "blocking": np.int8,
+}
 
 # What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
-    NotImplementedError, RuntimeError,
+    NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
 )  # fmt: skip
 
 
@@ -76,6 +93,16 @@ class Record:
         settings: What was asked for, in JSON types; an infinite limit reads None.
         torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
             run that has no masses.
+        bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
+            one, negative at a lower one, 0 where the bound does not act; by how much the
+            objective falls for each rad/s that the bound gives way. None where none ever acted.
+        clipped: Which joints' commands were clipped to their bounds on leaving the controller,
+            (N, n), 1 or 0; None where none ever was.
+        action: What was done at each step in place of the network's answer, (N,): codes of
+            `iiwa_dnn.policies.Action`. None where its answer was always taken, as in the next two.
+        fraction: Share of a control period by which the reference's clock advanced, (N,).
+        blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
+            1 for a position limit's, 2 for a velocity limit, 0 where none is in the way.
         wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
@@ -97,6 +124,11 @@ class Record:
     reference_residual: FloatArray
     settings: dict[str, Any]
     torque: FloatArray | None = None
+    bound_multiplier: FloatArray | None = None
+    clipped: NDArray[np.int8] | None = None
+    action: NDArray[np.int8] | None = None
+    fraction: FloatArray | None = None
+    blocking: NDArray[np.int8] | None = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
@@ -172,7 +204,9 @@ class Record:
             FileError: If the file is missing, damaged or not a record.
         """
         try:
-            with Path(path).open("rb") as file:
+            with Path(path).open("rb") as file, warnings.catch_warnings():
+                # Of a head that is not quite right NumPy warns before it gives up.
+                warnings.simplefilter("ignore", UserWarning)
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
@@ -183,6 +217,7 @@ class Record:
             stored_gap = stored.pop("crosscheck_gap")
             settings = json.loads(str(stored.pop("settings")))
             record = cls(settings=settings, **stored)
+            same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
         except FileError:
             raise
         except OSError as error:
@@ -191,7 +226,7 @@ class Record:
             raise FileError(path, f"not a record: {one_line(error)}") from error
         except _DAMAGE as error:
             raise FileError(path, f"not a record, or damaged: {one_line(error)}") from error
-        if not np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True):
+        if not same_gap:
             raise FileError(path, "crosscheck_gap is not the largest solution_gap of each step")
         return record
 
@@ -199,7 +234,7 @@ class Record:
 def _read_only_copy(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
     """Copy an array, so that nothing done to the original later can change the record."""
     array = np.asarray(value)
-    kinds, target = ("iu", np.int64) if name == "iterations" else ("fiu", np.float64)
+    kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
     # An empty list is an array of floats to NumPy, whatever it was meant to hold.
     if array.dtype.kind not in kinds and array.size:
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
@@ -225,21 +260,34 @@ def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict
     try:
         checked: dict[str, Any] = plain(settings)
         for key in limits:
-            if len(checked[key]) != n:
-                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", checked[key])
-        if len(checked["check"]["solvers"]) != k:
+            values = checked[key]
+            if len(values) != n or not all(value is None or _is_number(value) for value in values):
+                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
+        names = checked["check"]["solvers"]
+        if len(names) != k or not all(isinstance(name, str) for name in names):
             problem = f"must name {k} solvers, one for each column of solution_gap"
             raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
         check, times = checked["check"], (checked["dt"], checked["duration"])
         tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
-        if not (min(times) > 0 and min(tolerances) >= 0):
+        numbers = all(map(_is_number, (*times, *tolerances)))
+        if not (numbers and min(times) > 0 and min(tolerances) >= 0):
             problem = "dt and duration must be positive, and no tolerance negative"
             raise InvalidInputError("settings", problem, (*times, *tolerances))
-        if checked["mode"] not in MODES or not isinstance(checked["status"], str):
-            problem = f"mode must be one of {MODES}, status a text"
+        if not math.isfinite(checked["duration"] / checked["dt"]):
+            raise InvalidInputError("settings", "duration / dt is not finite", times)
+        texts = all(isinstance(checked[key], str) for key in ("robot", "status"))
+        if checked["mode"] not in MODES or not texts:
+            problem = f"mode must be one of {MODES}, robot and status a text"
             raise InvalidInputError("settings", problem, checked["mode"])
     except KeyError as error:
         raise InvalidInputError("settings", f"{error} is missing", settings) from error
     except TypeError as error:
         raise InvalidInputError("settings", str(error), settings) from error
     return checked
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value out of JSON is a number that a float can hold; its integers know no end."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
+from iiwa_dnn.incidents import ACTIONS, describe
 from iiwa_dnn.metrics import compute_metrics, failures
 from iiwa_dnn.plots import save_figures
 from iiwa_dnn.record import Record
@@ -102,6 +103,7 @@ def write_report(
         markdown_table(("quantity", "value", "unit"), _results(metrics)),
         "## Cross-check",
         markdown_table(("quantity", "value", "unit"), _crosscheck(check)),
+        *_incidents(metrics.get("incidents")),
         *(["Continuous mode: the gap is the network's lag, reported and not judged."]
           if settings["mode"] == "continuous" else []),
         "## Settings",
@@ -169,6 +171,7 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
         "beyond limits": f"{_short(m['position_limit_violation_rad'])} rad, "
         f"{_short(m['velocity_limit_violation_rad_s'])} rad/s",
         **_physics_lines(m.get("physics")),
+        **_incident_lines(m.get("incidents")),
         "KKT residual": f"max {_short(m['max_kkt_residual'])}, "
         f"tolerance {_short(settings['tol'])}",
         "cross-check": checked,
@@ -199,6 +202,22 @@ def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
             f"error max {_short(push['max_position_error_m'])} m, "
             f"back within {_short(push['recovered_below_m'])} m {back}"
         )
+    return lines
+
+
+def _incident_lines(incidents: Mapping[str, Any] | None) -> dict[str, str]:
+    """What bounds and policies add to the summary."""
+    if incidents is None:
+        return {}
+    lines = {}
+    if incidents["active_bounds"]:
+        lines["active bounds"] = "\n".join(
+            f"{describe(bound)} for {_short(bound['time_s'])} s, "
+            f"multiplier up to {_short(bound['max_multiplier'])}"
+            for bound in incidents["active_bounds"]
+        )
+    if incidents["clipped_steps"]:
+        lines["clipped commands"] = f"at {incidents['clipped_steps']:,} steps"
     return lines
 
 
@@ -235,6 +254,37 @@ def _results(metrics: Mapping[str, Any]) -> list[Sequence[str]]:
         *((name, _number(metrics[key]), unit) for name, key, unit in rows),
         *(_physics(metrics["physics"]) if "physics" in metrics else []),
     ]
+
+
+def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
+    """Which bounds acted and at what cost, and what policies and clipping did."""
+    if incidents is None:
+        return []
+    counts = [("steps with a clipped command", "clipped_steps", "")]
+    counts += [(f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()]
+    counts += [("path time reached", "path_time_s", "s")]
+    parts = [
+        "## Limits and policies",
+        markdown_table(
+            ("quantity", "value", "unit"),
+            [(name, _number(incidents[key]), unit) for name, key, unit in counts],
+        ),
+    ]
+    for title, key in (("active bound", "active_bounds"), ("in the way", "blocking")):
+        bounds = incidents[key]
+        if not bounds:
+            continue
+        head = [title, "steps", "time [s]", "from [s]"]
+        rows = [
+            [describe(bound), *(_number(bound[part]) for part in ("steps", "time_s", "first_s"))]
+            for bound in bounds
+        ]
+        if key == "active_bounds":
+            head += ["largest multiplier", "mean multiplier"]
+            for row, bound in zip(rows, bounds, strict=True):
+                row += [_number(bound[part]) for part in ("max_multiplier", "mean_multiplier")]
+        parts.append(markdown_table(head, rows))
+    return parts
 
 
 def _physics(physics: Mapping[str, Any]) -> list[Sequence[str]]:

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from tyro.conf import FlagCreatePairsOff, Positional, arg
 
 from iiwa_dnn.controller import Mode
+from iiwa_dnn.policies import Policy
 from iiwa_dnn.schemes.double_indicator import Kinetic
 from iiwa_dnn.schemes.orientation import Orientation
 from iiwa_dnn.simulation import NoiseEntry
@@ -61,6 +62,10 @@ class TrackSettings:
     """identity or inertia"""
     joint_limit: Limit = None
     """of every joint, or datasheet (iiwa7: 2.5)"""
+    speed: Annotated[float, arg(metavar="SHARE")] = 1.0
+    """velocity limits, of the data sheet's"""
+    policy: Annotated[Policy, arg(metavar="POLICY")] = "slow"
+    """without a solution: slow, relax, stop, raise"""
     dt: Annotated[float, arg(metavar="S")] = 1e-4
     """control period"""
     duration: Annotated[float, arg(metavar="S")] = 10.0
@@ -75,6 +80,10 @@ class TrackSettings:
     """velocity, network or measurement [rad]"""
     filter_window: Annotated[int, arg(metavar="N")] = 1
     """moving average"""
+    gain: Annotated[float, arg(metavar="1/S")] = 10.2
+    """feedback of position and orientation"""
+    integral_gain: Annotated[float, arg(metavar="1/S^2")] = 0.0
+    """feedback of the error's integral"""
     seed: Annotated[int, arg(metavar="N")] = 0
     """of the noise"""
     check: Reference = "proxqp"
@@ -188,6 +197,51 @@ class PhysicsSettings:
     """no progress bar and no summary"""
     verbose: Verbose = False
     """tell what is run and written, and where an error is"""
+
+
+@dataclass(frozen=True)
+class NoiseSettings:
+    """Compare what helps against noise and other disturbances of the joint velocity: error
+    against smoothness of the command. A run that was cut short goes on where it was. Exit
+    code 0: all runs completed; 1: one was not; 2: bad input.
+    """  # noqa: D205
+
+    settings: SettingsFile = None
+    """take what is not given here from a TOML file"""
+    seeds: Annotated[int, arg(metavar="N")] = 100
+    """noises"""
+    duration: Annotated[float, arg(metavar="S")] = 2.0
+    """of each run"""
+    workers: Count = None
+    """processes (one for each core)"""
+    out: Folder = Path("runs/noise")
+    """where to"""
+    quiet: Quiet = False
+    """no progress bar and no table"""
+    verbose: Verbose = False
+    """tell what is written, and where an error is"""
+
+
+@dataclass(frozen=True)
+class BenchSettings:
+    """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP, and write a
+    report. Exit code 0: done; 2: bad input, or a package is missing.
+    """  # noqa: D205
+
+    settings: SettingsFile = None
+    """take what is not given here from a TOML file"""
+    steps: Annotated[int, arg(metavar="N")] = 5000
+    """steps of a stream"""
+    cold: Annotated[int, arg(metavar="N")] = 1000
+    """random programs of each size"""
+    batch: Annotated[int, arg(metavar="N")] = 100_000
+    """size of the batch"""
+    out: Folder = Path("runs/bench")
+    """where to"""
+    quiet: Quiet = False
+    """no progress bar, no summary"""
+    verbose: Verbose = False
+    """tell what is written, and where an error is"""
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
-import qpsolvers
 
 from iiwa_dnn import checks
 from iiwa_dnn.certificates import find_certificate
@@ -13,6 +13,9 @@ from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks import Network, ProjectionNetwork
 from iiwa_dnn.qp import QP, Refutation, Solution, Status, Vector
+
+if TYPE_CHECKING:
+    import qpsolvers
 
 
 class DNNSolver:

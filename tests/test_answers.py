@@ -47,7 +47,7 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(
     for seed in range(20):
         q = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal(7)
         conf, target = Configuration(paper_robot(), q), near_target(q, seed, size=2e-3)
-        x, y = compiled.answer(conf, target, answers), asked.answer(conf, target, others)
+        x, y = compiled.answer(conf, target.data, answers), asked.answer(conf, target.data, others)
         # The compiler may round a product and its sum in one place once, in another twice.
         np.testing.assert_allclose(x, y, rtol=0, atol=1e-11)
         np.testing.assert_array_equal(answers.qp(seed).data, scheme.build_qp(conf, target).data)
@@ -74,7 +74,7 @@ def test_only_the_first_step_is_not_compiled(monkeypatch: pytest.MonkeyPatch) ->
     )  # fmt: skip
     answers = controller.answers(5)
     for k in range(5):
-        controller.answer(paper_start(), heart().at(1e-4 * k), answers)
+        controller.answer(paper_start(), heart().at(1e-4 * k).data, answers)
     assert len(solved) == 1
 
 
@@ -103,13 +103,15 @@ def test_what_a_subclass_does_in_its_own_way_is_done() -> None:
     answers = controller.answers(3)
     whole = SCHEMES["so3"].build_qp(conf, target)
     for k in range(3):
-        x = controller.answer(conf, target, answers)
+        x = controller.answer(conf, target.data, answers)
         np.testing.assert_allclose(whole.A @ x, 0.5 * whole.b, rtol=0, atol=1e-9)
         np.testing.assert_array_equal(answers.qp(k).b, 0.5 * whole.b)
     controller = Controller(SCHEMES["so3"], Fixed())
     answers = controller.answers(3)
     for _ in range(3):
-        np.testing.assert_array_equal(controller.answer(conf, target, answers), np.full(7, 0.25))
+        np.testing.assert_array_equal(
+            controller.answer(conf, target.data, answers), np.full(7, 0.25)
+        )
 
 
 def test_a_changed_scheme_and_another_robot_count_from_the_next_step_on() -> None:
@@ -129,10 +131,10 @@ def test_a_step_that_is_not_solved_is_told_apart() -> None:
     controller = Controller(SCHEMES["so3"], DNNSolver(), "converged")
     answers = controller.answers(3)
     target = heart().at(0.5)
-    controller.answer(paper_start(), target, answers)
+    controller.answer(paper_start(), target.data, answers)
     before = controller.solver.state
-    controller.answer(Configuration(robot, PAPER_Q0), target, answers)
-    controller.answer(paper_start(), target, answers)
+    controller.answer(Configuration(robot, PAPER_Q0), target.data, answers)
+    controller.answer(paper_start(), target.data, answers)
     assert list(answers.unsolved) == [1]
     assert not answers.solution(1).found
     assert answers.solution(0).found

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import resource
 import socket
 import subprocess
 import sys
@@ -23,6 +25,7 @@ from iiwa_dnn.simulation import loop
 from iiwa_dnn.solver import DNNSolver
 
 SCRIPT = Path(__file__).parents[1] / "scripts" / "track_heart.py"
+IIWA7 = next((SCRIPT.parents[1] / "robots" / "iiwa7").glob("*.urdf"))
 SHORT = ["--dt", "1e-3", "--duration", "0.05"]
 QUICK = [*SHORT, "--no-plots"]
 
@@ -239,11 +242,10 @@ def test_negative_numbers_are_taken_in_every_notation(tmp_path: Path) -> None:
 
 
 def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
-    urdf = next((SCRIPT.parents[1] / "robots" / "iiwa7").glob("*.urdf"))
     q0 = map(str, np.delete(PAPER_Q0, 2))
     record, metrics = run(
         tmp_path,
-        *("--robot", str(urdf), "--lock", "iiwa7_joint_3", "--q0", *q0, "--scale", "1e-3"),
+        *("--robot", str(IIWA7), "--lock", "iiwa7_joint_3", "--q0", *q0, "--scale", "1e-3"),
     )
     assert record["q"].shape == (51, 6)
     position, _ = dh_pose(np.insert(record["q"], 2, 0.0, axis=1))
@@ -314,13 +316,50 @@ def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # A heart of 3 m: out of the arm's reach.
-    assert call([*QUICK, "--scale", "0.1", "--duration", "2", "--out", str(tmp_path)]) == 1
+    far = [*QUICK, "--scale", "0.1", "--duration", "2", "--policy", "stop"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
     record, metrics = results(tmp_path)
     steps = len(record["dq"])
     assert steps < 2000
     assert metrics["settings"]["status"].startswith(f"stopped at step {steps - 1} ")
-    assert f"ended after {steps} of 2,000 steps" in capsys.readouterr().out
+    output = capsys.readouterr().out
+    assert f"ended after {steps} of 2,000 steps" in output
+    assert "against joint 4 lower velocity limit" in output
     np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
+
+
+def test_a_step_that_raises_writes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    far = [*QUICK, "--scale", "0.1", "--duration", "1", "--policy", "raise"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err == (
+        "track_heart: error: step 403: no joint velocity inside the bounds fulfils the task\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> None:
+    far = [*QUICK, "--scale", "0.008", "--speed", "0.06", "--duration", "1", "--policy", policy]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    record, metrics = results(tmp_path)
+    assert metrics["settings"]["status"] == "completed"
+    assert len(record["dq"]) == 1000
+    limits = 0.06 * np.deg2rad([98, 98, 100, 130, 140, 180, 180])
+    assert (np.abs(record["dq"]) <= limits + 1e-12).all()
+    assert metrics["incidents"][f"{policy}_steps"] > 300
+    assert metrics["incidents"]["blocking"][0]["joint"] == 4
+    report = (tmp_path / "report.md").read_text()
+    assert "joint 4 lower velocity limit" in report
+    if policy == "slow":  # exactly along the path, later
+        assert metrics["max_position_error_m"] < 1e-4
+        assert metrics["incidents"]["path_time_s"] < 0.9
+    else:  # in time, beside the path
+        assert metrics["max_position_error_m"] > 1e-3
+        assert metrics["incidents"]["path_time_s"] == pytest.approx(1.0)
 
 
 # Exit code 2
@@ -339,6 +378,45 @@ def half_xml(folder: Path) -> list[str]:
 def no_joints(folder: Path) -> list[str]:
     (folder / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
     return ["--robot", str(folder / "robot.urdf")]
+
+
+def written(folder: Path, text: str) -> list[str]:
+    (folder / "robot.urdf").write_text(text)
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def xml_bomb(folder: Path) -> list[str]:
+    # Each entity is ten of the one before: 10 GB of text.
+    entities = ['<!ENTITY e0 "0123456789">']
+    entities += [f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 10)]
+    return written(folder, f'<!DOCTYPE r [{"".join(entities)}]><robot name="&e9;"/>')
+
+
+def external_entity(folder: Path) -> list[str]:
+    secret = (folder / "secret").as_uri()
+    (folder / "secret").write_text("s3cret")
+    return written(folder, f'<!DOCTYPE r [<!ENTITY e SYSTEM "{secret}">]><robot name="&e;"/>')
+
+
+def deep_xml(folder: Path) -> list[str]:
+    return written(folder, "<robot>" * 100_000)
+
+
+def no_text(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_bytes(bytes(range(256)))
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def limits_crossed(folder: Path) -> list[str]:
+    text = IIWA7.read_text()
+    assert 'lower="-' in text
+    return written(folder, text.replace('lower="-', 'lower="'))
+
+
+def nan_in_urdf(folder: Path) -> list[str]:
+    text = IIWA7.read_text()
+    assert 'xyz="0 0 0.1925"' in text
+    return written(folder, text.replace('xyz="0 0 0.1925"', 'xyz="0 nan 0.1925"'))
 
 
 def below_a_file(folder: Path) -> list[str]:
@@ -363,6 +441,12 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "not XML": (not_xml, "not XML"),
     "half XML": (half_xml, "not XML"),
     "no joints": (no_joints, "no joints"),
+    "an XML bomb": (xml_bomb, "DOCTYPE"),
+    "an external entity": (external_entity, "DOCTYPE"),
+    "elements without end": (deep_xml, "not XML"),
+    "not text": (no_text, "not XML"),
+    "limits the wrong way round": (limits_crossed, "is not below"),
+    "an origin that is not a number": (nan_in_urdf, "robot.urdf"),
     "unknown frame": (["--tip", "iiwa7_link_77"], "'iiwa7_link_77'; did you mean: iiwa7_link_7"),
     "unknown joint": (["--lock", "elbow"], "'elbow'"),
     "q0 NaN": (q0("nan", *"000000"), "q"),
@@ -390,6 +474,7 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "noise negative": (["--noise", "-0.01"], "noise"),
     "noise negative, in powers of ten": (["--noise", "-1e-2"], "noise"),
     "noise NaN": (["--noise", "nan"], "noise"),
+    "noise that overflows": (["--noise", "1e308"], "noise"),
     "noise infinite": (["--noise", "inf"], "noise"),
     "filter window 0": (["--filter-window", "0"], "filter"),
     "filter window a fraction": (["--filter-window", "2.5"], "filter"),
@@ -401,6 +486,13 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "joint limit negative": (["--joint-limit", "-1"], "joint-limit"),
     "joint limit 0": (["--joint-limit", "0"], "joint-limit"),
     "joint limit NaN": (["--joint-limit", "nan"], "joint-limit"),
+    "speed 0": (["--speed", "0"], "speed"),
+    "speed negative": (["--speed", "-0.5"], "speed"),
+    "speed NaN": (["--speed", "nan"], "speed"),
+    "gain negative": (["--gain", "-1"], "gain"),
+    "gain NaN": (["--gain", "nan"], "gain"),
+    "integral gain negative": (["--integral-gain", "-1"], "integral_gain"),
+    "unknown policy": (["--policy", "hope"], "'hope'"),
     "tolerance 0": (["--tolerance", "0"], "tolerance"),
     "tolerance NaN": (["--tolerance", "nan"], "tolerance"),
     "unknown mode": (["--mode", "discrete"], "'discrete'"),
@@ -437,10 +529,41 @@ def test_bad_input_exits_2_with_one_clear_line_and_leaves_nothing(
     assert {path: path.read_bytes() for path in tmp_path.rglob("*")} == before
 
 
-def test_bad_input_leaves_earlier_results_alone(tmp_path: Path) -> None:
+@pytest.mark.parametrize("case", ["weight above 1", "dt NaN", "unknown robot", "an XML bomb"])
+def test_bad_input_leaves_earlier_results_alone(case: str, tmp_path: Path) -> None:
+    folder, (bad, _) = tmp_path / "run", BAD[case]
+    run(folder)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert call([*QUICK, *(bad(tmp_path) if callable(bad) else bad), "--out", str(folder)]) == 2
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS])
+def test_a_full_or_broken_disk_is_one_line_and_keeps_the_old_run(
+    code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path)
+    capsys.readouterr()
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def fail(descriptor: int) -> None:
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(os, "fsync", fail)  # where the system tells of it at the latest
+    assert call([*QUICK, "--seed", "1", "--out", str(tmp_path)]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert os.strerror(code) in captured.err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_file_that_the_system_cuts_off(tmp_path: Path) -> None:
+    # No mock: the process may write no file above 4 kB, the record is larger.
     run(tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    assert call([*QUICK, "--weight", "2", "--out", str(tmp_path)]) == 2
+    done = script(tmp_path, *QUICK, "--out", ".", largest_file=4096)
+    assert done.returncode == 2
+    assert done.stderr == "track_heart: error: record.npz: cannot be written (File too large)\n"
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
@@ -458,7 +581,7 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     options = (
         "robot mode weight orientation joint-limit dt duration scale motion noise filter-window "
-        "seed check tolerance out no-plots quiet"
+        "seed check tolerance out no-plots quiet policy speed gain integral-gain"
     )
     for option in options.split():
         assert f"--{option}" in text
@@ -467,7 +590,15 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
 # The script itself
 
 
-def script(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def script(
+    folder: Path, *arguments: str, largest_file: int | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run the script as a process, which may write no file above that size [bytes]."""
+
+    def restrict() -> None:
+        if largest_file is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
     environment = {**os.environ, "MPLBACKEND": "", "DISPLAY": ""}
     return subprocess.run(
         [sys.executable, str(SCRIPT), *arguments],
@@ -477,6 +608,7 @@ def script(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
         timeout=300,
+        preexec_fn=restrict,
     )
 
 

@@ -10,6 +10,8 @@ import pytest
 from iiwa_dnn.cli import track_heart
 from iiwa_dnn.command_line import parse, save_settings
 from iiwa_dnn.settings import (
+    BenchSettings,
+    NoiseSettings,
     PaperSettings,
     PhysicsSettings,
     SolveSettings,
@@ -17,7 +19,15 @@ from iiwa_dnn.settings import (
     ViewSettings,
 )
 
-ALL = (TrackSettings, PaperSettings, PhysicsSettings, ViewSettings, SolveSettings)
+ALL = (
+    BenchSettings,
+    NoiseSettings,
+    TrackSettings,
+    PaperSettings,
+    PhysicsSettings,
+    ViewSettings,
+    SolveSettings,
+)
 SHORT = ("--dt", "1e-3", "--duration", "0.05", "--no-plots", "--quiet")
 
 

@@ -11,7 +11,6 @@ import qpsolvers
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp
 from helpers_simulation import heart, near_target, paper_start, run
-from iiwa_dnn import crosscheck
 from iiwa_dnn.crosscheck import SOLVERS, Agreement, CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.metrics import compute_metrics, failures
@@ -160,7 +159,7 @@ def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch
     def fail(*args: object, **options: object) -> None:
         raise qpsolvers.exceptions.SolverError("out of order")
 
-    monkeypatch.setattr(crosscheck.qpsolvers, "solve_problem", fail)
+    monkeypatch.setattr(qpsolvers, "solve_problem", fail)
     agreement = BOTH.check(heart_qp(), np.zeros(7))
     assert np.isnan(agreement.solution_gap).all()
     np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
@@ -170,14 +169,14 @@ def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch
 def test_a_reference_that_is_not_a_number_is_not_believed(
     field: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve = crosscheck.qpsolvers.solve_problem
+    solve = qpsolvers.solve_problem
 
     def spoil(*args: object, **options: object) -> qpsolvers.Solution:
         solution = solve(*args, **options)
         getattr(solution, field)[0] = np.nan
         return solution
 
-    monkeypatch.setattr(crosscheck.qpsolvers, "solve_problem", spoil)
+    monkeypatch.setattr(qpsolvers, "solve_problem", spoil)
     agreement = EACH[0].check(heart_qp(), np.zeros(7))
     assert not (agreement.reference_residual <= 1e-8).any()
     assert np.isnan(agreement.solution_gap).all()
@@ -187,7 +186,7 @@ def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.M
     # ProxQP takes minutes over one NaN, OSQP its whole budget of iterations.
     asked = []
     monkeypatch.setattr(
-        crosscheck.qpsolvers,
+        qpsolvers,
         "solve_problem",
         lambda *args, **options: asked.append(args) or qpsolvers.Solution(args[0]),
     )

@@ -16,9 +16,11 @@ ORDER = (
     "offscreen",
     "checks",
     "files",
+    "interrupts",
     "kernels",
     "kernels_dense",
     "kernels_implicit",
+    "kernels_clip",
     "kernels_control",
     "kernels_batch",
     "arms",
@@ -35,13 +37,16 @@ ORDER = (
     "certificates",
     "solver",
     "batch",
-    "benchmarks",
     "crosscheck",
     "checkpool",
+    "policies",
+    "feedback",
+    "estimation",
     "answers",
     "controller",
     "record",
     "torques",
+    "incidents",
     "metrics",
     "statistics",
     "simulation",
@@ -64,8 +69,10 @@ ORDER = (
     "cli",
     "solve_cli",
     "paper_cli",
+    "noise_cli",
     "physics_cli",
     "view_cli",
+    "benchmarks",
     "__init__",
     "__main__",
 )
@@ -75,7 +82,16 @@ AFTER_THE_RECORD = {
     "decimation", "panels", "plots", "paper_plots", "report", "paper_findings", "paper_report",
     "rendering", "pictures", "viewer",
 }  # fmt: skip
-BEFORE_THEM = {"exceptions", "checks", "files", "record", "torques", "metrics", "statistics"}
+BEFORE_THEM = {
+    "exceptions",
+    "checks",
+    "files",
+    "record",
+    "torques",
+    "incidents",
+    "metrics",
+    "statistics",
+}
 # What draws the robot itself needs its shapes too, and nothing else of it.
 DRAW_THE_ROBOT = {"rendering", "pictures", "viewer"}
 SHAPES = {"robot", "shapes", "mujoco_model", "offscreen"}

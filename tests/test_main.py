@@ -16,7 +16,7 @@ from iiwa_dnn.__main__ import COMMANDS, main
 
 SCRIPTS = {
     "track": "track_heart", "paper": "reproduce_paper", "physics": "simulate_physics",
-    "view": "view",
+    "view": "view", "noise": "noise_study", "bench": "bench_solvers",
 }  # fmt: skip
 
 

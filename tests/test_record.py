@@ -18,8 +18,9 @@ from iiwa_dnn.record import Record
 ARRAYS = [
     field.name
     for field in dataclasses.fields(Record)
-    if field.name not in ("settings", "wall_time_s", "torque")
+    if field.name not in ("settings", "wall_time_s") and field.default is not None
 ]
+OPTIONAL = {"torque", "bound_multiplier", "clipped", "action", "fraction", "blocking"}
 
 
 @pytest.fixture
@@ -71,6 +72,28 @@ def test_torques_are_in_the_file_where_there_are_any(tmp_path):
 def test_wrong_torques(torque, settings, words):
     with pytest.raises(InvalidInputError, match=words):
         make_record(torque=torque, settings=settings)
+
+
+def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
+    optional = {field.name for field in dataclasses.fields(Record) if field.default is None}
+    assert optional == OPTIONAL | {"wall_time_s"}
+    happened = {
+        "bound_multiplier": np.linspace(-1.0, 1.0, 70).reshape(10, 7),
+        "clipped": np.eye(10, 7, dtype=np.int8),
+        "action": np.arange(10, dtype=np.int8) % 5,
+        "fraction": np.linspace(0.0, 1.0, 10),
+        "blocking": -2 * np.eye(10, 7, dtype=np.int8),
+    }
+    make_record(**happened).save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    for name, array in happened.items():
+        np.testing.assert_array_equal(getattr(loaded, name), array, strict=True)
+    make_record().save(tmp_path / "without.npz")
+    with np.load(tmp_path / "without.npz") as stored:
+        assert not OPTIONAL & set(stored.files)
+    for name, array in happened.items():
+        with pytest.raises(InvalidInputError, match=rf"^{name}: shape"):
+            make_record(**{name: array[:-1]})
 
 
 def test_the_gap_is_the_largest_over_the_solvers(heart):

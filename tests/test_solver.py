@@ -172,3 +172,30 @@ def test_tolerance_must_be_positive(tol: float) -> None:
 def test_bad_problem_names_the_argument() -> None:
     with pytest.raises(InvalidInputError, match=r"^P:"):
         iiwa_dnn.solve_problem(qpsolvers.Problem(-np.eye(2), np.zeros(2)))
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("P", {"P": np.full((3, 3), np.nan)}),
+        ("P", {"P": np.eye(4)}),
+        ("P", {"P": np.triu(np.ones((3, 3)))}),
+        ("P", {"P": np.diag([1.0, 1.0, -1.0])}),
+        ("q", {"q": np.array([0.0, np.nan, 0.0])}),
+        ("G", {"G": np.ones((2, 4)), "h": np.ones(2)}),
+        ("h", {"G": np.ones((2, 3)), "h": np.ones(3)}),
+        ("h", {"G": np.ones((2, 3)), "h": np.array([1.0, np.nan])}),
+        ("A", {"A": np.full((1, 3), np.inf), "b": np.ones(1)}),
+        ("b", {"A": np.ones((1, 3)), "b": np.array([np.nan])}),
+        ("lb", {"lb": np.full(3, 2.0), "ub": np.ones(3)}),
+        ("lb", {"lb": np.zeros(2)}),
+        ("ub", {"ub": np.full(3, np.nan)}),
+    ],
+)
+def test_bad_input_names_the_argument_whoever_states_it(name: str, arguments: dict) -> None:
+    fields = {"P": np.eye(3), "q": np.zeros(3), **arguments}
+    for make in (qpsolvers.Problem, QP):
+        with pytest.raises(InvalidInputError) as caught:
+            iiwa_dnn.solve_problem(make(**fields))
+        assert caught.value.argument == name
+        assert str(caught.value).startswith(f"{name}: ")

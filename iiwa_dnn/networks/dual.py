@@ -25,7 +25,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-import scipy.linalg
 
 from iiwa_dnn import kernels
 from iiwa_dnn.exceptions import InvalidInputError
@@ -98,11 +97,13 @@ def _two_sided(qp: QP) -> tuple[Matrix, Vector, Vector]:
 
 def _solved(qp: QP, right: Matrix) -> Matrix:
     """P^-1 times vectors."""
+    from scipy import linalg  # 0.05 s that only this network needs
+
     try:
-        factor = scipy.linalg.cho_factor(qp.P, check_finite=False)
+        factor = linalg.cho_factor(qp.P, check_finite=False)
     except np.linalg.LinAlgError:
         raise InvalidInputError(
             "P", "is singular, and the dual network needs its inverse; take another network"
         ) from None
-    solved: Matrix = scipy.linalg.cho_solve(factor, right, check_finite=False)
+    solved: Matrix = linalg.cho_solve(factor, right, check_finite=False)
     return solved

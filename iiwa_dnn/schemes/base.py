@@ -22,6 +22,11 @@ SchemeT = TypeVar("SchemeT", bound="Scheme")
 class Scheme(Protocol):
     """One way to choose joint velocities among those that fulfil the task."""
 
+    @property
+    def limit_gain(self) -> float | None:
+        """The gain of the velocity bounds near a position limit [1/s]; None: no bounds."""
+        ...
+
     def anchored(self: SchemeT, conf: Configuration) -> SchemeT:
         """The same scheme with `conf` as the posture to come back to, where it has one."""
         ...

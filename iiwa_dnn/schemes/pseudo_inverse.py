@@ -48,6 +48,11 @@ class PseudoInverse:
         checks.not_negative("orientation_gain", self.orientation_gain)
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
 
+    @property
+    def limit_gain(self) -> None:
+        """None: it knows no limits."""
+        return None
+
     def anchored(self, conf: Configuration) -> PseudoInverse:
         """The scheme itself: it has no posture to come back to."""
         return self

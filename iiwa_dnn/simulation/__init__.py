@@ -3,7 +3,7 @@
 from iiwa_dnn.simulation.filters import MovingAverage
 from iiwa_dnn.simulation.loop import Simulation, simulate
 from iiwa_dnn.simulation.motion import MOTIONS
-from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, gaussian_noise
+from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, VelocityDisturbance, gaussian_noise
 
 __all__ = [
     "MOTIONS",
@@ -11,6 +11,7 @@ __all__ = [
     "MovingAverage",
     "NoiseEntry",
     "Simulation",
+    "VelocityDisturbance",
     "gaussian_noise",
     "simulate",
 ]

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp import Matrix
+from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
 
 NoiseEntry = Literal["velocity", "network", "measurement"]
 NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
@@ -19,6 +22,10 @@ answer was taken, so the network has one control step to work it off; a network 
 every step forgets it. ``measurement`` [rad]: added to the joint angles that the controller sees;
 the robot, and the record, keep the true ones.
 """
+
+
+LARGEST = 1e3
+"""The most noise that is accepted, [rad/s] or [rad]: no robot has it, and far more overflows."""
 
 
 def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
@@ -35,10 +42,48 @@ def gaussian_noise(sigma: float, steps: int, joints: int, seed: int) -> Matrix:
         Noise in the unit of `sigma`, of shape (steps, joints).
 
     Raises:
-        InvalidInputError: `sigma` is negative or not finite, or `seed` is negative.
+        InvalidInputError: `sigma` is negative, not finite or above ``LARGEST``, or `seed` is
+            negative.
     """
-    checks.not_negative("noise", sigma)
+    if checks.not_negative("noise", sigma) > LARGEST:
+        raise InvalidInputError("noise", f"must be at most {LARGEST:g}, not {sigma:g}", sigma)
     checks.integer("seed", seed, 0)
     if sigma == 0.0:
         return np.zeros((steps, joints))
     return sigma * np.random.default_rng(seed).standard_normal((steps, joints))
+
+
+@dataclass(frozen=True)
+class VelocityDisturbance:
+    """A disturbance of every joint's velocity that no average removes.
+
+    It is added where the noise ``velocity`` is: ``bias + slope t + amplitude sin(2 pi f t)``.
+
+    Attributes:
+        bias: Constant part [rad/s].
+        slope: Growth of the ramp [rad/s^2].
+        amplitude: Of the sinusoid [rad/s].
+        frequency: f, of the sinusoid [Hz].
+    """
+
+    bias: float = 0.0
+    slope: float = 0.0
+    amplitude: float = 0.0
+    frequency: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        for name in ("bias", "slope", "amplitude"):
+            if checks.finite(name, value := getattr(self, name)) > LARGEST or value < -LARGEST:
+                raise InvalidInputError(name, f"must be within {LARGEST:g}, not {value:g}", value)
+        checks.positive("frequency", self.frequency)
+
+    def at(self, times: Vector) -> Vector:
+        """The disturbance [rad/s] at times (k,) [s], the same for all joints; (k,)."""
+        wave = np.sin(2.0 * math.pi * self.frequency * times)
+        disturbance: Vector = self.bias + self.slope * times + self.amplitude * wave
+        return disturbance
+
+    def settings(self) -> dict[str, Any]:
+        """The numbers, as values that JSON can hold."""
+        return asdict(self)

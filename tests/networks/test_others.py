@@ -19,6 +19,7 @@ from iiwa_dnn import (
     Status,
 )
 from iiwa_dnn.benchmarks import programs
+from iiwa_dnn.cli import PAPER_START
 from iiwa_dnn.networks import Network
 
 OTHERS = [DualNetwork(), PrimalDualNetwork()]
@@ -248,3 +249,17 @@ def test_impossible_settings_are_refused() -> None:
         AdaptiveRungeKutta(max_steps=2).advance(DualNetwork(), qp, np.zeros(5), 10.0)
     short = DNNSolver(DualNetwork(), settler=AdaptiveRungeKutta(max_steps=3)).solve(qp)
     assert not short.found
+
+
+@pytest.mark.parametrize("network", OTHERS, ids=repr)
+@pytest.mark.parametrize("mode", ["converged", "continuous"])
+def test_the_robot_runs_on_every_network(network: Network, mode: str) -> None:
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    conf = iiwa_dnn.Configuration(robot, PAPER_START)
+    record = iiwa_dnn.simulate(
+        robot, iiwa_dnn.DoubleIndicator(), iiwa_dnn.Heart().anchored(conf), PAPER_START,
+        dt=1e-3, duration=0.03, mode=mode, solver=DNNSolver(network),
+    )  # fmt: skip
+    assert record.q.shape == (31, 7)
+    if mode == "converged":
+        assert iiwa_dnn.failures(record) == []

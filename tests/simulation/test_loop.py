@@ -17,6 +17,7 @@ from iiwa_dnn.crosscheck import CrossCheck
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.integrators import ExplicitEuler
 from iiwa_dnn.metrics import compute_metrics, failures
+from iiwa_dnn.policies import Action
 from iiwa_dnn.qp import QP
 from iiwa_dnn.record import Record
 from iiwa_dnn.references import Circle
@@ -387,7 +388,9 @@ def test_the_computed_substeps_are_the_eight() -> None:
 def test_a_network_that_cannot_settle_stops_the_run_at_rest() -> None:
     # Too slow for the heart: from some step on, no velocity within the limits fulfils the task.
     robot = paper_robot().with_limits(velocity=0.15)
-    record = run(robot=robot, reference=heart(period=2.0), duration=1.0, check=CrossCheck())
+    record = run(
+        robot=robot, reference=heart(period=2.0), duration=1.0, check=CrossCheck(), policy="stop"
+    )
     last = record.steps - 1
     assert 0 < last < 999
     scheme = DoubleIndicator(home=PAPER_Q0)
@@ -421,6 +424,7 @@ def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
         motion=motion,
         noise=1e-4,
         noise_at=entry,
+        policy="stop",
     )
     assert record.settings["status"].startswith(f"stopped at step {record.steps - 1} ")
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
@@ -430,20 +434,25 @@ def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
 
 def test_a_tolerance_that_cannot_be_met_stops_the_run() -> None:
     # The first program, at rest, has the answer zero, residual zero; the second has rounding.
-    record = run(tol=1e-30)
+    record = run(tol=1e-30, policy="stop")
     assert record.steps == 2
     assert record.settings["status"].startswith("stopped at step 1 ")
     np.testing.assert_array_equal(record.dq[-1], np.zeros(7))
     assert any("KKT residual" in reason for reason in failures(record))
 
 
-def test_a_budget_that_is_too_small_stops_the_run() -> None:
+def test_a_budget_that_is_too_small_falls_back_to_the_reference() -> None:
     # Explicitly, and with too few steps to settle from rest.
     solver = DNNSolver(settler=ExplicitEuler(max_steps=50))
-    record = run(solver=solver)
-    assert record.steps == 2
-    assert record.iterations.tolist() == [0, 50]
-    assert failures(record)
+    record = run(solver=solver, check=CrossCheck(("osqp",)))
+    assert record.action is not None
+    assert record.action.tolist() == [0] + 49 * [Action.FALLBACK]
+    assert (record.kkt_residual <= 1e-9).all()
+    assert (record.solution_gap <= 1e-6).all()
+    np.testing.assert_allclose(record.dq, run().dq, rtol=0, atol=1e-7)
+    # Counted, and told: the network did not do what it is for.
+    assert compute_metrics(record)["incidents"]["fallback_steps"] == 49
+    assert any("49 steps answered by the reference" in reason for reason in failures(record))
 
 
 def test_noise_does_not_stop_a_run() -> None:

@@ -1,0 +1,192 @@
+"""Seeded random runs of the whole loop: whatever is asked for, limits hold and nothing crashes.
+
+``python tests/random_runs.py --runs 1000`` does so many and prints what came out; the tests do the
+first few. A run is made from its number alone, so one that fails is made again by ``--first``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+import warnings
+from collections import Counter
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from helpers_kinematics import example_urdf
+from iiwa_dnn import (
+    Circle,
+    Configuration,
+    CrossCheck,
+    DoubleIndicator,
+    Heart,
+    Line,
+    Lissajous,
+    Record,
+    Robot,
+    Waypoints,
+    compute_metrics,
+    failures,
+    load_robot,
+    simulate,
+)
+from iiwa_dnn.estimation import NoiseModel
+from iiwa_dnn.policies import POLICIES
+from iiwa_dnn.references import Reference
+from iiwa_dnn.simulation import NOISE_ENTRIES, VelocityDisturbance
+
+ROBOTS = ("iiwa7", "panda", "xarm7")
+REFERENCES = ("heart", "circle", "lissajous", "line", "waypoints")
+STEPS = 60
+
+
+@cache
+def robot_named(name: str) -> Robot:
+    if name == "panda":
+        fingers = ("panda_finger_joint1", "panda_finger_joint2")
+        urdf = example_urdf("panda_description/urdf/panda.urdf")
+        return load_robot(urdf, tip="panda_hand", locked=fingers)
+    if name == "xarm7":
+        return load_robot(example_urdf("xarm_description/urdf/xarm7.urdf"), tip="link_eef")
+    return load_robot(name)
+
+
+def reference_named(name: str, size: float, rng: np.random.Generator) -> Reference:
+    """A path of about that size [m], run through in 0.5 to 10 s."""
+    period = float(10 ** rng.uniform(-0.3, 1.0))
+    if name == "heart":
+        return Heart(scale=size / 30.0, period=period)
+    if name == "circle":
+        return Circle(radius=size, period=period)
+    if name == "lissajous":
+        return Lissajous(amplitudes=(size, size / 2, size / 3), period=period)
+    if name == "line":
+        return Line(offset=tuple(size * rng.standard_normal(3)), period=period)
+    times = np.linspace(0.0, period, 5)
+    return Waypoints(times, size * rng.standard_normal((5, 3)))
+
+
+def options(number: int) -> dict[str, Any]:
+    """All that run `number` is made of."""
+    rng = np.random.default_rng([number, 11])
+    robot = robot_named(ROBOTS[number % 3])
+    lower, upper = np.maximum(robot.q_lower, -3.0), np.minimum(robot.q_upper, 3.0)
+    if rng.random() < 0.3:
+        robot = robot.with_limits(velocity=float(10 ** rng.uniform(-2, 0)) * robot.dq_max)
+    q0 = rng.uniform(lower, upper)
+    if rng.random() < 0.3:  # some joints outside, by up to half a radian
+        outside = rng.random(robot.dof) < 0.3
+        q0 = np.where(outside, upper + 0.5 * rng.random(robot.dof), q0)
+    size = float(10 ** rng.uniform(-3, 1))
+    dt = float(10 ** rng.uniform(-4, -2))
+    reference = reference_named(REFERENCES[number % 5], size, rng)
+    start = Configuration(robot, q0)
+    anchor = start
+    if rng.random() < 0.2:  # a path that begins elsewhere
+        anchor = Configuration(robot, q0 + 0.3 * rng.standard_normal(robot.dof))
+    noisy = rng.random() < 0.5
+    entry = str(rng.choice(NOISE_ENTRIES))
+    mode = "continuous" if rng.random() < 0.2 else "converged"
+    motion = str(rng.choice(["euler", "midpoint", "rk4"]))
+    scale = 0.01 if entry == "measurement" else 1.0
+    return {
+        "robot": robot,
+        "scheme": DoubleIndicator(
+            weight=float(rng.random()),
+            orientation=str(rng.choice(["so3", "block", "none"])),
+            kinetic=str(rng.choice(["identity", "inertia"])),
+            limit_gain=float(10 ** rng.uniform(0, 3)),
+            position_gain=float(10 ** rng.uniform(0, 2)),
+        ),
+        "reference": reference.anchored(anchor),
+        "q0": q0,
+        "dt": dt,
+        "duration": STEPS * dt,
+        "mode": mode,
+        "motion": motion if mode == "converged" else "euler",
+        "noise": float(10 ** rng.uniform(-4, 1)) * scale * noisy,
+        "noise_at": entry,
+        "filter_window": int(rng.choice([1, 1, 10])),
+        "disturbance": VelocityDisturbance(0.1, 0.1, 0.1) if rng.random() < 0.2 else None,
+        "integral_gain": 25.0 if rng.random() < 0.2 else 0.0,
+        "estimator": NoiseModel(bias_walk=0.01) if rng.random() < 0.2 else None,
+        "policy": POLICIES[int(rng.integers(3))],
+        "seed": number,
+        "check": CrossCheck(()),
+    }
+
+
+def beyond(record: Record, robot: Robot) -> float:
+    """How far a limit was broken: no joint further out than it was, none faster than it may be."""
+    q, allowed = record.q, []
+    for side, limit in ((1.0, robot.q_upper), (-1.0, -robot.q_lower)):
+        out = np.maximum(side * q - limit, 0.0)
+        allowed.append((out[1:] - out[:-1]).max(initial=0.0))
+    allowed.append((np.abs(record.dq) - robot.dq_max).max(initial=0.0))
+    return float(max(allowed))
+
+
+def faults(number: int) -> tuple[Record, list[str]]:
+    """Do run `number`; the record and what is wrong with it."""
+    asked = options(number)
+    robot = asked["robot"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        record = simulate(**asked)
+        failures(record)
+        compute_metrics(record)
+    found = []
+    finite = ("q", "dq", "dq_solver", "position", "rotation", "position_desired")
+    for name in finite:
+        if not np.isfinite(getattr(record, name)).all():
+            found.append(f"{name} not finite")
+    if beyond(record, robot) > 1e-9:
+        found.append(f"a limit broken by {beyond(record, robot):.3g}")
+    status = record.settings["status"]
+    if status != "completed" and not status.startswith("stopped at step"):
+        found.append(f"status {status!r}")
+    if status == "completed" and record.steps != STEPS:
+        found.append(f"{record.steps} steps")
+    return record, found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    asked = parser.parse_args()
+    counts: Counter[str] = Counter()
+    broken, worst, began = 0, 0.0, time.monotonic()
+    for number in range(asked.first, asked.first + asked.runs):
+        try:
+            record, found = faults(number)
+        except Exception as error:  # a crash is what is looked for
+            print(f"run {number}: {type(error).__name__}: {error}")
+            broken += 1
+            continue
+        if found:
+            print(f"run {number}: {'; '.join(found)}")
+            broken += 1
+        worst = max(worst, beyond(record, options(number)["robot"]))
+        counts[record.settings["status"].partition(" at ")[0]] += 1
+        incidents = compute_metrics(record).get("incidents", {})
+        for name in ("clipped", "fallback", "slow", "relax", "stop"):
+            steps = incidents.get(f"{name}_steps", 0)
+            counts[f"steps: {name}"] += steps
+            counts[f"runs with a step: {name}"] += steps > 0
+        counts["steps"] += record.steps
+        counts["steps unsolved"] += int((record.kkt_residual > record.settings["tol"]).sum()) * (
+            record.settings["mode"] == "converged"
+        )
+    for name, count in sorted(counts.items()):
+        print(f"{name}: {count:,}")
+    print(f"largest breach of a limit: {worst:.3g}")
+    print(f"{asked.runs} runs, {broken} broken, {time.monotonic() - began:.0f} s")
+    return int(broken > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

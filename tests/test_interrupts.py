@@ -1,0 +1,107 @@
+"""Ctrl-C and SIGTERM in the middle of a run: whole files, the usual exit code, nothing left."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from iiwa_dnn.interrupts import ended_by_signals
+from iiwa_dnn.record import Record
+
+SCRIPTS = Path(__file__).parents[1] / "scripts"
+ENDS = {signal.SIGINT: (130, "interrupted\n"), signal.SIGTERM: (143, "terminated\n")}
+LONG = ["--duration", "1000", "--dt", "1e-3", "--quiet", "--out"]
+
+
+def start(name: str, folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    """The script, its workers in a group of their own."""
+    command = [sys.executable, str(SCRIPTS / name), *arguments]
+    return subprocess.Popen(
+        command,
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def wait_for(path: Path, process: subprocess.Popen[str]) -> None:
+    """Until the script has made a file or folder."""
+    for _ in range(6000):
+        if path.exists():
+            return
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+    raise AssertionError(f"no {path} after a minute")
+
+
+def end(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, str, str]:
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+@pytest.mark.parametrize("number", ENDS)
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("track_heart.py", LONG),
+        ("track_heart.py", [*LONG[:-1], "--check", "none", "--out"]),
+        ("simulate_physics.py", ["--no-pictures", "--no-video", *LONG]),
+        ("reproduce_paper.py", ["--quick", "--workers", "2", "--quiet", "--out"]),
+    ],
+    ids=["checked by workers", "unchecked", "physics", "sweep"],
+)
+def test_a_run_that_is_ended_leaves_no_half_files(
+    name: str, options: list[str], number: signal.Signals, tmp_path: Path
+) -> None:
+    process = start(name, tmp_path, *options, str(tmp_path / "run"))
+    wait_for(tmp_path / "run", process)
+    time.sleep(0.3)
+    code, message = ENDS[number]
+    assert end(process, number) == (code, "", message)
+    for path in (tmp_path / "run").rglob("*"):
+        # Of a sweep, finished cells; of a run, nothing.
+        assert path.name == "cells" or json.loads(path.read_text())["values"]
+
+
+@pytest.mark.parametrize("number", ENDS)
+def test_what_was_written_before_is_whole(number: signal.Signals, tmp_path: Path) -> None:
+    arguments = ["--dt", "1e-3", "--duration", "0.05", "--check", "none", "--quiet", "--out", "."]
+    process = start("track_heart.py", tmp_path, *arguments)
+    wait_for(tmp_path / "metrics.json", process)
+    assert end(process, number)[0] == ENDS[number][0]  # while it draws
+    assert Record.load(tmp_path / "record.npz").steps == 50
+    assert json.loads((tmp_path / "metrics.json").read_text())["steps"] == 50
+    assert not (tmp_path / "report.md").exists()
+    assert not list(tmp_path.glob(".*"))
+    for path in tmp_path.glob("*.png"):
+        assert path.read_bytes().endswith(b"IEND\xaeB`\x82")
+
+
+def test_the_handler_before_is_put_back() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    with ended_by_signals():
+        assert signal.getsignal(signal.SIGTERM) is not before
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_other_threads_may_call_a_script_too() -> None:
+    seen: list[int] = []
+
+    def call() -> None:
+        with ended_by_signals():
+            seen.append(1)
+
+    thread = threading.Thread(target=call)
+    thread.start()
+    thread.join()
+    assert seen == [1]
