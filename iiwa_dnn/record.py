@@ -135,7 +135,7 @@ class Record:
     def __post_init__(self) -> None:
         shapes = self._shapes
         for name, shape in shapes.items():
-            array = _read_only_copy(name, getattr(self, name), len(shape))
+            array = _read_only(name, getattr(self, name), len(shape))
             object.__setattr__(self, name, array)
         sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
         for name, shape in shapes.items():
@@ -231,8 +231,8 @@ class Record:
         return record
 
 
-def _read_only_copy(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
-    """Copy an array, so that nothing done to the original later can change the record."""
+def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
+    """Copy an array, unless it is protected: nothing done to it later can change the record."""
     array = np.asarray(value)
     kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
     # An empty list is an array of floats to NumPy, whatever it was meant to hold.
@@ -240,9 +240,21 @@ def _read_only_copy(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
     if array.ndim != dimensions:
         raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
+    if array.dtype == target and array.flags.c_contiguous and _is_protected(array):
+        return array
     copy = np.array(array, dtype=target, order="C")
     copy.flags.writeable = False
     return copy
+
+
+def _is_protected(array: NDArray[Any]) -> bool:
+    """Whether neither the array nor any that it is a view of can be written into."""
+    view: Any = array
+    while isinstance(view, np.ndarray):
+        if view.flags.writeable:
+            return False
+        view = view.base
+    return view is None
 
 
 def _largest_gap(solution_gap: FloatArray) -> FloatArray:

@@ -277,3 +277,15 @@ def test_save_into_no_folder(tmp_path):
     with pytest.raises(FileError, match="cannot be written"):
         make_record().save(tmp_path / "missing" / "record.npz")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_protected_array_is_taken_as_it_is_and_an_open_one_is_copied() -> None:
+    record = make_record()
+    again = dataclasses.replace(record)
+    assert again.q is record.q
+    whole = np.array(record.q)
+    view = whole[:]
+    view.setflags(write=False)  # but `whole` can still be written into
+    copied = dataclasses.replace(record, q=view)
+    whole[:] = 0.0
+    np.testing.assert_array_equal(copied.q, record.q)

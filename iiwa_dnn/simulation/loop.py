@@ -210,7 +210,7 @@ class Simulation:
         gain = self._controller.scheme.limit_gain
         self._clips, self._gain = altered and gain is not None, gain or 0.0
         self.steps = steps
-        self._allocate(start.q)
+        self._q0 = start.q
 
     def run(self, progress: Progress | None = None) -> Record:
         """Take every step, or those until a policy stops.
@@ -225,6 +225,7 @@ class Simulation:
             NoSolutionError: A step has no solution and the policy is ``raise``.
         """
         began = time.perf_counter()
+        self._allocate()
         self._solver.reset()
         for part in (self._integral, self._estimator):
             if part is not None:
@@ -260,10 +261,10 @@ class Simulation:
         agreement = pool.finish().worst_of(self._motion.stages)
         return self._record(done, status, agreement, time.perf_counter() - began)
 
-    def _allocate(self, q0: Vector) -> None:
-        steps, n = self.steps, q0.size
+    def _allocate(self) -> None:
+        steps, n = self.steps, self._robot.dof
         self._q = np.empty((steps + 1, n))
-        self._q[0] = q0
+        self._q[0] = self._q0
         self._dq, self._dq_solver = np.empty((steps, n)), np.empty((steps, n))
         self._position, self._rotation = np.empty((steps + 1, 3)), np.empty((steps + 1, 3, 3))
         self._position_desired = np.empty((steps + 1, 3))
@@ -365,6 +366,12 @@ class Simulation:
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
+        for array in (
+            self._q, self._dq, self._dq_solver, self._position, self._rotation,
+            self._position_desired, self._rotation_desired, self._kinetic_index,
+            self._kkt_residual, self._iterations,
+        ):  # fmt: skip
+            array.setflags(write=False)  # so that the record need not copy it
         return Record(
             t=self._dt * np.arange(steps + 1, dtype=np.float64),
             q=self._q[: steps + 1],

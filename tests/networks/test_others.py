@@ -202,7 +202,7 @@ def test_singular_cost_settles_but_not_with_the_dual_network() -> None:
 @pytest.mark.parametrize("network", OTHERS, ids=repr)
 def test_random_programs_are_solved_or_not_claimed(network: Network) -> None:
     found, solver = 0, DNNSolver(network)
-    for seed in range(100):
+    for seed in range(40):
         qp, x = programs.strictly_convex(np.random.default_rng([7, seed]), None, 1e2)
         solver.reset()
         solution = solver.solve(qp)
@@ -213,7 +213,7 @@ def test_random_programs_are_solved_or_not_claimed(network: Network) -> None:
             residuals = qp.residuals(solution.x, solution.y, solution.z, solution.z_box)
             assert residuals.largest <= 1e-9
             assert np.abs(solution.x - x).max() < 1e-5
-    assert found >= 95
+    assert found >= 38
 
 
 @pytest.mark.parametrize("network", OTHERS, ids=repr)
