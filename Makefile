@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup heart physics view test coverage lint format types clean
+.PHONY: help setup heart physics view test notebooks docs coverage lint format types clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [ARGS="..."]'
@@ -42,6 +42,12 @@ view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the a
 test: $(STAMP)  ## run the tests
 	$(VENV_PYTHON) -m pytest $(ARGS)
 
+notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
+	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
+
+docs: $(STAMP)  ## build the documentation into site/, any warning an error
+	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
+
 coverage: $(STAMP)  ## run the tests and show which lines of the package they reach
 	$(VENV_PYTHON) -m pytest --cov --cov-report=term-missing $(ARGS)
 
@@ -57,5 +63,5 @@ types: $(STAMP)  ## check the types of the package
 	$(VENV_PYTHON) -m mypy
 
 clean:  ## remove .venv, caches and what was built; runs/ stays
-	rm -rf $(VENV) build dist htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) build dist site htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find iiwa_dnn tests scripts -name __pycache__ -prune -exec rm -rf {} +

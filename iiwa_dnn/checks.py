@@ -53,7 +53,7 @@ def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
 
 
 def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:
-    """The value as a tuple of three floats, or an InvalidInputError unless it is three numbers."""
+    """The value (3,) as a tuple of floats, or an InvalidInputError unless it is three numbers."""
     x, y, z = finite_array(argument, value, (3,)).tolist()
     return x, y, z
 
@@ -78,7 +78,7 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDA
 
 
 def read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A view of `array` that cannot be written into."""
+    """A view of `array`, of any shape, that cannot be written into."""
     view = array[...]
     view.setflags(False)  # write=False: by position it takes half the time
     return view

@@ -1,71 +1,54 @@
-"""The script that compares the means against noise: arguments, one sweep, a table, a report."""
+"""``noise``: the means against noise compared; one sweep, a table, a report."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.cli import Parser
-from iiwa_dnn.exceptions import IiwaDnnError, InvalidInputError
+from iiwa_dnn.command_line import list_files, run_command, save_settings
+from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.experiments import noise_study
 from iiwa_dnn.files import prepare_folder, write_json, write_text
-from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.report import markdown_table
+from iiwa_dnn.settings import NoiseSettings
 from iiwa_dnn.sweeps import Sweep
 
 
-@ended_by_signals()
-def study_noise(arguments: Sequence[str] | None = None) -> int:
+def study_noise(arguments: Sequence[str] | None = None, prog: str = "noise_study") -> int:
     """Run every pair of disturbance and countermeasure; the script ``noise_study.py``.
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
+        prog: What the command is called in messages.
 
     Returns:
         0: all runs were completed. 1: one was not. 2: bad input, one line on standard error.
     """
-    parser = _parser()
-    options = parser.parse_args(arguments)
-    try:
-        if options.seeds < 2:
-            raise InvalidInputError("seeds", f"must be at least 2, not {options.seeds}")
-        if not noise_study.SETTLED_AFTER < options.duration < 1e3:
-            least = noise_study.SETTLED_AFTER
-            problem = f"must be above {least:g} and below 1000 s, not {options.duration:g}"
-            raise InvalidInputError("duration", problem)
-        folder = prepare_folder(options.out)
-        cells = noise_study.cells(options.seeds, options.duration)
-        sweep = Sweep(noise_study.measure, folder / "cells")
-        results = sweep.run(cells, workers=options.workers, quiet=options.quiet)
-        rows = noise_study.tabulate(options.seeds, options.duration, results)
-        write_json(folder / "noise.json", rows)
-        text = _report(rows, options.seeds, options.duration)
-        write_text(folder / "report.md", text)
-    except IiwaDnnError as error:
-        print(f"{parser.prog}: error: {error}", file=sys.stderr)
-        return 2
-    if not options.quiet:
+    return run_command(NoiseSettings, prog, _study, arguments)
+
+
+def _study(settings: NoiseSettings) -> int:
+    seeds, duration = settings.seeds, settings.duration
+    if seeds < 2:
+        raise InvalidInputError("seeds", f"must be at least 2, not {seeds}")
+    if not noise_study.SETTLED_AFTER < duration < 1e3:
+        least = noise_study.SETTLED_AFTER
+        problem = f"must be above {least:g} and below 1000 s, not {duration:g}"
+        raise InvalidInputError("duration", problem)
+    folder = prepare_folder(settings.out)
+    sweep = Sweep(noise_study.measure, folder / "cells")
+    cells = noise_study.cells(seeds, duration)
+    results = sweep.run(cells, workers=settings.workers, quiet=settings.quiet)
+    rows = noise_study.tabulate(seeds, duration, results)
+    write_json(folder / "noise.json", rows)
+    text = _report(rows, seeds, duration)
+    write_text(folder / "report.md", text)
+    save_settings(settings, folder)
+    if not settings.quiet:
         print(text, end="")
+        if settings.verbose:
+            list_files(folder)
     return 0 if all(row["completed"] for row in rows) else 1
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="noise_study",
-        description="Compare what helps against noise and other disturbances of the joint "
-        "velocity: error against smoothness of the command. A run that was cut short goes on "
-        "where it was.",
-        epilog="Exit code 0: all runs completed; 1: one was not; 2: bad input.",
-    )
-    add = parser.add_argument
-    add("--seeds", type=int, default=100, metavar="N", help="noises (%(default)s)")
-    add("--duration", type=float, default=2.0, metavar="S", help="of each run (%(default)s)")
-    add("--workers", type=int, metavar="N", help="processes (one for each core)")
-    add("--out", type=Path, default=Path("runs/noise"), metavar="DIR", help="(%(default)s)")
-    add("--quiet", action="store_true", help="no progress bar and no table")
-    return parser
 
 
 def _report(rows: Sequence[Mapping[str, Any]], seeds: int, duration: float) -> str:

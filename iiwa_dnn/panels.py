@@ -20,7 +20,7 @@ _LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1
 
 
 def plane_of(position: FloatArray) -> tuple[int, int] | None:
-    """The two axes that a path spans, None if it spans three or is a single point."""
+    """The two axes that a path (N, 3) [m] spans, None if it spans three or is a single point."""
     spread = np.ptp(position, axis=0)
     flat = int(spread.argmin())
     if not spread[flat] <= 1e-3 * spread.max():
@@ -157,7 +157,8 @@ def _length_unit(largest: float) -> tuple[str, float]:
 def draw_log(axes: Axes, t: FloatArray, values: FloatArray, names: list[str]) -> None:
     """Draw positive values on a log scale: each stretch's largest as a line, its range as a band.
 
-    Answers that never came (inf) are crosses at the top.
+    The times (N,) are in [s], the values (N, k) have k names. Answers that never came (inf) are
+    crosses at the top.
     """
     axes.set_yscale("log")
     for name, curve, colour in zip(names, values.T, cycle(("0.15", "0.55", "0.35"))):

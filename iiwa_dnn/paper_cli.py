@@ -1,8 +1,7 @@
-"""The script that runs the paper's experiments: arguments, one sweep, tables, figures, report."""
+"""``paper``: every experiment of the paper in one sweep, with tables, figures and a report."""
 
 from __future__ import annotations
 
-import argparse
 import os
 import platform
 import sys
@@ -13,64 +12,66 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.cli import Parser
-from iiwa_dnn.exceptions import IiwaDnnError
+from iiwa_dnn.command_line import list_files, run_command, save_settings
 from iiwa_dnn.experiments import ablation, paper, table1, table2
 from iiwa_dnn.experiments.runs import HeartRun, measure
 from iiwa_dnn.experiments.scope import FULL, QUICK, Scope
 from iiwa_dnn.files import prepare_folder, write_json
-from iiwa_dnn.interrupts import ended_by_signals
 from iiwa_dnn.paper_findings import findings
 from iiwa_dnn.paper_plots import save_paper_figures
 from iiwa_dnn.paper_report import write_paper_report
 from iiwa_dnn.provenance import fingerprint
+from iiwa_dnn.settings import PaperSettings
 from iiwa_dnn.sweeps import Sweep
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 
 
-@ended_by_signals()
-def reproduce_paper(arguments: Sequence[str] | None = None) -> int:
+def reproduce_paper(arguments: Sequence[str] | None = None, prog: str = "reproduce_paper") -> int:
     """Run every experiment of the paper and write what came out; the script of the same name.
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
+        prog: What the command is called in messages.
 
     Returns:
         0: all runs were completed. 1: one was not. 2: bad input, one line on standard error.
     """
-    parser = _parser()
-    options = parser.parse_args(arguments)
+    return run_command(PaperSettings, prog, _paper, arguments)
+
+
+def _paper(settings: PaperSettings) -> int:
     began = time.perf_counter()
-    try:
-        scope = _scope(options)
-        folder = prepare_folder(options.out)
-        figures = figure_runs(scope)
-        parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
-        runs = [run for part in (*parts.values(), figures.values()) for run in part]
-        sweep = Sweep(measure, folder / "cells")
-        results = sweep.run(
-            [run.settings() for run in runs],
-            workers=options.workers,
-            dask=options.dask,
-            quiet=options.quiet,
-        )
-        tables = _tables(scope, parts, results)
-        for name, table in tables.items():
-            write_json(folder / f"{name}.json", table)
-        drawn = []
-        if options.plots:
-            records = {name: sweep.record(run.settings()) for name, run in figures.items()}
-            drawn = save_paper_figures(records["noise, filter"], records, tables, folder)
-        head = _head(scope, len(runs), results, time.perf_counter() - began)
-        write_paper_report(folder, tables, head, drawn)
-    except IiwaDnnError as error:
-        print(f"{parser.prog}: error: {error}", file=sys.stderr)
-        return 2
+    scope = _scope(settings)
+    folder = prepare_folder(settings.out)
+    figures = figure_runs(scope)
+    parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
+    runs = [run for part in (*parts.values(), figures.values()) for run in part]
+    sweep = Sweep(measure, folder / "cells")
+    results = sweep.run(
+        [run.settings() for run in runs],
+        workers=settings.workers,
+        dask=settings.dask,
+        quiet=settings.quiet,
+    )
+    tables = _tables(scope, parts, results)
+    for name, table in tables.items():
+        write_json(folder / f"{name}.json", table)
+    drawn = []
+    if settings.plots:
+        records = {name: sweep.record(run.settings()) for name, run in figures.items()}
+        drawn = save_paper_figures(records["noise, filter"], records, tables, folder)
+    head = _head(scope, len(runs), results, time.perf_counter() - began)
+    write_paper_report(folder, tables, head, drawn)
+    save_settings(settings, folder)
     ended_early = [values["status"] for values in results if values["status"] != "completed"]
-    if not options.quiet:
+    if not settings.quiet:
+        if settings.verbose:
+            print("\n".join(f"{name:<14}{value}" for name, value in head.items()))
         print("\n".join(findings(tables)))
         print(f"written to {folder}")
+        if settings.verbose:
+            list_files(folder)
     if ended_early:
         print(f"{len(ended_early)} runs ended early, the first: {ended_early[0]}", file=sys.stderr)
     return 1 if ended_early else 0
@@ -99,26 +100,7 @@ def _tables(
     return tables
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
-        prog="reproduce_paper",
-        description="Run every experiment of the paper and put each number beside the paper's. A "
-        "run that was cut short goes on where it was.",
-        epilog="Exit code 0: all runs completed; 1: one was not; 2: bad input.",
-    )
-    add = parser.add_argument
-    add("--quick", action="store_true", help="1 s of motion and 5 seeds: to see that all works")
-    add("--seeds", type=int, metavar="N", help=f"noises in Table II ({FULL.seeds})")
-    add("--duration", type=float, metavar="S", help=f"length of each run ({FULL.duration:g})")
-    add("--workers", type=int, metavar="N", help="processes (one for each core)")
-    add("--dask", metavar="ADDRESS|local", help="run on a Dask cluster, or start one here")
-    add("--out", type=Path, default=Path("runs/paper"), metavar="DIR", help="(%(default)s)")
-    add("--no-plots", dest="plots", action="store_false", help="write no figures")
-    add("--quiet", action="store_true", help="no progress bar and no summary")
-    return parser
-
-
-def _scope(options: argparse.Namespace) -> Scope:
+def _scope(options: PaperSettings) -> Scope:
     """What the options ask for: --quick, and what is given beside it."""
     given = {name: getattr(options, name) for name in ("seeds", "duration")}
     changes = {name: value for name, value in given.items() if value is not None}

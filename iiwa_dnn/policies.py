@@ -98,7 +98,7 @@ class Reach(NamedTuple):
 
     Attributes:
         fraction: Largest feasible share of b, in [0, 1]; NaN where not even 0 is feasible.
-        dq: A joint velocity inside the bounds that gives it, (n,).
+        dq: A joint velocity [rad/s] inside the bounds that gives it, (n,).
         sides: Which bounds stop it, (n,): 1 upper, -1 lower, 0 neither.
     """
 

@@ -364,7 +364,7 @@ class Solution(NamedTuple):
 
     @property
     def certificate(self) -> Vector | None:
-        """The proof that there is no solution, where the status claims one (`Refutation`)."""
+        """The proof ``(size,)`` that there is no solution, where there is one (`Refutation`)."""
         return None
 
     @property

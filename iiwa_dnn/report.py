@@ -95,7 +95,6 @@ def write_report(
         FileError: If it cannot be written.
     """
     settings, check = metrics["settings"], metrics["crosscheck"]
-    named = [(_SETTINGS.get(key, key.replace("_", " ")), value) for key, value in settings.items()]
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
         "## Verdict",
@@ -108,7 +107,9 @@ def write_report(
         *(["Continuous mode: the gap is the network's lag, reported and not judged."]
           if settings["mode"] == "continuous" else []),
         "## Settings",
-        markdown_table(("setting", "value"), [(name, _text(value)) for name, value in named]),
+        markdown_table(
+            ("setting", "value"), [(name, _text(value)) for name, value in _named(settings)]
+        ),
         "## Versions",
         markdown_table(
             ("package", "version"), [(k, _text(v)) for k, v in metrics["versions"].items()]
@@ -121,6 +122,19 @@ def write_report(
     path = Path(folder) / "report.md"
     write_text(path, "\n\n".join(parts) + "\n")
     return path
+
+
+def settings_lines(metrics: Mapping[str, Any]) -> str:
+    """The settings of a run, one a line, as its report has them.
+
+    Args:
+        metrics: The metrics of the run.
+    """
+    return "\n".join(f"{name}: {_text(value)}" for name, value in _named(metrics["settings"]))
+
+
+def _named(settings: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    return [(_SETTINGS.get(key, key.replace("_", " ")), value) for key, value in settings.items()]
 
 
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:

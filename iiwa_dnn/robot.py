@@ -12,6 +12,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import urdf
+from iiwa_dnn.arms import ARMS
 from iiwa_dnn.exceptions import InvalidInputError, NotFoundError
 
 
@@ -111,7 +112,10 @@ class Robot:
 
 
 def available_robots() -> tuple[str, ...]:
-    """Names of the robots that come with the package, for :func:`load_robot`."""
+    """Names of the robots that come with the package, for :func:`load_robot`.
+
+    It knows those of `iiwa_dnn.arms` too, whose files are in another package.
+    """
     files = _robots_folder().glob("*/*.urdf")
     return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
 
@@ -127,11 +131,13 @@ def load_robot(
     position limit, and a ``velocity`` of 0 stands for "not given": no velocity limit.
 
     Args:
-        name_or_path: A name out of :func:`available_robots`, or the path of a URDF file: a
-            :class:`~pathlib.Path`, or a string that ends in ``.urdf`` or has a separator in it.
-        tip: Frame that is to follow references. Default: the link at the end of the chain, for a
-            robot that has only one end.
-        locked: Names of joints to freeze, each at its zero position or at the limit nearest to it.
+        name_or_path: A name out of :func:`available_robots` or `iiwa_dnn.arms.ARMS`, or the path
+            of a URDF file: a :class:`~pathlib.Path`, or a string that ends in ``.urdf`` or has a
+            separator in it.
+        tip: Frame that is to follow references. Default: that of the name (`iiwa_dnn.arms`), or
+            the link at the end of the chain, for a robot that has only one end.
+        locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
+            an arm loaded by name has the joints of its gripper frozen besides.
 
     Returns:
         The robot.
@@ -141,16 +147,22 @@ def load_robot(
         FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
             left free has more or less than one coordinate, or follows another joint.
+        MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
-    path = _find(name_or_path)
+    arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
+    path = _find(name_or_path) if arm is None else arm.path
     text, joints = urdf.read(path)
-    frozen = (locked,) if isinstance(locked, str) else tuple(dict.fromkeys(locked))
+    chosen = (locked,) if isinstance(locked, str) else tuple(locked)
+    frozen = tuple(dict.fromkeys((*(arm.locked if arm is not None else ()), *chosen)))
     full = urdf.build_model(path, text)
     # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.
-    tip = _default_tip(full) if tip is None else tip
+    if tip is None:
+        tip = _default_tip(full) if arm is None else arm.tip
     model = urdf.lock(full, frozen)
     urdf.check_one_coordinate_each(model, joints)
-    robot = Robot(model.name, model, tip, *urdf.limits(path, model, joints), frozen, path)
+    # By the name it was asked for: the URDFs call some of these arms otherwise.
+    name = model.name if arm is None else str(name_or_path)
+    robot = Robot(name, model, tip, *urdf.limits(path, model, joints), frozen, path)
     urdf.check_no_mimic(model, robot.tip_id, joints)
     return robot
 
@@ -171,7 +183,7 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
         return Path(text)
     available = available_robots()
     if text not in available:
-        raise NotFoundError("robot", text, available)
+        raise NotFoundError("robot", text, (*available, *ARMS))
     return _robots_folder() / text / f"{text}.urdf"
 
 

@@ -79,7 +79,13 @@ def visual_shapes(robot: Robot) -> list[Shape]:
 
 
 def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> list[pin.SE3]:
-    """Where each joint's frame is in the world, the base (0) first: what `Shape.joint` counts."""
+    """Where each joint's frame is in the world, the base (0) first: what `Shape.joint` counts.
+
+    Args:
+        robot: The robot, n joints.
+        q: Joint positions [rad], (n,).
+        data: Room for Pinocchio to work in; None makes it.
+    """
     data = robot.model.createData() if data is None else data
     pin.forwardKinematics(robot.model, data, np.asarray(q, dtype=np.float64))
     return [data.oMi[i].copy() for i in range(robot.model.njoints)]

@@ -54,7 +54,7 @@ class DNNSolver:
 
     @property
     def state(self) -> Vector:
-        """The network's state, a copy; empty before the first call."""
+        """The network's state (size,), a copy; empty before the first call."""
         copy: Vector = self._state.copy()
         return copy
 
@@ -76,7 +76,7 @@ class DNNSolver:
             self._state[: self._sizes[0]] += noise
 
     def warm_state(self, sizes: tuple[int, int, int]) -> Vector | None:
-        """The state itself, where the last program had these sizes; otherwise None."""
+        """The state itself, (size,), where the last program had these sizes; otherwise None."""
         return self._state if sizes == self._sizes else None
 
     def numbers(self, duration: float = 0.0) -> Vector | None:
@@ -86,7 +86,7 @@ class DNNSolver:
             duration: Time to advance [s]; 0 stands for `solve`.
 
         Returns:
-            The seven numbers, or None where network or integrator has no compiled form.
+            The numbers, (7,), or None where network or integrator has no compiled form.
         """
         network, settler, follower = self.network, self.settler, self.follower
         if type(network) is not ProjectionNetwork:

@@ -1,40 +1,43 @@
-"""The script that opens the page: which record, which robot, which address."""
+"""``view``: the page in the browser; which record, which robot, which address."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from iiwa_dnn.cli import Parser, limited, start_posture
-from iiwa_dnn.exceptions import FileError, IiwaDnnError, InvalidInputError
+from iiwa_dnn.cli import limited, start_posture
+from iiwa_dnn.command_line import run_command
+from iiwa_dnn.exceptions import FileError, InvalidInputError
 from iiwa_dnn.live.page import Page, limits_of, scheme_of
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.record import Record
 from iiwa_dnn.robot import Robot, load_robot
-from iiwa_dnn.viewer.server import HOST, PORT
+from iiwa_dnn.settings import ViewSettings
 
 
-def view(arguments: Sequence[str] | None = None, stop: Callable[[], bool] = lambda: False) -> int:
+def view(
+    arguments: Sequence[str] | None = None,
+    stop: Callable[[], bool] = lambda: False,
+    prog: str = "view",
+) -> int:
     """Open the page and keep it moving; the script ``view.py``.
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
         stop: Asked at every tick whether to end; Ctrl-C ends it too.
+        prog: What the command is called in messages.
 
     Returns:
         The exit code: 0, or 2 for bad input or a missing package.
     """
-    parser = _parser()
-    options = parser.parse_args(arguments)
-    try:
-        record = None if options.run is None else load_run(options.run)
-        robot, q0 = _robot(record, options.robot, options.tip, options.lock)
-        scheme = None if record is None else scheme_of(record)
-        page = Page(robot, q0, record, scheme, options.host, options.port)
-    except IiwaDnnError as error:
-        print(f"{parser.prog}: error: {error}", file=sys.stderr)
-        return 2
+    return run_command(ViewSettings, prog, lambda settings: _view(settings, stop), arguments)
+
+
+def _view(settings: ViewSettings, stop: Callable[[], bool]) -> int:
+    record = None if settings.run is None else load_run(settings.run)
+    robot, q0 = _robot(record, settings.robot, settings.tip, settings.lock)
+    scheme = None if record is None else scheme_of(record)
+    page = Page(robot, q0, record, scheme, settings.host, settings.port)
     print(f"open {page.address} in a browser; Ctrl-C ends it", flush=True)
     try:
         page.run(stop)
@@ -72,20 +75,3 @@ def _robot(
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, name)
     return limits_of(record, robot), record.q[0]
-
-
-def _parser() -> Parser:
-    parser = Parser(
-        prog="view",
-        description="Replay a run in the browser, or drive the arm live: drag its target while the "
-        "controller follows.",
-        epilog="Exit code 0: ended by Ctrl-C; 2: bad input, or a package is missing.",
-    )
-    add = parser.add_argument
-    add("run", nargs="?", type=Path, metavar="RUN", help="a run's folder or record (none: live)")
-    add("--robot", metavar="NAME|URDF", help="robot (the record's, or iiwa7)")
-    add("--tip", metavar="FRAME", help="frame that follows (the record's, or the chain's end)")
-    add("--lock", nargs="+", default=(), metavar="JOINT", help="joints to hold still")
-    add("--host", default=HOST, metavar="ADDRESS", help="0.0.0.0 lets others in (%(default)s)")
-    add("--port", type=int, default=PORT, metavar="N", help="0 takes a free one (%(default)s)")
-    return parser

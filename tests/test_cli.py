@@ -77,7 +77,7 @@ def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     captured = capsys.readouterr()
     assert (captured.out, captured.err) == ("", "")
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"record.npz", "metrics.json", "report.md"}
+    assert names == {"record.npz", "metrics.json", "report.md", "settings.toml"}
 
 
 def test_no_network_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,12 +10,21 @@ import ast
 import contextlib
 import io
 import re
+import sys
+import types
 from pathlib import Path
 
 import pytest
 
+import iiwa_dnn
+
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+
+WITH_CODE = (
+    "README.md", "commands.md", "index.md", "own_network.md", "own_reference.md", "own_scheme.md",
+    "robots.md", "theory.md",
+)  # fmt: skip
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
@@ -39,7 +48,9 @@ def run_blocks(text: str, name: str) -> int:
         text: The document.
         name: What a traceback calls it.
     """
-    namespace: dict[str, object] = {"__name__": "__docs__"}
+    # A module of its own, since dataclasses ask for that of their class.
+    module = types.ModuleType("__docs__")
+    sys.modules["__docs__"], namespace = module, vars(module)
     count, printed = 0, ""
     for language, content, line, follows in blocks(text):
         if language == "python":
@@ -65,7 +76,7 @@ def test_the_code_in_the_documents_runs(
 ) -> None:
     monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
     count = run_blocks(path.read_text(encoding="utf-8"), path.name)
-    if path.name in ("README.md", "theory.md"):
+    if path.name in WITH_CODE:
         assert count > 0
 
 
@@ -78,6 +89,18 @@ def test_links_and_named_tests_exist(path: Path) -> None:
     for file, name in _TEST.findall(text):
         assert (ROOT / file).is_file(), f"{path.name} names {file}"
         assert not name or name in defined(ROOT / file), f"{path.name} names {file}::{name}"
+
+
+def test_the_api_page_and_the_table_of_contents_are_complete() -> None:
+    api = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"auto(?:class|function):: iiwa_dnn\.(\w+)$", api, re.MULTILINE))
+    errors = {name for name in iiwa_dnn.__all__ if name.endswith("Error")}  # as a module
+    assert set(iiwa_dnn.__all__) - errors == listed
+    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    trees = re.findall(r"^```{toctree}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
+    named = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
+    assert named == pages
 
 
 def test_every_erratum_has_its_tests_and_every_test_its_erratum() -> None:

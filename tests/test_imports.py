@@ -23,6 +23,7 @@ ORDER = (
     "kernels_clip",
     "kernels_control",
     "kernels_batch",
+    "arms",
     "urdf",
     "robot",
     "shapes",
@@ -64,14 +65,17 @@ ORDER = (
     "pictures",
     "viewer",
     "live",
+    "settings",
+    "command_line",
     "cli",
+    "solve_cli",
     "paper_cli",
     "noise_cli",
     "physics_cli",
     "view_cli",
     "benchmarks",
-    "__main__",
     "__init__",
+    "__main__",
 )
 
 # They read a Record and recompute nothing: robot, solver and simulation are out of their sight.

@@ -66,6 +66,7 @@ def test_sdist_builds_the_same_wheel(wheel: list[str], tmp_path: Path) -> None:
     [
         ("pyproject.toml", r'^version = "([^"]+)"'),
         ("CITATION.cff", r"^version: (\S+)$"),
+        ("README.md", r"note   = \{Version (\S+)\}"),
         ("CHANGELOG.md", r"^## \[(\d[^]]*)\]"),  # the newest release, under Unreleased
     ],
 )

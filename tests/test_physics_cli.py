@@ -70,7 +70,7 @@ def test_disturbances_one_by_one(capsys, tmp_path):
     settings = Record.load(tmp_path / "record.npz").settings["physics"]["disturbances"]
     assert not any(settings.values())
     assert sorted(path.name for path in tmp_path.iterdir()) == [
-        "metrics.json", "record.npz", "report.md",
+        "metrics.json", "record.npz", "report.md", "settings.toml",
     ]  # fmt: skip
 
 

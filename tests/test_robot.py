@@ -11,6 +11,7 @@ import pytest
 
 import iiwa_dnn.robot
 from helpers_kinematics import example_urdf
+from iiwa_dnn.arms import ARMS
 from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.exceptions import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Robot, available_robots, load_robot
@@ -75,7 +76,7 @@ def test_robots_beside_the_module_come_first(
 def test_unknown_robot_names_those_that_exist() -> None:
     with pytest.raises(NotFoundError, match="no robot 'iiwa14'; did you mean: iiwa7") as caught:
         load_robot("iiwa14")
-    assert caught.value.available == available_robots()
+    assert caught.value.available == (*available_robots(), *ARMS)
 
 
 @pytest.mark.parametrize("bad", [None, 7])

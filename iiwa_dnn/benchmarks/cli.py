@@ -1,44 +1,36 @@
-"""The script that measures this package's solver beside others: arguments and exit codes."""
+"""``bench``: this package's solver measured beside others."""
 
 from __future__ import annotations
 
-import argparse
-import sys
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.cli import Parser
-from iiwa_dnn.exceptions import IiwaDnnError
+from iiwa_dnn.command_line import list_files, run_command, save_settings
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.settings import BenchSettings
 
 
-def bench_solvers(arguments: Sequence[str] | None = None) -> int:
+def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
     """Measure all solvers on all streams and write the report.
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
+        prog: What the command is called in messages.
 
     Returns:
         The exit code: 0 done, 2 bad input or something is missing.
     """
-    options = _parser().parse_args(arguments)
-    try:
-        for name in ("steps", "cold", "batch"):
-            checks.integer(f"--{name}", getattr(options, name), 50)
-        folder = prepare_folder(options.out)
-        _run(options, folder)
-    except IiwaDnnError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return run_command(BenchSettings, prog, _bench, arguments)
 
 
-def _run(options: argparse.Namespace, folder: Path) -> None:
+def _bench(options: BenchSettings) -> int:
+    for name in ("steps", "cold", "batch"):
+        checks.integer(f"--{name}", getattr(options, name), 50)
+    folder = prepare_folder(options.out)
     # Here, since the peers are in an extra.
     from iiwa_dnn.benchmarks.measurement import (
         CHUNK,
@@ -78,21 +70,7 @@ def _run(options: argparse.Namespace, folder: Path) -> None:
         for entry in measured:
             print(f"{entry['name']:20} {verdict(entry['rows'])}")
     print(written[0])
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
-        prog="bench_solvers.py",
-        description="Measure this package's solver beside others and write a report.",
-    )
-    add = parser.add_argument
-    add("--steps", type=int, default=5000, metavar="N", help="steps of a stream (%(default)s)")
-    add(
-        "--cold", type=int, default=1000, metavar="N",
-        help="random programs of each size; the programs known by construction go with it "
-        "(%(default)s)",
-    )  # fmt: skip
-    add("--batch", type=int, default=100_000, metavar="N", help="size of the batch (%(default)s)")
-    add("--out", type=Path, default=Path("runs/bench"), metavar="DIR", help="(%(default)s)")
-    add("--quiet", action="store_true", help="no progress bar, no summary")
-    return parser
+    save_settings(options, folder)
+    if options.verbose:
+        list_files(folder)
+    return 0

@@ -1,43 +1,37 @@
-"""The script that measures the control loop beside Pink's: arguments and exit codes."""
+"""``bench-loop``: the control loop measured beside Pink's, its start-up and its memory."""
 
 from __future__ import annotations
 
-import argparse
-import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.cli import Parser
-from iiwa_dnn.exceptions import IiwaDnnError, MissingDependencyError
+from iiwa_dnn.command_line import list_files, run_command, save_settings
+from iiwa_dnn.exceptions import MissingDependencyError
 from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.settings import BenchLoopSettings
 
 
-def bench_loop(arguments: Sequence[str] | None = None) -> int:
+def bench_loop(arguments: Sequence[str] | None = None, prog: str = "bench_loop") -> int:
     """Measure steps, runs, start-up and memory, and write the report.
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
+        prog: What the command is called in messages.
 
     Returns:
         The exit code: 0 done, 2 bad input or something is missing.
     """
-    options = _parser().parse_args(arguments)
-    try:
-        checks.integer("--steps", options.steps, 50)
-        checks.integer("--rounds", options.rounds, 1)
-        checks.positive("--duration", options.duration)
-        checks.positive("--dt", options.dt)
-        _run(options, prepare_folder(options.out))
-    except IiwaDnnError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return run_command(BenchLoopSettings, prog, _bench, arguments)
 
 
-def _run(options: argparse.Namespace, folder: Path) -> None:
+def _bench(options: BenchLoopSettings) -> int:
+    checks.integer("--steps", options.steps, 50)
+    checks.integer("--rounds", options.rounds, 1)
+    checks.positive("--duration", options.duration)
+    checks.positive("--dt", options.dt)
+    folder = prepare_folder(options.out)
     try:
         from iiwa_dnn.benchmarks.control import measure_runs, measure_steps, profile_step
     except ImportError as error:
@@ -59,18 +53,7 @@ def _run(options: argparse.Namespace, folder: Path) -> None:
         "memory": measure_memory(0.2 * options.duration),
     }
     print(save_loop_report(results, folder)[0])
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
-        prog="bench_loop.py",
-        description="Measure the control loop beside Pink's and write a report.",
-    )
-    add = parser.add_argument
-    add("--steps", type=int, default=20_000, metavar="N", help="steps beside Pink (%(default)s)")
-    add("--duration", type=float, default=10.0, metavar="S", help="of a whole run (%(default)s)")
-    add("--dt", type=float, default=1e-4, metavar="S", help="control period (%(default)s)")
-    add("--rounds", type=int, default=3, metavar="N", help="repetitions (%(default)s)")
-    add("--out", type=Path, default=Path("runs/bench_loop"), metavar="DIR", help="(%(default)s)")
-    add("--quiet", action="store_true", help="no progress bar")
-    return parser
+    save_settings(options, folder)
+    if options.verbose:
+        list_files(folder)
+    return 0

@@ -26,7 +26,7 @@ class Integrator(Protocol):
     order: ClassVar[int]
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` in place by `duration` [rho]; returns the iterations it took."""
+        """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""
         ...
 
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
@@ -35,7 +35,7 @@ class Integrator(Protocol):
         Args:
             network: The network.
             qp: The program, which does not change meanwhile.
-            state: Where to start; holds the last state afterwards.
+            state: Where to start, (size,); holds the last state afterwards.
             point: Output ``[x | y | z | z_box]`` of size n + p + m + n.
             tol: Absolute tolerance on each residual.
 

@@ -30,12 +30,12 @@ def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[
 
     Args:
         flow: The network's right-hand side for the program.
-        start: The state, which is not changed.
+        start: The state, (size,), which is not changed.
         step: Length, in units of rho.
         tol: Largest defect ``|new - start - step F(new)|`` that is accepted, in the state's unit.
 
     Returns:
-        The new state, None where the iteration did not converge, and the linear systems solved.
+        The new state (size,), None where the iteration did not converge; linear systems solved.
     """
     new, eye = start.copy(), np.eye(start.size)
     for systems in range(MAX_NEWTON + 1):
@@ -52,7 +52,7 @@ def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[
 
 
 def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> int:
-    """Advance `state` in place by `count` backward Euler steps, cut where one does not converge.
+    """Advance `state` (size,) by `count` backward Euler steps, cut where one does not converge.
 
     Returns:
         Linear systems solved, or -1 where even very short steps did not converge.
@@ -83,7 +83,7 @@ def settle(
     max_systems: int,
     long_step: float,
 ) -> Settled:
-    """Advance `state` in place with growing implicit steps; arguments as `Integrator.settle`'s."""
+    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
     flow, eye = network.flow(qp), np.eye(state.size)
     step, systems, time = FIRST_STEP, 0, 0.0
     trial, stalled, travelling = 0, 0, 0

@@ -52,7 +52,7 @@ class Network(ABC):
 
     @abstractmethod
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
-        """Write the ``[x | y | z | z_box]`` that the state stands for into `point`.
+        """Write what a state (state_size,) stands for, ``[x | y | z | z_box]``, into `point`.
 
         Returns:
             Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
@@ -60,10 +60,15 @@ class Network(ABC):
 
     @abstractmethod
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """A step, in units of rho, below which explicit Euler is stable; 0 where none is known."""
+        """A step, in units of rho, below which explicit Euler is stable; 0 where none is known.
+
+        Args:
+            qp: The program.
+            state: Where given, (state_size,), the bound need only hold around there.
+        """
 
     def initial_state(self, qp: QP) -> Vector:
-        """The state at rest before any problem was seen: zero."""
+        """The state at rest before any problem was seen: zero, (size,)."""
         return np.zeros(self.state_size(qp))
 
     def rates(self, qp: QP, state: Vector) -> Vector:

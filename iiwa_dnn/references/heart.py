@@ -23,9 +23,9 @@ class Heart(Reference):
         z(t) = z(0)
 
     It starts in the notch, at rest, with its point towards -y. The paper gives neither a nor w.
-    Its run takes 10 s, hence the default period. The default scale is an inference: with it, max
-    |dq|^2 times the step of 1e-4 s is the 4.54e-6 of the paper's Table I, and the heart is
-    32 a = 0.110 m wide.
+    Its run takes 10 s, hence the default period. The default scale is an inference: with it, the
+    largest squared joint speed times the step of 1e-4 s is the 4.54e-6 of the paper's Table I, and
+    the heart is 32 a = 0.110 m wide.
 
     Attributes:
         scale: The factor a [m].

@@ -36,7 +36,7 @@ class Scheme(Protocol):
         ...
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
-        """The scheme's measure dq^T G(q) dq of a joint velocity."""
+        """The scheme's measure dq^T G(q) dq of a joint velocity (n,) [rad/s]."""
         ...
 
     def settings(self) -> dict[str, Any]:

@@ -75,7 +75,7 @@ class PseudoInverse:
         return velocity
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
-        """The squared norm of dq [rad^2/s^2]."""
+        """The squared norm [rad^2/s^2] of a joint velocity (n,) [rad/s]."""
         velocity = np.asarray(dq, dtype=np.float64)
         return float(velocity @ velocity)
 

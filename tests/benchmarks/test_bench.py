@@ -92,4 +92,4 @@ def test_the_script_writes_its_report(tmp_path, capsys) -> None:
 
 def test_bad_arguments_are_refused_in_one_line(tmp_path, capsys) -> None:
     assert bench_solvers(["--steps", "3", "--out", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.startswith("error: --steps")
+    assert capsys.readouterr().err.startswith("bench_solvers: error: --steps")

@@ -1,0 +1,31 @@
+"""How Sphinx builds these pages: ``make docs``."""
+
+from importlib.metadata import version as installed_version
+
+project = "iiwa_dnn"
+author = "The iiwa_dnn developers"
+copyright = author
+version = release = installed_version("iiwa-dnn")
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+]
+myst_enable_extensions = ["dollarmath", "amsmath"]
+myst_heading_anchors = 3
+# Pages are read on the forge too, where a link to a folder or a script is a link as any other.
+myst_links_external_new_tab = False
+default_role = "py:obj"
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+# The classes say it in their docstrings; the field's own comment would say it twice.
+napoleon_use_ivar = True
+
+html_theme = "furo"
+html_title = "iiwa_dnn"
+html_show_sphinx = False

@@ -1,0 +1,46 @@
+"""Make the README's animation out of a run: python scripts/animate_heart.py RUN [OUT.gif]."""
+
+import sys
+from itertools import islice
+from pathlib import Path
+
+from PIL import Image
+
+from iiwa_dnn import IiwaDnnError, Record, load_robot
+from iiwa_dnn.files import write_atomically
+from iiwa_dnn.pictures import FRAME_RATE, frames
+
+EVERY = 3  # pictures of the video for one here
+SIZE = (480, 270)  # pixel
+COLOURS = 160
+REST = 1500  # how long the last picture stands [ms]
+
+
+def main(run: str = "runs/heart", out: str = "docs/images/heart.gif") -> int:
+    """Draw and write; 2 if there is no such run, or nothing to draw with."""
+    try:
+        record = Record.load(Path(run) / "record.npz")
+        robot = load_robot(record.settings["robot"], tip=record.settings["tip"])
+        pictures = [
+            Image.fromarray(frame).resize(SIZE, Image.Resampling.LANCZOS)
+            for frame in islice(frames(robot, record), 0, None, EVERY)
+        ]
+    except IiwaDnnError as error:
+        print(f"animate_heart: error: {error}", file=sys.stderr)
+        return 2
+    # One palette for all, out of the last picture, which has every colour in it: no flicker.
+    palette = pictures[-1].quantize(COLOURS)
+    first, *rest = (p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures)
+    times = [1000 * EVERY // FRAME_RATE] * len(rest) + [REST]
+    write_atomically(
+        out,
+        lambda file: first.save(
+            file, "GIF", save_all=True, append_images=rest, duration=times, loop=0, optimize=True
+        ),
+    )
+    print(f"{len(pictures)} pictures, {Path(out).stat().st_size / 1e6:.2f} MB, written to {out}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
