@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
@@ -33,6 +34,7 @@ def ended_by_signals() -> Iterator[None]:
 
     def end(number: int, frame: object) -> NoReturn:
         told.append(signal.Signals(number))
+        warnings.simplefilter("ignore")  # that work is given up is no news
         if number == signal.SIGINT:
             raise KeyboardInterrupt  # as always: some parts clean up at it
         raise SystemExit(TERMINATED)

@@ -88,6 +88,7 @@ def test_what_was_written_before_is_whole(number: signal.Signals, tmp_path: Path
         assert path.read_bytes().endswith(b"IEND\xaeB`\x82")
 
 
+@pytest.mark.filterwarnings("default")  # put back what the script switches off
 @pytest.mark.parametrize("number", ENDS)
 def test_what_goes_wrong_on_the_way_out_changes_nothing(
     number: signal.Signals, capsys: pytest.CaptureFixture[str]
