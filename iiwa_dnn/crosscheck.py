@@ -138,6 +138,10 @@ class CrossCheck:
         objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
         return Agreement(np.abs(step).max(axis=2), objective_gap, residuals)
 
+    def options(self, name: str) -> dict[str, Any]:
+        """What qpsolvers is given when it asks the reference of this name, a copy."""
+        return dict(self._options[name])
+
     def settings(self) -> dict[str, Any]:
         """What the record says of the check."""
         return {

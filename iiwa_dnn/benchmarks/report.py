@@ -36,14 +36,14 @@ LIMITS = """\
 """
 
 
-def environment() -> dict[str, Any]:
-    """Date, processor and versions."""
+def environment(more: Sequence[str] = ()) -> dict[str, Any]:
+    """Date, processor and versions; `more` are packages to name beside ``PACKAGES``."""
     return {
         "date": datetime.datetime.now(tz=datetime.timezone.utc).isoformat(timespec="seconds"),
         "cpu": _cpu(),
         "cores": os.cpu_count(),
         "python": platform.python_version(),
-        "versions": {name: version(name) for name in PACKAGES},
+        "versions": {name: version(name) for name in (*PACKAGES, *more)},
     }
 
 
@@ -78,7 +78,7 @@ def markdown(results: Mapping[str, Any]) -> str:
     ]
     for stream in results["streams"]:
         lines += [f"## {stream['name']}", "", f"{stream['about'].capitalize()}.", ""]
-        lines += _table(
+        lines += table(
             ("solver", "median µs", "p99 µs", "worst residual", "failed"),
             [
                 (
@@ -91,7 +91,7 @@ def markdown(results: Mapping[str, Any]) -> str:
         lines += ["", verdict(stream["rows"]), ""]
     lines += ["## A batch", "", f"{results['batch']['about']}", ""]
     batch = results["batch"]["rows"]
-    lines += _table(
+    lines += table(
         ("solver", "solving, µs per program", "with handing over", "worst residual", "failed"),
         [
             (
@@ -110,7 +110,7 @@ def markdown(results: Mapping[str, Any]) -> str:
         "## Programs known by construction",
         "",
     ]
-    lines += _table(
+    lines += table(
         ("kind", "recognised", "median ms", "largest ms", "largest error of x"),
         [
             (
@@ -152,8 +152,8 @@ def times_figure(streams: Sequence[Mapping[str, Any]]) -> Figure:
     return figure
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """A Markdown table."""
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a Markdown table."""
     lines = [f"| {' | '.join(head)} |", f"|{' --- |' * len(head)}"]
     return lines + [f"| {' | '.join(row)} |" for row in rows]
 

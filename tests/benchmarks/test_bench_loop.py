@@ -1,0 +1,63 @@
+"""The benchmark of the control loop: everyone follows the heart, and the script writes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from iiwa_dnn.benchmarks import process
+from iiwa_dnn.benchmarks.control import measure_runs, measure_steps
+from iiwa_dnn.benchmarks.loop_cli import bench_loop
+
+
+def test_everyone_follows_the_heart() -> None:
+    rows = {row["name"]: row for row in measure_steps(100, 1e-3)}
+    error = {name: row["max_position_error_m"] for name, row in rows.items()}
+    # One period late is dt times the speed; the others have their methods' own errors.
+    assert error["Pink, daqp"] > 5.0 * error["Pink, daqp, target one step ahead"]
+    assert error["Pink, daqp"] == pytest.approx(error["Pink, proxqp"], rel=0.05)
+    assert error["iiwa_dnn, midpoint"] < 0.1 * error["iiwa_dnn, euler"] < 1e-5
+    assert all(0.0 < row["median_us"] <= row["p99_us"] <= row["p999_us"] for row in rows.values())
+
+
+def test_runs_are_measured_against_proxqp_on_the_same_programs() -> None:
+    runs = measure_runs(0.02, 1e-3, rounds=1)
+    assert runs["steps"] == 20
+    walls = runs["wall_s"]
+    assert 0.0 < walls["proxqp"] < walls["proxqp_with_problem"]
+    assert runs["realtime_factor"]["checked"] == pytest.approx(0.02 / walls["checked"])
+
+
+def test_a_long_runs_memory_is_measured() -> None:
+    memory = process.measure_memory(2.0)
+    short, long = memory["record_bytes"]
+    assert long == pytest.approx(10 * short, rel=0.01)
+    # Nothing but the record grows; loading the package takes more for a moment than it keeps.
+    assert 0.5 < memory["growth_over_record"] < 1.2
+
+
+def test_the_script_writes_its_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Compiling everything anew takes a minute, and is nothing that a test could judge.
+    times = {"import_s": 0.5, "first_step_cold_s": 30.0, "first_step_warm_s": 1.5}
+    monkeypatch.setattr(process, "measure_startup", lambda rounds: times)
+    memory = {"peak_bytes": [2e8, 3e8], "record_bytes": [1e7, 1e8], "growth_over_record": 1.1}
+    monkeypatch.setattr(process, "measure_memory", lambda duration: memory)
+    arguments = ["--steps", "50", "--duration", "0.02", "--rounds", "1", "--quiet"]
+    assert bench_loop([*arguments, "--out", str(tmp_path)]) == 0
+    results = json.loads((tmp_path / "results.json").read_text())
+    report = (tmp_path / "report.md").read_text()
+    assert f"{results['steps'][0]['median_us']:.1f}" in report
+    assert "pin-pink" in report
+    assert "grows by 1.10 times" in report
+    assert (tmp_path / "steps.png").stat().st_size > 5000
+
+
+@pytest.mark.parametrize("option", ["--steps=1", "--duration=0", "--rounds=0", "--dt=nan"])
+def test_bad_numbers_are_refused_by_name(
+    option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert bench_loop([option, "--out", str(tmp_path / "out")]) == 2
+    assert option.split("=")[0] in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
