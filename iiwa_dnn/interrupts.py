@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
@@ -14,6 +15,9 @@ INTERRUPTED = 130
 
 TERMINATED = 143
 """Exit code after SIGTERM, which ``kill`` sends, and systems that shut down."""
+
+_CODES = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
+_WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 
 @contextmanager
@@ -26,19 +30,26 @@ def ended_by_signals() -> Iterator[None]:
     Raises:
         SystemExit: A signal came; the code is ``INTERRUPTED`` or ``TERMINATED``.
     """
+    told: list[signal.Signals] = []
 
-    def terminate(number: int, frame: object) -> NoReturn:
-        print("terminated", file=sys.stderr)
+    def end(number: int, frame: object) -> NoReturn:
+        told.append(signal.Signals(number))
+        warnings.simplefilter("ignore")  # that work is given up is no news
+        if number == signal.SIGINT:
+            raise KeyboardInterrupt  # as always: some parts clean up at it
         raise SystemExit(TERMINATED)
 
     # Python hands signals to the main thread only, and lets no other one ask for them.
     in_charge = threading.current_thread() is threading.main_thread()
-    before = signal.signal(signal.SIGTERM, terminate) if in_charge else None
+    before = {number: signal.signal(number, end) for number in _CODES} if in_charge else {}
     try:
         yield
-    except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        raise SystemExit(INTERRUPTED) from None
+    except BaseException:
+        if not told:
+            raise
+        # Whatever else went wrong on the way out, as in processes that were just being started.
+        print(_WORDS[told[0]], file=sys.stderr)
+        raise SystemExit(_CODES[told[0]]) from None
     finally:
-        if in_charge:
-            signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -33,14 +33,14 @@ def start(name: str, folder: Path, *arguments: str) -> subprocess.Popen[str]:
     )
 
 
-def wait_for(path: Path, process: subprocess.Popen[str]) -> None:
+def wait_for(folder: Path, process: subprocess.Popen[str], pattern: str) -> None:
     """Until the script has made a file or folder."""
     for _ in range(6000):
-        if path.exists():
+        if any(folder.glob(pattern)):
             return
         assert process.poll() is None, process.communicate()
         time.sleep(0.01)
-    raise AssertionError(f"no {path} after a minute")
+    raise AssertionError(f"no {pattern} after a minute")
 
 
 def end(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, str, str]:
@@ -64,7 +64,8 @@ def test_a_run_that_is_ended_leaves_no_half_files(
     name: str, options: list[str], number: signal.Signals, tmp_path: Path
 ) -> None:
     process = start(name, tmp_path, *options, str(tmp_path / "run"))
-    wait_for(tmp_path / "run", process)
+    # Of a sweep the first cell: while its workers start, they complain in their own words.
+    wait_for(tmp_path, process, "run/cells/*.json" if name == "reproduce_paper.py" else "run")
     time.sleep(0.3)
     code, message = ENDS[number]
     assert end(process, number) == (code, "", message)
@@ -77,7 +78,7 @@ def test_a_run_that_is_ended_leaves_no_half_files(
 def test_what_was_written_before_is_whole(number: signal.Signals, tmp_path: Path) -> None:
     arguments = ["--dt", "1e-3", "--duration", "0.05", "--check", "none", "--quiet", "--out", "."]
     process = start("track_heart.py", tmp_path, *arguments)
-    wait_for(tmp_path / "metrics.json", process)
+    wait_for(tmp_path, process, "metrics.json")
     assert end(process, number)[0] == ENDS[number][0]  # while it draws
     assert Record.load(tmp_path / "record.npz").steps == 50
     assert json.loads((tmp_path / "metrics.json").read_text())["steps"] == 50
@@ -87,11 +88,35 @@ def test_what_was_written_before_is_whole(number: signal.Signals, tmp_path: Path
         assert path.read_bytes().endswith(b"IEND\xaeB`\x82")
 
 
-def test_the_handler_before_is_put_back() -> None:
-    before = signal.getsignal(signal.SIGTERM)
-    with ended_by_signals():
-        assert signal.getsignal(signal.SIGTERM) is not before
-    assert signal.getsignal(signal.SIGTERM) is before
+@pytest.mark.filterwarnings("default")  # put back what the script switches off
+@pytest.mark.parametrize("number", ENDS)
+def test_what_goes_wrong_on_the_way_out_changes_nothing(
+    number: signal.Signals, capsys: pytest.CaptureFixture[str]
+) -> None:
+    @ended_by_signals()
+    def run() -> None:
+        try:
+            signal.raise_signal(number)
+        finally:
+            raise AssertionError("no process is started")
+
+    with pytest.raises(SystemExit) as caught:
+        run()
+    assert (caught.value.code, capsys.readouterr().err) == ENDS[number]
+
+
+def test_other_errors_pass_and_the_handlers_before_are_put_back() -> None:
+    before = {number: signal.getsignal(number) for number in ENDS}
+
+    @ended_by_signals()
+    def run() -> None:
+        assert all(signal.getsignal(number) is not before[number] for number in ENDS)
+        raise SystemExit(2)
+
+    with pytest.raises(SystemExit) as caught:
+        run()
+    assert caught.value.code == 2
+    assert {number: signal.getsignal(number) for number in ENDS} == before
 
 
 def test_other_threads_may_call_a_script_too() -> None:
