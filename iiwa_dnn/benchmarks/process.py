@@ -32,18 +32,25 @@ print(command.dq[0], flush=True)
 """
 
 _RUN = """
-import json, resource, sys
+import json, sys
+from pathlib import Path
 import iiwa_dnn
 from iiwa_dnn.experiments import paper
 robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
 conf = iiwa_dnn.Configuration(robot, paper.START)
 reference = iiwa_dnn.Heart(period=1.0).anchored(conf)
-record = iiwa_dnn.simulate(
-    robot, iiwa_dnn.DoubleIndicator(), reference, paper.START,
-    duration=float(sys.argv[1]), check=iiwa_dnn.CrossCheck(()),
-)
+def run(duration):
+    scheme, check = iiwa_dnn.DoubleIndicator(), iiwa_dnn.CrossCheck(())
+    return iiwa_dnn.simulate(
+        robot, scheme, reference, paper.START, duration=duration, check=check
+    )
+run(0.01)  # loading compiled code takes more memory for a moment than it keeps
+Path("/proc/self/clear_refs").write_text("5")  # forget the largest memory so far
+record = run(float(sys.argv[1]))
+status = Path("/proc/self/status").read_text().split()
+peak = 1024 * int(status[status.index("VmHWM:") + 1])
 size = sum(v.nbytes for v in vars(record).values() if hasattr(v, "nbytes"))
-print(json.dumps([resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, size]))
+print(json.dumps([peak, size]))
 """
 
 
@@ -65,8 +72,10 @@ def measure_startup(rounds: int = 5) -> dict[str, float]:
 
 
 def measure_memory(duration: float = 2.0) -> dict[str, Any]:
-    """Largest memory of a run and of one ten times as long, and the size of their records."""
-    _python(_RUN, None, "0.01")  # compiles, where that has not been done
+    """Largest memory of a run and of one ten times as long, and the size of their records.
+
+    As Linux counts it: resident, of the whole process.
+    """
     (short, short_record), (long, long_record) = (
         json.loads(_python(_RUN, None, str(length))) for length in (duration, 10 * duration)
     )

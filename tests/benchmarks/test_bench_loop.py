@@ -34,8 +34,8 @@ def test_a_long_runs_memory_is_measured() -> None:
     memory = process.measure_memory(2.0)
     short, long = memory["record_bytes"]
     assert long == pytest.approx(10 * short, rel=0.01)
-    # Nothing but the record grows; loading the package takes more for a moment than it keeps.
-    assert 0.5 < memory["growth_over_record"] < 1.2
+    # Nothing but the record grows.
+    assert 0.8 < memory["growth_over_record"] < 1.2
 
 
 def test_the_script_writes_its_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
