@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn import checks, kernels_batch
+from iiwa_dnn import checks
 from iiwa_dnn.exceptions import InvalidInputError
 from iiwa_dnn.integrators import ImplicitEuler
+from iiwa_dnn.kernels import batch as kernels_batch
 from iiwa_dnn.qp import Matrix, Vector
 
 _NAMES = ("P", "q", "G", "h", "A", "b", "lb", "ub")

@@ -34,7 +34,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn import kernels, kernels_implicit
+from iiwa_dnn import kernels
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
 
 RADIUS = 1e8
@@ -131,7 +131,7 @@ def find_certificate(qp: QP, point: Vector) -> Certificate | None:
     state = np.concatenate([point[:-n], np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
     before, after = np.empty(point.size), np.empty(point.size)
     for count in range(ROUNDS + 1):
-        if kernels_implicit.advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
+        if kernels.advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
             break
         before, after = after, before
         kernels.kkt_point(qp.data, n, m, p, state, after)
@@ -190,7 +190,7 @@ def _settled(qp: QP) -> Vector:
     """X of a program that has a solution, with the default integrator's settings."""
     n, m, p = qp.sizes
     state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-    kernels_implicit.settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
+    kernels.settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
     return point[:n]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.answers import Answers
 from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.kernels_control import control_step
+from iiwa_dnn.kernels import control_step
 from iiwa_dnn.policies import POLICIES, Policy, Resolution, resolve, stopped
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target

@@ -80,7 +80,7 @@ class DNNSolver:
         return self._state if sizes == self._sizes else None
 
     def numbers(self, duration: float = 0.0) -> Vector | None:
-        """What `kernels_control.control_step` needs to stand in for `solve` or `advance`.
+        """What `kernels.control_step` needs to stand in for `solve` or `advance`.
 
         Args:
             duration: Time to advance [s]; 0 stands for `solve`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -13,6 +14,21 @@ os.environ["MPLBACKEND"] = "Agg"
 # The same examples in every run; no deadline, since the first call of a kernel may compile it.
 settings.register_profile("iiwa_dnn", derandomize=True, deadline=None)
 settings.load_profile("iiwa_dnn")
+
+
+def _forget_stale_kernels() -> None:
+    """Delete compiled code that is older than a kernel's source.
+
+    numba looks at a function's own file only, and would go on with what it once made of others.
+    """
+    folder = Path(__file__).parents[1] / "iiwa_dnn" / "kernels"
+    newest = max(source.stat().st_mtime for source in folder.glob("*.py"))
+    for index in folder.glob("__pycache__/*.nbi"):
+        if index.stat().st_mtime < newest:
+            index.unlink()
+
+
+_forget_stale_kernels()
 
 
 def _skipped(config: pytest.Config) -> list[pytest.TestReport | pytest.CollectReport]:

@@ -5,7 +5,8 @@ import pinocchio as pin
 import pytest
 import scipy.linalg
 
-from iiwa_dnn import kernels, kernels_dense
+from iiwa_dnn import kernels
+from iiwa_dnn.kernels import dense as kernels_dense
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-14, 1e-8, 1e-3, 1.0, 2.5, np.pi - 1e-3, np.pi - 1e-7])

@@ -210,7 +210,13 @@ def test_the_source_of_a_run_is_what_a_run_imports() -> None:
     modules = {name for name in loaded.stdout.split() if name.startswith("iiwa_dnn.")}
     known = {f"iiwa_dnn.{name.removesuffix('/__init__').replace('/', '.')}" for name in names}
     assert known <= modules
-    assert {"kernels", "solver", "simulation/loop", "simulation/noise", "experiments/runs"} <= names
+    assert {
+        "kernels/program",
+        "solver",
+        "simulation/loop",
+        "simulation/noise",
+        "experiments/runs",
+    } <= names
     assert not {"plots", "report", "cli", "viewer", "__init__"} & names
 
 

@@ -41,7 +41,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from iiwa_dnn import checks, kernels_implicit
+from iiwa_dnn import checks, kernels
 from iiwa_dnn.exceptions import NoSolutionError
 from iiwa_dnn.integrators import pseudo_transient
 from iiwa_dnn.integrators.base import Settled
@@ -82,9 +82,7 @@ class ImplicitEuler:
         count = max(1, math.ceil(duration / self.step))
         length = duration / count
         if isinstance(network, ProjectionNetwork):
-            systems = kernels_implicit.advance_implicit(
-                qp.data, *qp.sizes, state, length, count, 1e-12
-            )
+            systems = kernels.advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
         else:
             systems = pseudo_transient.advance(network.flow(qp), state, length, count, 1e-12)
         if systems < 0:
@@ -98,7 +96,7 @@ class ImplicitEuler:
                 network, qp, state, point, tol, self.max_steps, self.long_step
             )
         n, m, p = qp.sizes
-        settled: Settled = kernels_implicit.settle_implicit(
+        settled: Settled = kernels.settle_implicit(
             qp.data, n, m, p, state, point, tol, self.max_steps, self.long_step
         )
         return settled

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.kernels_clip import clip_command
+from iiwa_dnn.kernels import clip_command
 from iiwa_dnn.policies import Resolution
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot

@@ -1,7 +1,7 @@
 """The implicit integrator of the projection network, compiled.
 
 The mathematics stands in `iiwa_dnn.integrators.implicit`. State and program are laid out as in
-`kernels.py`.
+`iiwa_dnn.kernels`.
 """
 
 from __future__ import annotations
@@ -9,23 +9,18 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.kernels import (
-    field,
-    kkt_point,
-    larger,
-    linearly_implicit_step,
-    offsets,
-    recover_multipliers,
-    reduced_rates,
-)
-from iiwa_dnn.kernels_dense import add_multiple, add_outer, add_scaled, dot, solve_upper
+from iiwa_dnn.kernels.dense import add_multiple, add_outer, add_scaled, dot, solve_upper
+from iiwa_dnn.kernels.layout import larger, offsets
+from iiwa_dnn.kernels.linear_step import linearly_implicit_step, recover_multipliers, reduced_rates
+from iiwa_dnn.kernels.network import field
+from iiwa_dnn.kernels.residuals import kkt_point
 
 FIRST_STEP = 10.0
 """Length of the first fully solved step, in units of rho; it grows tenfold a round."""
 LAST_STEP = 1e6
 """Where it ends: beyond, the linear systems are singular to working precision."""
 PLAIN = 16
-"""Up to this many variables the plain loops of `kernels.py` are quicker than vector code."""
+"""Up to this many variables the plain loops of the other modules are quicker than vector code."""
 NEAR = 1e4
 """Rates up to this many tolerances are near the solution, where rounding is in the way."""
 TRIALS = np.array([1.0, 1e-2, 1e2, 1e-4, 1e4])

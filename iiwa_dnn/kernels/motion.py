@@ -1,11 +1,44 @@
-"""The last thing before a command leaves the controller, compiled: it is clipped to its bounds."""
+"""What moves the robot: the velocity that a step applies."""
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 TOLERANCE = 1e-12
 """A command beyond its bound by no more [rad/s] is clipped and not counted: that is rounding."""
+
+
+@njit(cache=True, error_model="numpy")
+def move(q, dq, dq_solver, k, velocity, answer, dt):
+    """Write `velocity` and the solver's `answer` (n,) into rows k, and where it leads into q.
+
+    Rounded as numpy would: no product is contracted with its sum.
+    """
+    for i in range(velocity.size):
+        dq_solver[k, i] = answer[i]
+        dq[k, i] = velocity[i]
+        q[k + 1, i] = q[k, i] + dt * velocity[i]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def window_mean(samples, count, sample):
+    """Put the sample (n,) that comes after `count` others into the ring `samples` (window, n).
+
+    Returns:
+        The mean of the window, (n,), or of the samples that there are.
+    """
+    window, n = samples.shape
+    samples[count % window] = sample
+    filled = min(count + 1, window)
+    mean = np.zeros(n)
+    # A running sum would be quicker and would drift by its rounding.
+    for k in range(filled):
+        for i in range(n):
+            mean[i] += samples[k, i]
+    for i in range(n):
+        mean[i] /= filled
+    return mean
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

@@ -1,8 +1,8 @@
 """Compiled dense linear algebra for programs that are larger than a robot's.
 
-For seven variables the plain loops of `kernels.py` are quickest. From about twenty on it pays to
-let the compiler use vector instructions, which it does where it can see that no index is negative:
-hence the unsigned ones. A matrix is one flat array, row by row, of which the upper half is used.
+For seven variables the plain loops of the other modules are quickest. From about twenty on it pays
+to let the compiler use vector instructions, which it does where it can see that no index is
+negative: hence the unsigned ones. A matrix is one flat array, row by row, of which the upper half is used.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.kernels import ONE
+from iiwa_dnn.kernels.layout import ONE
 
 FOUR = np.uint64(4)
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, prange
 
-from iiwa_dnn.kernels import cholesky_factor, offsets
-from iiwa_dnn.kernels_implicit import settle_implicit
+from iiwa_dnn.kernels.implicit import settle_implicit
+from iiwa_dnn.kernels.layout import offsets
+from iiwa_dnn.kernels.linear_step import cholesky_factor
 
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""

@@ -1,7 +1,7 @@
 """A whole control step in one compiled call: the program is assembled, and the network answers it.
 
 For seven joints the way into compiled code costs more than the work that is done there, so a
-control loop enters it once a step. The parts are those of `kernels.py` and `kernels_implicit.py`.
+control loop enters it once a step. The parts are those of its neighbours.
 """
 
 from __future__ import annotations
@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.kernels import explicit_euler, field, kkt_point, stable_step, velocity_program
-from iiwa_dnn.kernels_implicit import settle_implicit
+from iiwa_dnn.kernels.implicit import settle_implicit
+from iiwa_dnn.kernels.network import explicit_euler, field, stable_step
+from iiwa_dnn.kernels.program import velocity_program
+from iiwa_dnn.kernels.residuals import kkt_point
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

@@ -1,0 +1,94 @@
+"""A primal-dual point and what it lacks to be a KKT point."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn.kernels.layout import larger, offsets
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def point_residuals(data, n, m, p, point):
+    """``(primal, dual, gap)`` of a point [x | y | z | z_box], as qpsolvers defines them."""
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    at_z, at_box = n + p, n + p + m
+    primal, dual, gap = 0.0, 0.0, 0.0
+    for j in range(p):
+        value = -data[at_b + j]
+        for i in range(n):
+            value += data[at_A + j * n + i] * point[i]
+        primal = larger(primal, abs(value))
+        gap += data[at_b + j] * point[n + j]
+    for j in range(m):
+        value = -data[at_h + j]
+        for i in range(n):
+            value += data[at_G + j * n + i] * point[i]
+        primal = larger(primal, value)
+        if point[at_z + j] != 0.0:
+            gap += data[at_h + j] * point[at_z + j]
+    for i in range(n):
+        x, lb, ub, multiplier = point[i], data[at_lb + i], data[at_ub + i], point[at_box + i]
+        primal = larger(primal, x - ub)
+        primal = larger(primal, lb - x)
+        value = data[at_q + i]
+        for k in range(n):
+            value += data[i * n + k] * point[k]
+        gap += x * value
+        value += multiplier
+        for j in range(p):
+            value += data[at_A + j * n + i] * point[n + j]
+        for j in range(m):
+            value += data[at_G + j * n + i] * point[at_z + j]
+        dual = larger(dual, abs(value))
+        if multiplier > 0.0 and ub < np.inf:
+            gap += ub * multiplier
+        elif multiplier < 0.0 and lb > -np.inf:
+            gap += lb * multiplier
+    return primal, dual, abs(gap)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def largest_residuals(programs, n, m, p, points, out):
+    """Write the largest residual of each point (N, k, size) into `out` (N, k).
+
+    Infinity where a point is not a number from its first entry on: there is none.
+    """
+    count, k, _ = points.shape
+    for i in range(count):
+        for j in range(k):
+            out[i, j] = np.inf
+            if points[i, j, 0] == points[i, j, 0]:
+                primal, dual, gap = point_residuals(programs[i], n, m, p, points[i, j])
+                out[i, j] = larger(larger(primal, dual), gap)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def kkt_point(data, n, m, p, s, point):
+    """The primal-dual point that a state stands for, and its residuals ``(primal, dual, gap)``.
+
+    x is put inside its bounds and z made nonnegative. z_box is what the projection of
+    x - (P x + q + A^T y + G^T z) cuts off: at an equilibrium that is u - l plus the part of the
+    multiplier that the primal projection carries. All of it shows in the residuals, which are
+    those of the point that is handed out. `point` is the output, [x | y | z | z_box] of size
+    n + p + m + n.
+    """
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_ub, at_z = at_lb + n, n + p
+    for i in range(n):
+        point[i] = min(max(s[i], data[at_lb + i]), data[at_ub + i])
+    for j in range(p):
+        point[n + j] = s[n + j]
+    for j in range(m):
+        point[at_z + j] = max(s[at_z + j], 0.0)
+    for i in range(n):
+        aim = point[i] - data[at_q + i]
+        for k in range(n):
+            aim -= data[i * n + k] * point[k]
+        for j in range(p):
+            aim -= data[at_A + j * n + i] * point[n + j]
+        for j in range(m):
+            aim -= data[at_G + j * n + i] * point[at_z + j]
+        point[at_z + m + i] = aim - min(max(aim, data[at_lb + i]), data[at_ub + i])
+    return point_residuals(data, n, m, p, point)
