@@ -2,7 +2,8 @@
 
 For seven variables the plain loops of the other modules are quickest. From about twenty on it pays
 to let the compiler use vector instructions, which it does where it can see that no index is
-negative: hence the unsigned ones. A matrix is one flat array, row by row, of which the upper half is used.
+negative: hence the unsigned ones. A matrix is one flat array, row by row, of which the upper half
+is used.
 """
 
 from __future__ import annotations
