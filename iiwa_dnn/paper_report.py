@@ -51,7 +51,7 @@ _LIMITS = """\
 - Four cells of its drift row cannot be read; verdicts are on the other three.
 - A verdict: *reproduced* if all numbers are within a factor 2 of the paper's, else *same trend* if
   they go the same way, else *not reproduced*. A change (filter, noise) must also have an interval
-  that leaves zero out."""
+  that leaves zero out, and be of 0.1 % at least."""
 
 
 def write_paper_report(

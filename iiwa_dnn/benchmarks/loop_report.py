@@ -23,7 +23,8 @@ LIMITS = """\
   brings the posture back. It is the wider library: several tasks, barriers, floating bases.
 - The tracking error depends on when a target is meant to be reached. Pink's examples set that of
   the step's beginning, so the tip comes one period late; given that of its end, it is not late,
-  and its error is that of the linearisation alone. Here the desired velocity is fed forward.
+  and what is left comes of the posture task and of the linearisation. Here the desired velocity is
+  fed forward.
 - The check runs in worker processes on the other cores, and so profits from them; ProxQP alone
   runs in one process.
 """
@@ -143,6 +144,8 @@ def markdown(results: Mapping[str, Any]) -> str:
 
 def steps_figure(rows: list[dict[str, Any]]) -> Figure:
     """Median, p99 and p99.9 of each, on a logarithmic scale."""
+    from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+
     figure = new_figure(DOUBLE_COLUMN, 2.6)
     axes = figure.add_subplot()
     places = range(len(rows))
@@ -151,6 +154,9 @@ def steps_figure(rows: list[dict[str, Any]]) -> Figure:
     ):  # fmt: skip
         axes.plot([row[key] for row in rows], places, marker, label=label)
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(ScalarFormatter())
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("time of a step [µs]")
     axes.set_yticks(places, [row["name"] for row in rows])
     axes.invert_yaxis()
