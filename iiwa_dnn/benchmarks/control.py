@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -232,7 +232,7 @@ def _proxqp_alone(robot: Robot, scheme: Any, reference: Any, record: Any) -> tup
 
 
 def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
-    """What the parts of a step take on their own [us], medians of calls from Python."""
+    """What the parts of a step take on their own [us], called in a row from Python."""
     robot = paper_robot()
     start = Configuration(robot, paper.START)
     scheme, reference = DoubleIndicator().anchored(start), Heart().anchored(start)
@@ -245,26 +245,31 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
     programs = [scheme.build_qp(conf, targets[k]) for k, conf in enumerate(confs)]
     controller = Controller(scheme, DNNSolver(), "converged", dt)
     answers = controller.answers(steps)
+
+    def answer(k: int) -> None:
+        answers.count = k
+        controller.answer(confs[k], targets.data[k], answers)
+
     check, block = CrossCheck(), min(steps, 500)
     rows = np.stack([qp.data for qp in programs[:block]])
     x = np.stack([solver.solve(qp).x for qp in programs[:block]])
     return [
         (
             "kinematics: Configuration.from_checked",
-            _median(lambda k: Configuration.from_checked(robot, record.q[k], data), steps),
+            _per_call(lambda k: Configuration.from_checked(robot, record.q[k], data), steps),
         ),
         (
             "of that, Pinocchio's two calls",
-            _median(lambda k: _pinocchio(robot, record.q[k], data), steps),
+            _per_call(lambda k: _pinocchio(robot, record.q[k], data), steps),
         ),
         (
             "program: Scheme.build_qp",
-            _median(lambda k: scheme.build_qp(confs[k], targets[k]), steps),
+            _per_call(lambda k: scheme.build_qp(confs[k], targets[k]), steps),
         ),
-        ("network: DNNSolver.solve", _median(lambda k: solver.solve(programs[k]), steps)),
+        ("network: DNNSolver.solve", _per_call(lambda k: solver.solve(programs[k]), steps)),
         (
             "program and network in one call: Controller.answer",
-            _median(lambda k: controller.answer(confs[k], targets.data[k], answers), steps),
+            _per_call(answer, steps),
         ),
         ("reference: sample, per target", _each(lambda: reference.sample(record.t[:-1]), steps)),
         ("the whole loop, per step", _each(simulation.run, steps)),
@@ -280,13 +285,14 @@ def _pinocchio(robot: Robot, q: Vector, data: pin.Data) -> Any:
     return pin.updateFramePlacement(robot.model, data, robot.tip_id).homogeneous
 
 
-def _median(call: Callable[[int], object], steps: int) -> float:
-    samples: Sequence[float] = []
-    for k in range(steps):
-        began = time.perf_counter_ns()
-        call(k)
-        samples.append(time.perf_counter_ns() - began)  # type: ignore[attr-defined]
-    return 1e-3 * float(np.median(samples))
+def _per_call(call: Callable[[int], object], steps: int) -> float:
+    """Time of one call of many in a row [us]: the clock is not among them."""
+
+    def all_of_them() -> None:
+        for k in range(steps):
+            call(k)
+
+    return _each(all_of_them, steps)
 
 
 def _each(call: Callable[[], object], count: int) -> float:

@@ -99,7 +99,7 @@ def markdown(results: Mapping[str, Any]) -> str:
         "## Where a step's time goes",
         "",
         *table(
-            ("part, called on its own from Python", "median µs"),
+            ("part, called on its own from Python", "µs"),
             [(name, f"{value:.2f}") for name, value in results["profile"]],
         ),
         "",
