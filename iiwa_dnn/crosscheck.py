@@ -114,10 +114,12 @@ class CrossCheck:
             Gaps and residuals, one row a program and one column a reference.
         """
         count, k = len(x), len(self.solvers)
+        if not k:
+            return Agreement(*(np.empty((count, 0)) for _ in range(3)))
         n, m, p = sizes
         points = np.full((count, k, 2 * n + m + p), np.nan)
         # Solvers may take minutes over one NaN.
-        askable = np.flatnonzero(~np.isnan(programs).any(axis=1)) if k else ()
+        askable = np.flatnonzero(~np.isnan(programs).any(axis=1))
         for i in askable:
             problem = QP.from_data(programs[i], sizes).to_qpsolvers()
             for j, name in enumerate(self.solvers):

@@ -167,6 +167,7 @@ class Simulation:
         program = compiled_program(self._controller.scheme, robot)
         self._is_plain = program is not None and not program.inertia  # so G = I
         self._dt, self._motion = dt, MOTIONS[motion]
+        self._stages = self._motion.stages
         checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
         self._noise_at = noise_at
         drawn = gaussian_noise(noise, steps, robot.dof, seed)
@@ -233,7 +234,7 @@ class Simulation:
         self._incidents = incidents = Incidents(self.steps, self._robot, self._dt)
         # A window longer than the run never fills; so none is too long for the memory.
         self._average = MovingAverage(min(self._filter_window, self.steps))
-        pool = CheckPool(self._check, self.steps * self._motion.stages)
+        pool = CheckPool(self._check, self.steps * self._stages)
         status, done, room = COMPLETED, 0, BLOCK
         while done < self.steps and status == COMPLETED:
             count = min(room, self.steps - done)
@@ -258,7 +259,7 @@ class Simulation:
         desired = self._reference.sample([done * self._dt - incidents.delay])
         self._position_desired[done] = desired.position[0]
         self._rotation_desired[done] = desired.rotation[0]
-        agreement = pool.finish().worst_of(self._motion.stages)
+        agreement = pool.finish().worst_of(self._stages)
         return self._record(done, status, agreement, time.perf_counter() - began)
 
     def _allocate(self) -> None:
@@ -278,12 +279,12 @@ class Simulation:
         answers = block.answers
         conf = Configuration.from_checked(self._robot, q, self._scratch)
         count = answers.count
-        if count % self._motion.stages == 0:
+        if count % self._stages == 0:
             block.start = conf
             # Not while the arm cannot follow: the integral would wind up.
             if self._integral is not None and not self._incidents.pending:
                 self._integral.observe(conf, block.targets[count], self._dt)
-        target = block.targets.data[count]
+        target = block.rows[count]
         if self._integral is not None:
             target = self._integral.apply(Target.from_data(target)).data
         return self._controller.answer(conf, target, answers)
@@ -304,7 +305,7 @@ class Simulation:
             raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
         if seen is not q:  # the controller saw another posture than the robot has
             block.start = Configuration.from_checked(self._robot, q, self._scratch)
-            block.answers.poses[-self._motion.stages] = block.start.pose
+            block.answers.poses[-self._stages] = block.start.pose
         if block.answers.resolved or self._incidents.pending:
             velocity = self._resolved(k, velocity)
             if block.stopped:
@@ -333,7 +334,7 @@ class Simulation:
     def _resolved(self, k: int, velocity: Vector) -> Vector:
         """Note what a policy decided in step k, if it did; returns the velocity of the step."""
         block, answers = self._block, self._block.answers
-        first = answers.count - self._motion.stages
+        first = answers.count - self._stages
         self._incidents.pending = any(i >= first for i in answers.resolved)
         if not self._incidents.pending:
             return velocity
@@ -351,7 +352,7 @@ class Simulation:
 
     def _record_block(self, first: int, steps: int) -> None:
         """Write the block's steps into the arrays of the run."""
-        block, stages = self._block, self._motion.stages
+        block, stages = self._block, self._stages
         answers, rows = block.answers, slice(first, first + steps)
         if self._is_plain:
             self._kinetic_index[rows] = np.square(self._dq[rows]).sum(axis=1)
@@ -408,15 +409,16 @@ class _Block:
 
     Attributes:
         targets: Where the tip should be.
+        rows: The same, one `Target.data` a row.
         answers: What the controller decided; recorded and checked at the block's end.
         start: Where the step that is being taken began.
         fraction: How far the reference's clock went in the last step, in control periods.
         stopped: Whether a policy ends the run.
     """
 
-    __slots__ = ("answers", "fraction", "start", "stopped", "targets")
+    __slots__ = ("answers", "fraction", "rows", "start", "stopped", "targets")
     start: Configuration
 
     def __init__(self, targets: Targets, answers: Answers) -> None:
-        self.targets, self.answers = targets, answers
+        self.targets, self.answers, self.rows = targets, answers, targets.data
         self.fraction, self.stopped = 1.0, False
