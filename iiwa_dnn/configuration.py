@@ -22,7 +22,7 @@ class Configuration:
 
     Attributes:
         arrays: ``(q, pose, jacobian)`` as compiled code takes them. They are not protected, since
-            numba takes a protected array five times as slowly; do not write into them.
+            protecting an array takes time, and numba longer over one that is; do not write into them.
 
     Args:
         robot: The robot.
