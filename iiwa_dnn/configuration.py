@@ -21,8 +21,8 @@ class Configuration:
     ``q`` and ``data`` afterwards. Positions outside the joint limits are accepted.
 
     Attributes:
-        arrays: ``(q, pose, jacobian)`` as compiled code takes them. They are not protected, since
-            protecting an array takes time, and numba longer over one that is; do not write into them.
+        arrays: ``(q, pose, jacobian)`` as compiled code takes them. They are not protected,
+            which takes time, as does reading a protected array there; do not write into them.
 
     Args:
         robot: The robot.
