@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
+from typing import Any
 
 from iiwa_dnn.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.qp import Matrix
@@ -25,7 +26,8 @@ class CheckPool:
     """Judges blocks of programs while others are still being made.
 
     A block goes to a worker process that has room for it; where none has, the caller's own process
-    judges it at once. So all cores work, and what waits is bounded.
+    judges it at once. So all cores work, and what waits is bounded. Used as a context, it ends its
+    workers where an exception leaves it.
 
     Attributes:
         check: The references and the tolerances.
@@ -50,6 +52,15 @@ class CheckPool:
         self._judged: dict[int, Agreement] = {}
         self._waiting: dict[int, tuple[Future[Agreement], Job]] = {}
         self._count = 0
+        self._executor: Any = None
+
+    def __enter__(self) -> CheckPool:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        # A worker that is just being started would go on, and complain that nobody is there.
+        if kind is not None and self._executor is not None:
+            self._executor.shutdown(wait=False, kill_workers=True)
 
     def submit(self, programs: Matrix, sizes: tuple[int, int, int], x: Matrix) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged, (N, n)."""
@@ -62,8 +73,8 @@ class CheckPool:
             try:
                 # Not the standard library's pool: that one runs the caller's script once more in
                 # every worker, so a script without a __main__ guard would start itself again.
-                executor = loky.get_reusable_executor(max_workers=self.workers, timeout=60)
-                future = executor.submit(self.check.check_block, *job)
+                self._executor = loky.get_reusable_executor(max_workers=self.workers, timeout=60)
+                future = self._executor.submit(self.check.check_block, *job)
                 self._waiting[number] = (future, job)
                 return
             except (BrokenProcessPool, RuntimeError, OSError):

@@ -234,32 +234,32 @@ class Simulation:
         self._incidents = incidents = Incidents(self.steps, self._robot, self._dt)
         # A window longer than the run never fills; so none is too long for the memory.
         self._average = MovingAverage(min(self._filter_window, self.steps))
-        pool = CheckPool(self._check, self.steps * self._stages)
         status, done, room = COMPLETED, 0, BLOCK
-        while done < self.steps and status == COMPLETED:
-            count = min(room, self.steps - done)
-            # One target a stage, in the order in which the method of motion asks.
-            times = np.add.outer(done + np.arange(count), self._motion.nodes) * self._dt
-            times -= incidents.delay
-            targets = self._reference.sample(times.ravel())
-            self._block = block = _Block(targets, self._controller.answers(times.size))
-            taken = 0
-            while taken < count and status == COMPLETED and block.fraction == 1.0:
-                status = self._step(done + taken)
-                taken += 1
-            # A step that slows the clock down ends its block; so do, most likely, the next ones.
-            room = 1 if block.fraction != 1.0 else min(2 * room, BLOCK)
-            self._record_block(done, taken)
-            pool.submit(block.answers.programs, block.answers.sizes, block.answers.all_x)
-            done += taken
-            if progress is not None:
-                progress(taken)
+        with CheckPool(self._check, self.steps * self._stages) as pool:
+            while done < self.steps and status == COMPLETED:
+                count = min(room, self.steps - done)
+                # One target a stage, in the order in which the method of motion asks.
+                times = np.add.outer(done + np.arange(count), self._motion.nodes) * self._dt
+                times -= incidents.delay
+                targets = self._reference.sample(times.ravel())
+                self._block = block = _Block(targets, self._controller.answers(times.size))
+                taken = 0
+                while taken < count and status == COMPLETED and block.fraction == 1.0:
+                    status = self._step(done + taken)
+                    taken += 1
+                # A step that slows the clock down ends its block; so do the next ones, most likely.
+                room = 1 if block.fraction != 1.0 else min(2 * room, BLOCK)
+                self._record_block(done, taken)
+                pool.submit(block.answers.programs, block.answers.sizes, block.answers.all_x)
+                done += taken
+                if progress is not None:
+                    progress(taken)
+            agreement = pool.finish().worst_of(self._stages)
         last = Configuration(self._robot, self._q[done], self._scratch)
         self._position[done], self._rotation[done] = last.position, last.rotation
         desired = self._reference.sample([done * self._dt - incidents.delay])
         self._position_desired[done] = desired.position[0]
         self._rotation_desired[done] = desired.rotation[0]
-        agreement = pool.finish().worst_of(self._stages)
         return self._record(done, status, agreement, time.perf_counter() - began)
 
     def _allocate(self) -> None:

@@ -181,21 +181,22 @@ class PhysicsSimulation:
         self._plant.reset(self._q0)
         self._torques.reset(self._q0)
         self._late = [np.zeros_like(self._q0)] * self._disturbances.delay
-        pool = CheckPool(self._check, self.steps)
         status, done = COMPLETED, 0
-        while done < self.steps and status == COMPLETED:
-            commands: list[Command] = []
-            while len(commands) < min(_BLOCK, self.steps - done) and status == COMPLETED:
-                status = self._step(done + len(commands), commands)
-            programs = np.stack([command.qp.data for command in commands])
-            answers = np.stack([command.dq for command in commands])
-            pool.submit(programs, commands[0].qp.sizes, answers)
-            done += len(commands)
-            if progress is not None:
-                progress(len(commands))
+        with CheckPool(self._check, self.steps) as pool:
+            while done < self.steps and status == COMPLETED:
+                commands: list[Command] = []
+                while len(commands) < min(_BLOCK, self.steps - done) and status == COMPLETED:
+                    status = self._step(done + len(commands), commands)
+                programs = np.stack([command.qp.data for command in commands])
+                answers = np.stack([command.dq for command in commands])
+                pool.submit(programs, commands[0].qp.sizes, answers)
+                done += len(commands)
+                if progress is not None:
+                    progress(len(commands))
+            agreement = pool.finish()
         last = Configuration(self._robot, self._q[done], self._scratch)
         self._position[done], self._rotation[done] = last.position, last.rotation
-        return self._record(done, status, pool.finish(), time.perf_counter() - began)
+        return self._record(done, status, agreement, time.perf_counter() - began)
 
     def _allocate(self) -> None:
         steps, n = self.steps, self._q0.size
