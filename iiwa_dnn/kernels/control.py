@@ -1,7 +1,7 @@
 """A whole control step in one compiled call: the program is assembled, and the network answers it.
 
-For seven joints the way into compiled code costs more than the work that is done there, so a
-control loop enters it once a step. The parts are those of its neighbours.
+For seven joints the way into compiled code is a large part of what a call costs, so a control loop
+enters it once a step. The parts are those of its neighbours.
 """
 
 from __future__ import annotations

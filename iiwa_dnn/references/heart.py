@@ -47,7 +47,7 @@ class Heart(Reference):
         """See :meth:`Reference.displacement`."""
         p = phase(t, self.period)
         sine = np.sin(p)
-        x = 16 * sine * sine * sine  # numpy's power takes ten times as long
+        x = 16 * sine * sine * sine  # quicker than numpy's power
         y = 13 * np.cos(p) - 5 * np.cos(2 * p) - 2 * np.cos(3 * p) - np.cos(4 * p) - 5
         path: NDArray[np.float64] = np.concatenate((x, y, 0 * p), axis=-1)
         return self.scale * path
