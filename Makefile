@@ -34,10 +34,10 @@ heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart
 	$(VENV_PYTHON) scripts/track_heart.py $(ARGS)
 
 physics: $(STAMP)  ## draw the heart in physics, with pictures and a video; in runs/physics
-	$(VENV_PYTHON) scripts/simulate_physics.py $(ARGS)
+	$(VENV_PYTHON) -m iiwa_dnn physics $(ARGS)
 
 view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the arm live
-	$(VENV_PYTHON) scripts/view.py $(ARGS)
+	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
 test: $(STAMP)  ## run the tests
 	$(VENV_PYTHON) -m pytest $(ARGS)

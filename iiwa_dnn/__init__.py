@@ -2,11 +2,8 @@
 
 from importlib.metadata import version
 
-from iiwa_dnn.batch import BatchSolution, solve_batch
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.controller import Command, Controller
-from iiwa_dnn.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.exceptions import (
+from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,
     InvalidInputError,
@@ -14,16 +11,19 @@ from iiwa_dnn.exceptions import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
-from iiwa_dnn.metrics import compute_metrics, failures
 from iiwa_dnn.networks import DualNetwork, PrimalDualNetwork, ProjectionNetwork
-from iiwa_dnn.qp import QP, Residuals, Solution, Status
-from iiwa_dnn.record import Record
+from iiwa_dnn.networks.batch import BatchSolution, solve_batch
+from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
+from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.program import QP, Residuals, Solution, Status
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
-from iiwa_dnn.robot import Robot, available_robots, load_robot
+from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 from iiwa_dnn.simulation import Simulation, simulate
-from iiwa_dnn.solver import DNNSolver, solve_problem
 
 __version__ = version("iiwa-dnn")
 

@@ -9,7 +9,7 @@ from numbers import Integral, Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
 
 Vector3 = tuple[float, float, float]
 

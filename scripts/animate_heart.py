@@ -8,7 +8,7 @@ from PIL import Image
 
 from iiwa_dnn import IiwaDnnError, Record, load_robot
 from iiwa_dnn.files import write_atomically
-from iiwa_dnn.pictures import FRAME_RATE, frames
+from iiwa_dnn.results.pictures import FRAME_RATE, frames
 
 EVERY = 3  # pictures of the video for one here
 SIZE = (480, 270)  # pixel

@@ -15,10 +15,10 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
-from iiwa_dnn.arms import ARMS
-from iiwa_dnn.experiments import paper
 from iiwa_dnn.files import prepare_folder, write_text
-from iiwa_dnn.report import markdown_table
+from iiwa_dnn.results.report import markdown_table
+from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.studies import paper
 
 OUT = Path("runs/robots")
 DT = 1e-3

@@ -2,8 +2,8 @@
 
 import sys
 
-from iiwa_dnn.experiments.singular import stretched_run, tilted_run
-from iiwa_dnn.singular_plots import save_singular_figure
+from iiwa_dnn.studies.singular import stretched_run, tilted_run
+from iiwa_dnn.studies.singular_plots import save_singular_figure
 
 if __name__ == "__main__":
     vertical = {

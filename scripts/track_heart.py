@@ -2,7 +2,7 @@
 
 import sys
 
-from iiwa_dnn.cli import track_heart
+from iiwa_dnn.app.track import track_heart
 
 if __name__ == "__main__":
     sys.exit(track_heart())

@@ -21,9 +21,9 @@ def _forget_stale_kernels() -> None:
 
     numba looks at a function's own file only, and would go on with what it once made of others.
     """
-    folder = Path(__file__).parents[1] / "iiwa_dnn" / "kernels"
-    newest = max((source.stat().st_mtime for source in folder.glob("*.py")), default=0.0)
-    for index in folder.glob("__pycache__/*.nbi"):
+    folder = Path(__file__).parents[1] / "iiwa_dnn"
+    newest = max((source.stat().st_mtime for source in folder.rglob("*.py")), default=0.0)
+    for index in folder.rglob("__pycache__/*.nbi"):
         if index.stat().st_mtime < newest:
             index.unlink()
 

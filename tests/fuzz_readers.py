@@ -23,12 +23,12 @@ from typing import Any
 import numpy as np
 
 from helpers_records import make_record
-from iiwa_dnn.exceptions import IiwaDnnError
-from iiwa_dnn.metrics import compute_metrics, failures
-from iiwa_dnn.record import Record
+from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.references import Waypoints
-from iiwa_dnn.report import summary
-from iiwa_dnn.robot import load_robot
+from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.report import summary
+from iiwa_dnn.robot.robot import load_robot
 
 ROOT = Path(__file__).parents[1]
 

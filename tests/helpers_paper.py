@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.experiments import ablation, paper, table1, table2
-from iiwa_dnn.experiments.runs import HeartRun
-from iiwa_dnn.experiments.scope import Scope
+from iiwa_dnn.studies import ablation, paper, table1, table2
+from iiwa_dnn.studies.runs import HeartRun
+from iiwa_dnn.studies.scope import Scope
 
 SCOPE = Scope(duration=1.0, seeds=40, laps=2)
 

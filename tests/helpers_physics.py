@@ -12,7 +12,7 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
-from iiwa_dnn.cli import PAPER_START
+from iiwa_dnn.app.track import PAPER_START
 
 ROOT = Path(__file__).parents[1]
 START = np.array(PAPER_START)
@@ -53,7 +53,7 @@ def run_python(code: str, **environment: str) -> subprocess.CompletedProcess[str
 
 
 def _opengl_is_there() -> bool:
-    from iiwa_dnn import offscreen
+    from iiwa_dnn.robot import offscreen
 
     return not sys.platform.startswith("linux") or offscreen.egl_works() or offscreen.osmesa_works()
 

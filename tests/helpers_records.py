@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.record import Record
+from iiwa_dnn.results.record import Record
 
 DOF = 7
 

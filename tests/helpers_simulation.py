@@ -11,12 +11,12 @@ import scipy.sparse as spa
 from numpy.typing import ArrayLike, NDArray
 
 from helpers_kinematics import PAPER_Q0
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.crosscheck import CrossCheck
-from iiwa_dnn.qp import QP
-from iiwa_dnn.record import Record
+from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
-from iiwa_dnn.robot import Robot, load_robot
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, Scheme
 from iiwa_dnn.simulation import simulate
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from helpers_records import make_record
-from iiwa_dnn.sweeps import Outcome, Sweep
+from iiwa_dnn.studies.sweeps import Outcome, Sweep
 
 
 def draw(settings: Mapping[str, Any]) -> Outcome:

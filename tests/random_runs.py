@@ -33,8 +33,8 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
-from iiwa_dnn.estimation import NoiseModel
-from iiwa_dnn.policies import POLICIES
+from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.control.policies import POLICIES
 from iiwa_dnn.references import Reference
 from iiwa_dnn.simulation import NOISE_ENTRIES, VelocityDisturbance
 

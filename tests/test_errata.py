@@ -21,10 +21,10 @@ from iiwa_dnn import (
     simulate,
     solve_problem,
 )
-from iiwa_dnn.experiments import paper
 from iiwa_dnn.schemes.bounds import velocity_bounds
 from iiwa_dnn.schemes.orientation import block_map, block_vector
-from iiwa_dnn.statistics import kendall_tau, trend
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.statistics import kendall_tau, trend
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from iiwa_dnn.exceptions import FileError
+from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import plain, prepare_folder, write_atomically, write_json
 
 

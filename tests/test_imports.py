@@ -10,88 +10,30 @@ import pytest
 
 PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 
-# A module, or a folder of modules, may import what stands before it. A new one gets its place here.
+# A room imports only from the rooms before it; its own modules may import each other.
 ORDER = (
-    "exceptions",
-    "offscreen",
+    "errors",
     "checks",
     "files",
-    "interrupts",
     "kernels",
-    "arms",
-    "urdf",
     "robot",
-    "shapes",
-    "mujoco_model",
-    "configuration",
     "references",
     "qp",
     "schemes",
     "networks",
-    "integrators",
-    "certificates",
-    "solver",
-    "batch",
-    "crosscheck",
-    "checkpool",
-    "policies",
-    "feedback",
-    "estimation",
-    "answers",
-    "controller",
-    "record",
-    "torques",
-    "incidents",
-    "metrics",
-    "statistics",
+    "control",
+    "results",
     "simulation",
-    "provenance",
-    "sweeps",
-    "experiments",
-    "decimation",
-    "panels",
-    "plots",
-    "paper_plots",
-    "singular_plots",
-    "report",
-    "paper_findings",
-    "paper_report",
-    "rendering",
-    "pictures",
-    "viewer",
-    "live",
-    "settings",
-    "command_line",
-    "cli",
-    "solve_cli",
-    "paper_cli",
-    "noise_cli",
-    "physics_cli",
-    "view_cli",
-    "benchmarks",
+    "studies",
+    "app",
     "__init__",
     "__main__",
 )
 
-# They read a Record and recompute nothing: robot, solver and simulation are out of their sight.
-AFTER_THE_RECORD = {
-    "decimation", "panels", "plots", "paper_plots", "singular_plots", "report",
-    "paper_findings", "paper_report",
-    "rendering", "pictures", "viewer",
-}  # fmt: skip
-BEFORE_THEM = {
-    "exceptions",
-    "checks",
-    "files",
-    "record",
-    "torques",
-    "incidents",
-    "metrics",
-    "statistics",
-}
+# It reads a Record and recomputes nothing: robot, solver and simulation are out of its sight.
+BEFORE_THE_RECORD = {"errors", "checks", "files"}
 # What draws the robot itself needs its shapes too, and nothing else of it.
-DRAW_THE_ROBOT = {"rendering", "pictures", "viewer"}
-SHAPES = {"robot", "shapes", "mujoco_model", "offscreen"}
+DRAW_THE_ROBOT = {"rendering", "pictures"}
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 
@@ -122,8 +64,6 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
         return [f"{own} has no place yet: add it to ORDER in tests/test_imports.py"]
     for line, name in imported(source, module):
         where = f"{'.'.join(module)}:{line}: imports {'.'.join(name)}"
-        if name[0] == "numba" and own != "kernels":
-            found.append(f"{where}, but only kernels/ is compiled")
         if name[0] != "iiwa_dnn":
             continue
         other = name[1] if len(name) > 1 and name[1] in ORDER else "__init__"
@@ -131,10 +71,10 @@ def faults(source: str, module: tuple[str, ...]) -> list[str]:
             continue
         if ORDER.index(other) > ORDER.index(own):
             found.append(f"{where}, which points back: {other} stands after {own}")
-        elif own in DRAW_THE_ROBOT and other in SHAPES:
-            continue
-        elif own in AFTER_THE_RECORD and other not in BEFORE_THEM | AFTER_THE_RECORD:
-            found.append(f"{where}, but {own} works from the record alone")
+        elif own == "results" and other not in BEFORE_THE_RECORD | (
+            {"robot"} if module[-1] in DRAW_THE_ROBOT else set()
+        ):
+            found.append(f"{where}, but results/ works from the record alone")
     return found
 
 
@@ -151,21 +91,18 @@ def test_imports_point_forward(path: Path) -> None:
 @pytest.mark.parametrize(
     ("own", "source", "fault"),
     [
-        ("qp", "from iiwa_dnn.solver import DNNSolver", "points back: solver stands after qp"),
-        ("qp", "from iiwa_dnn import solver", "points back: solver stands after qp"),
-        ("qp", "import iiwa_dnn.solver as s", "points back: solver stands after qp"),
-        ("qp", "from .solver import DNNSolver", "points back: solver stands after qp"),
-        ("qp", "def f():\n    from . import solver", "points back: solver stands after qp"),
-        ("qp", "if TYPE_CHECKING:\n    from .solver import A", "qp:2: imports iiwa_dnn.solver.A"),
-        ("qp", "from iiwa_dnn import load_robot", "points back: __init__ stands after qp"),
-        ("qp", "import iiwa_dnn", "points back: __init__ stands after qp"),
-        ("networks/projection", "from ..solver import A", "points back: solver stands after"),
-        ("networks/__init__", "from ..solver import A", "points back: solver stands after"),
-        ("plots", "from iiwa_dnn.robot import Robot", "plots works from the record alone"),
-        ("report", "from iiwa_dnn import simulation", "report works from the record alone"),
-        ("viewer/a", "from iiwa_dnn.controller import A", "viewer works from the record alone"),
-        ("solver", "from numba import njit", "only kernels/ is compiled"),
-        ("solver", "import numba.typed", "only kernels/ is compiled"),
+        ("qp/program", "from iiwa_dnn.networks import DNNSolver", "networks stands after qp"),
+        ("qp/program", "from iiwa_dnn import networks", "networks stands after qp"),
+        ("qp/program", "import iiwa_dnn.networks as s", "networks stands after qp"),
+        ("qp/program", "from ..networks import DNNSolver", "networks stands after qp"),
+        ("qp/program", "def f():\n    from .. import networks", "networks stands after qp"),
+        ("qp/program", "if TYPE_CHECKING:\n    from ..networks import A", "program:2: imports"),
+        ("qp/program", "from iiwa_dnn import load_robot", "__init__ stands after qp"),
+        ("qp/program", "import iiwa_dnn", "__init__ stands after qp"),
+        ("qp/__init__", "from ..networks import A", "networks stands after qp"),
+        ("results/plots", "from iiwa_dnn.robot import Robot", "works from the record alone"),
+        ("results/report", "from iiwa_dnn import qp", "works from the record alone"),
+        ("results/report", "from iiwa_dnn import simulation", "simulation stands after results"),
         ("surprise", "import numpy", "add it to ORDER"),
     ],
 )
@@ -177,16 +114,19 @@ def test_a_wrong_import_is_found(own: str, source: str, fault: str) -> None:
 @pytest.mark.parametrize(
     ("own", "source"),
     [
-        ("kernels/program", "import numba\nfrom numba import njit"),
-        ("kernels/dense", "from numba import njit"),
-        ("solver", "from iiwa_dnn.qp import QP\nfrom . import kernels\nimport numpy"),
-        ("networks/projection", "from .base import Network\nfrom ..kernels import f"),
+        ("networks/solver", "from iiwa_dnn.qp import QP\nfrom .. import checks\nimport numpy"),
+        ("networks/projection", "from .base import Network\nfrom ..qp import f"),
         ("networks/__init__", "from .projection import Projection"),
-        ("plots", "from iiwa_dnn.record import Record\nfrom iiwa_dnn.exceptions import FileError"),
-        ("report", "from iiwa_dnn.plots import save_figures"),
-        ("rendering", "from iiwa_dnn.robot import Robot"),
-        ("__init__", "from iiwa_dnn.cli import main\nfrom .robot import Robot"),
+        ("results/plots", "from .record import Record\nfrom iiwa_dnn.errors import FileError"),
+        ("results/rendering", "from iiwa_dnn.robot import Robot"),
+        ("__init__", "from iiwa_dnn.app import main\nfrom .robot import Robot"),
     ],
 )
 def test_a_right_import_passes(own: str, source: str) -> None:
     assert faults(source, ("iiwa_dnn", *own.split("/"))) == []
+
+
+def test_the_root_of_the_package_is_small() -> None:
+    folders = {path.name for path in PACKAGE.iterdir() if path.is_dir()} - {"__pycache__"}
+    assert len(folders) <= 11
+    assert len(list(PACKAGE.glob("*.py"))) <= 6

@@ -20,7 +20,7 @@ from iiwa_dnn import (
     ProjectionNetwork,
     simulate,
 )
-from iiwa_dnn.metrics import position_error
+from iiwa_dnn.results.metrics import position_error
 
 Array = NDArray[np.float64]
 RHO, DELTA = 9e-5, 10.2

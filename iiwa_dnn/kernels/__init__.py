@@ -14,7 +14,7 @@ The state of the projection network is one flat array, ``s = [x | y | z | u | l]
 
 so u and l are the paper's mu for Omega = [I; -I]. Time is in units of the time constant rho.
 The mathematics stands in `iiwa_dnn.schemes`, `iiwa_dnn.networks.projection` and
-`iiwa_dnn.integrators.implicit`.
+`iiwa_dnn.networks.integrators.implicit`.
 """
 
 # The kernels are plain loops over flat arrays on purpose. For seven joints a BLAS call costs more

@@ -1,7 +1,7 @@
 """The implicit integrator of the projection network, compiled.
 
-The mathematics stands in `iiwa_dnn.integrators.implicit`. State and program are laid out as in
-`iiwa_dnn.kernels`.
+The mathematics stands in `iiwa_dnn.networks.integrators.implicit`. State and program are laid out
+as in `iiwa_dnn.kernels`.
 """
 
 from __future__ import annotations

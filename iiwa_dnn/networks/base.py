@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.program import QP, Matrix, Vector
 
 
 class Flow(NamedTuple):

@@ -27,9 +27,9 @@ from typing import ClassVar
 import numpy as np
 
 from iiwa_dnn import kernels
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.program import QP, Matrix, Vector
 
 
 @dataclass(frozen=True)

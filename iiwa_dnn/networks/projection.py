@@ -27,7 +27,7 @@ import numpy as np
 
 from iiwa_dnn import kernels
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.program import QP, Matrix, Vector
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class ProjectionNetwork(Network):
         rho: Time constant [s].
         primal_projection: Whether x goes through its bounds, as in the paper. Without it the
             bounds act through their multipliers alone; the equilibria are the same, and a
-            backward Euler step becomes a convex problem (`iiwa_dnn.integrators.implicit`).
+            backward Euler step becomes a convex problem (`iiwa_dnn.networks.integrators.implicit`).
     """
 
     primal_projection: bool = True

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import Vector3, positive, vector3
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference, phase
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import finite_array
-from iiwa_dnn.exceptions import FileError, InvalidInputError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.references.base import Reference
 
 if TYPE_CHECKING:

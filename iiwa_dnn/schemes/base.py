@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import kernels
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.program import QP, Matrix, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes.orientation import MODE_INDEX, ROW_COUNT, Orientation
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")

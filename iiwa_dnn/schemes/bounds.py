@@ -16,8 +16,8 @@ from __future__ import annotations
 import numpy as np
 
 from iiwa_dnn import kernels
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.robot.configuration import Configuration
 
 
 def velocity_bounds(conf: Configuration, limit_gain: float) -> tuple[Vector, Vector]:

@@ -27,9 +27,9 @@ from typing import Literal
 import numpy as np
 
 from iiwa_dnn import kernels
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.references import Target
+from iiwa_dnn.robot.configuration import Configuration
 
 Orientation = Literal["so3", "block", "none"]
 ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")

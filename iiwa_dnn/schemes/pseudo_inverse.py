@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp.program import QP, Vector
 from iiwa_dnn.references import Target
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes.base import VelocityProgram
 from iiwa_dnn.schemes.orientation import ORIENTATIONS, Orientation
 

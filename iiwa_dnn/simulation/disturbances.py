@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.program import Vector
 
 MASS_ERROR = 0.1
 """Relative error of a link's mass: every mass of the URDF is an estimate."""

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.kernels import clip_command
-from iiwa_dnn.policies import Resolution
-from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.qp.program import Matrix, Vector
+from iiwa_dnn.robot.robot import Robot
 
 
 class Incidents:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.program import Vector
 
 Motion = Literal["euler", "midpoint", "rk4"]
 VelocityField = Callable[[Vector, float], Vector]

@@ -9,8 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.program import Matrix, Vector
 
 NoiseEntry = Literal["velocity", "network", "measurement"]
 NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")

@@ -17,21 +17,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.checkpool import CheckPool
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.controller import Command, Controller
-from iiwa_dnn.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.mujoco_model import JointDynamics
-from iiwa_dnn.qp import Vector
-from iiwa_dnn.record import Record
+from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.checkpool import CheckPool
+from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Reference
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.mujoco_model import JointDynamics
+from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.disturbances import Disturbances
-from iiwa_dnn.simulation.plant import Plant
-from iiwa_dnn.simulation.torque_control import TorqueController, TorqueGains
-from iiwa_dnn.solver import DNNSolver
+from iiwa_dnn.simulation.plants.mujoco import Plant
+from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
 COMPLETED = "completed"
 COARSEST = 1e-3

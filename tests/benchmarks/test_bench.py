@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from benchmarks import measurement, streams
+from benchmarks.cli import bench_solvers
+from benchmarks.peers import PEERS, Network, Peer
+from benchmarks.report import verdict
 from helpers_qp import known_qp
 from iiwa_dnn import DNNSolver
-from iiwa_dnn.benchmarks import measurement, streams
-from iiwa_dnn.benchmarks.cli import bench_solvers
-from iiwa_dnn.benchmarks.peers import PEERS, Network, Peer
-from iiwa_dnn.benchmarks.report import verdict
 
 
 def test_drifting_programs_are_slow_feasible_and_have_three_to_five_active_bounds() -> None:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from iiwa_dnn.benchmarks import process
-from iiwa_dnn.benchmarks.control import measure_runs, measure_steps
-from iiwa_dnn.benchmarks.loop_cli import bench_loop
+from benchmarks import process
+from benchmarks.control import measure_runs, measure_steps
+from benchmarks.loop_cli import bench_loop
 
 
 def test_everyone_follows_the_heart() -> None:

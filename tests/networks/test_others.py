@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import iiwa_dnn
+from benchmarks import programs
 from helpers_qp import known_qp
 from iiwa_dnn import (
     QP,
@@ -18,8 +19,7 @@ from iiwa_dnn import (
     ProjectionNetwork,
     Status,
 )
-from iiwa_dnn.benchmarks import programs
-from iiwa_dnn.cli import PAPER_START
+from iiwa_dnn.app.track import PAPER_START
 from iiwa_dnn.networks import Network
 
 OTHERS = [DualNetwork(), PrimalDualNetwork()]

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
-from iiwa_dnn.robot import load_robot
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import load_robot
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
 CLOSED = [

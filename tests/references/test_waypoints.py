@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from iiwa_dnn.exceptions import FileError, InvalidInputError
+from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.references import Waypoints
 
 TIMES = np.array([2.0, 2.5, 4.0, 4.2, 6.0])

@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
 from helpers_simulation import near_target, paper_robot, paper_start
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.qp import QP
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.schemes.bounds import velocity_bounds
 

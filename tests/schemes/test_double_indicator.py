@@ -8,12 +8,12 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, near_target, paper_robot, paper_start, solve_by
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.qp import QP
-from iiwa_dnn.robot import load_robot
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import load_robot
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.solver import DNNSolver, solve_problem
 
 WEIGHTS = (0.0, 0.2, 0.7, 1.0)
 HOME = tuple(np.add(PAPER_Q0, (0.3, -0.1, 0.2, -0.4, 0.05, 0.6, -0.2)))

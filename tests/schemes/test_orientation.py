@@ -9,8 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from helpers_kinematics import Array, dh_pose, finite_difference, rotation_angle
 from helpers_simulation import near_target, paper_robot
-from iiwa_dnn.configuration import Configuration
 from iiwa_dnn.references import Target
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import PseudoInverse
 from iiwa_dnn.schemes.orientation import block_map, block_vector, orientation_rows
 from iiwa_dnn.simulation.motion import rk4

@@ -8,10 +8,10 @@ import scipy.linalg
 
 from helpers_kinematics import Array
 from helpers_simulation import near_target, paper_robot, paper_start, solve_by
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import PseudoInverse
-from iiwa_dnn.solver import DNNSolver
 
 POSTURES = np.random.default_rng(41).uniform(-2.0, 2.0, (10, 7))
 

@@ -12,19 +12,19 @@ from scipy.optimize import linprog
 
 from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.crosscheck import CrossCheck
-from iiwa_dnn.exceptions import InvalidInputError
-from iiwa_dnn.integrators import ExplicitEuler
-from iiwa_dnn.metrics import compute_metrics, failures
-from iiwa_dnn.policies import Action
-from iiwa_dnn.qp import QP
-from iiwa_dnn.record import Record
+from iiwa_dnn.control.policies import Action
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.integrators import ExplicitEuler
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Circle
-from iiwa_dnn.robot import load_robot
+from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
 from iiwa_dnn.simulation import NOISE_ENTRIES, Simulation, gaussian_noise, simulate
-from iiwa_dnn.solver import DNNSolver
 
 OPTIONS = {
     "plain": {},

@@ -8,11 +8,11 @@ import scipy.stats
 
 from helpers_kinematics import PAPER_Q0, dh_pose
 from helpers_simulation import heart, paper_robot, run
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.exceptions import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
-from iiwa_dnn.solver import DNNSolver
 
 
 def test_same_seed_same_bits_and_another_seed_others() -> None:

@@ -102,7 +102,7 @@ def test_the_push_has_the_impulse_that_is_asked_for(robot):
     """A frozen clock would push for ever; the joints' momentum balance tells."""
     import mujoco
 
-    from iiwa_dnn.simulation.plant import Plant
+    from iiwa_dnn.simulation.plants.mujoco import Plant
 
     push = Push((3.0, -2.0, 1.0), start=0.01, duration=0.02)
     plant = Plant(robot, 1e-3, Disturbances(push=push), seed=0)
@@ -181,7 +181,7 @@ def test_an_unsolvable_step_ends_the_run_there(robot):
 
 
 def test_physics_that_blows_up_is_noticed(robot):
-    from iiwa_dnn.simulation.torque_control import TorqueGains
+    from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
     record = heart_in_physics(
         robot, gains=TorqueGains(bandwidth=1e5, observer_bandwidth=1e6), timestep=1e-3,
@@ -192,7 +192,7 @@ def test_physics_that_blows_up_is_noticed(robot):
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
-    from iiwa_dnn.simulation.plant import Plant
+    from iiwa_dnn.simulation.plants.mujoco import Plant
 
     step = Plant.step
 

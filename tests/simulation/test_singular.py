@@ -7,11 +7,11 @@ import pytest
 
 from helpers_kinematics import rotation_angle
 from helpers_simulation import paper_robot
-from iiwa_dnn.configuration import Configuration
-from iiwa_dnn.experiments.singular import stretched_run, tilted_run, vertical_start
-from iiwa_dnn.record import Record
 from iiwa_dnn.references import Target
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.studies.singular import stretched_run, tilted_run, vertical_start
 
 
 def tilt(record: Record) -> np.ndarray:

@@ -8,8 +8,8 @@ import pytest
 
 from helpers_physics import START
 from iiwa_dnn import InvalidInputError, load_robot
-from iiwa_dnn.mujoco_model import JointDynamics, torque_limits
-from iiwa_dnn.simulation.torque_control import TorqueController, TorqueGains
+from iiwa_dnn.robot.mujoco_model import JointDynamics, torque_limits
+from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
 PERIOD, TIMESTEP = 1e-3, 2.5e-4
 DYNAMICS = JointDynamics()

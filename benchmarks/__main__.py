@@ -1,0 +1,14 @@
+"""``python -m benchmarks solvers`` and ``python -m benchmarks loop``: measure, beside peers."""
+
+import sys
+
+from benchmarks.cli import bench_solvers
+from benchmarks.loop_cli import bench_loop
+
+COMMANDS = {"solvers": bench_solvers, "loop": bench_loop}
+
+if __name__ == "__main__":
+    name = sys.argv[1] if len(sys.argv) > 1 else ""
+    if name not in COMMANDS:
+        sys.exit(f"benchmarks: error: name one of {', '.join(COMMANDS)}")
+    sys.exit(COMMANDS[name](sys.argv[2:], prog=f"benchmarks {name}"))

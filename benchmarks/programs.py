@@ -1,0 +1,149 @@
+"""Seeded random quadratic programs that are known by construction: solvable, infeasible, unbounded.
+
+Each is built backwards from what it is to have: a KKT point, Farkas multipliers or a direction of
+recession. So what a solver says of it can be judged without a second solver.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn.qp.program import QP, Matrix, Vector
+
+
+def strictly_convex(
+    rng: np.random.Generator,
+    n: int | None = None,
+    largest_condition: float = 1e6,
+    spoilt: bool = True,
+) -> tuple[QP, Vector]:
+    """A strictly convex program and its only solution.
+
+    Up to n/2 equalities, up to 2n inequalities, and bounds on some variables or on all. At the
+    solution up to n constraints are active, some of them with a zero multiplier.
+
+    Args:
+        rng: Source of randomness.
+        n: Number of variables; None draws it from 2 to 30.
+        largest_condition: Condition number of P is up to this, log-uniform, its eigenvalues
+            spread evenly around 1 in their logarithm.
+        spoilt: Whether some rows are repeated, scaled or made redundant by others.
+
+    Returns:
+        The program, and x (n,) that solves it.
+    """
+    n = int(rng.integers(2, 31)) if n is None else n
+    p, m = int(rng.integers(0, n // 2 + 1)), int(rng.integers(0, 2 * n + 1))
+    P = _positive_definite(rng, n, largest_condition ** rng.uniform())
+    x = rng.standard_normal(n)
+    A, G = rng.standard_normal((p, n)), rng.standard_normal((m, n))
+    if spoilt:
+        _spoil(rng, A)
+        _spoil(rng, G)
+    # Rows that are active at x; every third of them has no multiplier.
+    active = rng.permutation(m)[: int(rng.integers(0, min(m, n) + 1))]
+    slack, z = rng.exponential(size=m) + 1e-3, np.zeros(m)
+    slack[active] = 0.0
+    z[active] = rng.exponential(size=active.size) * (rng.integers(0, 3, active.size) > 0)
+    lb, ub, z_box = _bounds(rng, x, int(rng.integers(0, n + 1)))
+    y = rng.standard_normal(p)
+    q = -(P @ x + A.T @ y + G.T @ z + z_box)
+    return QP(P, q, G, G @ x + slack, A, A @ x, lb, ub), x
+
+
+def infeasible(rng: np.random.Generator) -> QP:
+    """A program whose constraints contradict each other: Farkas multipliers exist.
+
+    Between two and n + 1 equalities, inequalities and bounds take part in the contradiction, by a
+    margin between 1e-3 and 10; the others are satisfied by one point. P may be singular.
+    """
+    n = int(rng.integers(2, 21))
+    p, m = int(rng.integers(0, n // 2 + 1)), int(rng.integers(1, 2 * n + 1))
+    A, G, x = rng.standard_normal((p, n)), rng.standard_normal((m, n)), rng.standard_normal(n)
+    lb, ub, _ = _bounds(rng, x, 0)
+    # The contradiction: y^T A + z^T G + z_box = 0, which the last inequality row sees to.
+    used = int(rng.integers(0, min(n, p + m - 1) + 1))
+    rows = rng.permutation(p + m - 1)[:used]
+    weights = np.zeros(p + m)
+    weights[rows] = rng.uniform(0.1, 1.0, used)
+    y, z = weights[:p] * rng.choice([-1.0, 1.0], p), weights[p:]
+    upper, lower = np.isfinite(ub), np.isfinite(lb)
+    z_box = np.zeros(n)
+    taking_part = rng.uniform(size=n) < (0.5 if used else 1.0)
+    z_box[upper] = rng.uniform(0.0, 1.0, n)[upper]
+    flip = lower & (~upper | (rng.uniform(size=n) < 0.5))
+    z_box[flip] = -rng.uniform(0.0, 1.0, n)[flip]
+    z_box[~taking_part] = 0.0
+    z[-1] = 1.0
+    G[-1] = -(A.T @ y + G[:-1].T @ z[:-1] + z_box)
+    b, h = A @ x, G @ x + rng.exponential(size=m)
+    known = b @ y + h[:-1] @ z[:-1]
+    known += ub[z_box > 0] @ z_box[z_box > 0] + lb[z_box < 0] @ z_box[z_box < 0]
+    h[-1] = -known - 10.0 ** rng.uniform(-3.0, 1.0)
+    P = _positive_definite(rng, n, 1e3 ** rng.uniform())
+    if rng.uniform() < 0.3:
+        factor = rng.standard_normal((int(rng.integers(0, n)), n))
+        P = factor.T @ factor
+    order = rng.permutation(m)
+    return QP(P, rng.standard_normal(n), G[order], h[order], A, b, lb, ub)
+
+
+def unbounded(rng: np.random.Generator) -> QP:
+    """A feasible program whose cost falls for ever along a direction: P is singular along it."""
+    n = int(rng.integers(2, 21))
+    p, m = int(rng.integers(0, (n - 1) // 2 + 1)), int(rng.integers(0, 2 * n + 1))
+    x, direction = rng.standard_normal(n), rng.standard_normal(n)
+    direction[rng.uniform(size=n) < 0.3] = 0.0
+    if not direction.any():
+        direction[0] = 1.0
+    along = direction / (direction @ direction)
+    factor = rng.standard_normal((int(rng.integers(0, n)), n))
+    factor -= np.outer(factor @ direction, along)
+    A, G = rng.standard_normal((p, n)), rng.standard_normal((m, n))
+    A -= np.outer(A @ direction, along)
+    # A third of the inequalities runs along the direction, the others fall back from it.
+    G -= np.outer(G @ direction, along)
+    G -= np.outer(rng.exponential(size=m) * (rng.integers(0, 3, m) > 0), direction)
+    lb, ub, _ = _bounds(rng, x, 0)
+    lb[direction < 0.0], ub[direction > 0.0] = -np.inf, np.inf
+    q = rng.standard_normal(n)
+    q -= (q @ direction + 10.0 ** rng.uniform(-2.0, 1.0)) * along
+    return QP(factor.T @ factor, q, G, G @ x + rng.exponential(size=m), A, A @ x, lb, ub)
+
+
+def _positive_definite(rng: np.random.Generator, n: int, condition: float) -> Matrix:
+    """A symmetric matrix with this condition number and eigenvalues spread around 1."""
+    basis, _ = np.linalg.qr(rng.standard_normal((n, n)))
+    exponents = rng.uniform(-0.5, 0.5, n)
+    exponents[:2] = -0.5, 0.5
+    P = (basis * condition**exponents) @ basis.T
+    symmetric: Matrix = 0.5 * (P + P.T)
+    return symmetric
+
+
+def _bounds(rng: np.random.Generator, x: Vector, active: int) -> tuple[Vector, Vector, Vector]:
+    """Bounds around x, `active` of which hold with a multiplier; a fifth is not there."""
+    n = x.size
+    lb, ub = x - 1e-3 - rng.exponential(size=n), x + 1e-3 + rng.exponential(size=n)
+    z_box = np.zeros(n)
+    for i in rng.permutation(n)[:active]:
+        z_box[i] = rng.exponential() * rng.choice([-1.0, 1.0])
+        if z_box[i] > 0.0:
+            ub[i] = x[i]
+        else:
+            lb[i] = x[i]
+    lb[(rng.uniform(size=n) < 0.2) & (z_box >= 0.0)] = -np.inf
+    ub[(rng.uniform(size=n) < 0.2) & (z_box <= 0.0)] = np.inf
+    return lb, ub, z_box
+
+
+def _spoil(rng: np.random.Generator, rows: Matrix) -> None:
+    """Make some rows, in place, repetitions or combinations of those before them."""
+    for i in range(1, rows.shape[0]):
+        kind = rng.uniform()
+        if kind < 0.1:
+            rows[i] = rows[int(rng.integers(0, i))]
+        elif kind < 0.2:
+            rows[i] = rng.uniform(0.1, 10.0) * rows[int(rng.integers(0, i))]
+        elif kind < 0.3:
+            rows[i] = rng.uniform(-1.0, 1.0, i) @ rows[:i]

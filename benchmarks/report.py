@@ -1,0 +1,173 @@
+"""The benchmark's report: Markdown, JSON and a plot, out of what was measured."""
+
+from __future__ import annotations
+
+import datetime
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from iiwa_dnn.files import write_json, write_text
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PACKAGES = (
+    "iiwa-dnn", "daqp", "osqp", "piqp", "proxsuite", "quadprog", "qpsolvers", "numba", "numpy",
+)  # fmt: skip
+
+LIMITS = """\
+- One process on one machine, with whatever else runs on it. The peers take turns every 50 programs,
+  so that noise falls on all alike; differences of a few per cent mean nothing.
+- The clock runs over the Python call: what a caller waits for. For programs this small, the call
+  itself is much of it, and the compiled solvers would be quicker without it.
+- Each peer gets each program in its own layout before the clock starts.
+- Asked for is an absolute tolerance of 1e-9. Active-set solvers return more than that for nothing;
+  the others stop there. An answer whose residual is above 1e-8 counts as failed, though its time
+  counts.
+- This package's solver takes programs as checked. A first call, which compiles, is left out.
+- The random programs are often degenerate: more constraints hold at the solution than there are
+  variables, some without a multiplier. That is where quadprog gives up.
+- Warm means that a solver starts from its last answer, where it can. quadprog cannot.
+"""
+
+
+def environment(more: Sequence[str] = ()) -> dict[str, Any]:
+    """Date, processor and versions; `more` are packages to name beside ``PACKAGES``."""
+    return {
+        "date": datetime.datetime.now(tz=datetime.timezone.utc).isoformat(timespec="seconds"),
+        "cpu": _cpu(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        "versions": {name: version(name) for name in (*PACKAGES, *more)},
+    }
+
+
+def save_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
+    """Write ``report.md``, ``results.json`` and ``times.png``/``.pdf``.
+
+    Args:
+        results: ``environment``, ``streams`` (name, about, warm, rows), ``batch`` and ``known``.
+        folder: Where to; it exists.
+
+    Returns:
+        What was written.
+    """
+    write_json(folder / "results.json", results)
+    write_text(folder / "report.md", markdown(results))
+    figures = write_figures({"times": lambda: times_figure(results["streams"])}, folder)
+    return [folder / "report.md", folder / "results.json", *figures]
+
+
+def markdown(results: Mapping[str, Any]) -> str:
+    """The report's text."""
+    where = results["environment"]
+    versions = ", ".join(f"{name} {number}" for name, number in where["versions"].items())
+    lines = [
+        "# Solvers of small quadratic programs",
+        "",
+        f"{where['date']}, {where['cpu']}, {where['cores']} cores, Python {where['python']}, "
+        f"{versions}.",
+        "",
+        "![Median time of each solver on each stream](times.png)",
+        "",
+    ]
+    for stream in results["streams"]:
+        lines += [f"## {stream['name']}", "", f"{stream['about'].capitalize()}.", ""]
+        lines += table(
+            ("solver", "median µs", "p99 µs", "worst residual", "failed"),
+            [
+                (
+                    row["solver"], f"{row['median_us']:.2f}", f"{row['p99_us']:.1f}",
+                    _residual(row["worst_residual"]), f"{row['failed']} of {row['programs']}",
+                )
+                for row in stream["rows"]
+            ],
+        )  # fmt: skip
+        lines += ["", verdict(stream["rows"]), ""]
+    lines += ["## A batch", "", f"{results['batch']['about']}", ""]
+    batch = results["batch"]["rows"]
+    lines += table(
+        ("solver", "solving, µs per program", "with handing over", "worst residual", "failed"),
+        [
+            (
+                row["solver"], f"{row['solve_us']:.2f}", f"{row['total_us']:.2f}",
+                _residual(row["worst_residual"]), str(row["failed"]),
+            )
+            for row in batch
+        ],
+    )  # fmt: skip
+    ours, theirs = batch
+    lines += [
+        "",
+        f"Throughput: {theirs['total_us'] / ours['total_us']:.1f} times ProxQP's with handing "
+        f"over, {theirs['solve_us'] / ours['solve_us']:.1f} times its solving alone.",
+        "",
+        "## Programs known by construction",
+        "",
+    ]
+    lines += table(
+        ("kind", "recognised", "median ms", "largest ms", "largest error of x"),
+        [
+            (
+                row["kind"], f"{row['recognised']} of {row['programs']}",
+                f"{row['median_ms']:.3f}", f"{row['largest_ms']:.2f}",
+                _residual(row["largest_error"]),
+            )
+            for row in results["known"]
+        ],
+    )  # fmt: skip
+    lines += ["", "## Limits of the comparison", "", LIMITS]
+    return "\n".join(lines)
+
+
+def verdict(rows: Sequence[Mapping[str, Any]]) -> str:
+    """This package's median beside that of the quickest peer without failures."""
+    ours, *peers = rows
+    sound = [row for row in peers if row["failed"] == 0] or peers
+    best = min(sound, key=lambda row: float(row["median_us"]))
+    ratio = ours["median_us"] / best["median_us"]
+    return f"iiwa_dnn takes {ratio:.2f} times what the quickest peer takes, {best['solver']}."
+
+
+def times_figure(streams: Sequence[Mapping[str, Any]]) -> Figure:
+    """Median times, one group for each stream, on a logarithmic scale."""
+    figure = new_figure(DOUBLE_COLUMN, 3.2)
+    axes = figure.add_subplot()
+    names = [row["solver"] for row in streams[0]["rows"]]
+    width = 0.8 / len(names)
+    for i, name in enumerate(names):
+        heights = [stream["rows"][i]["median_us"] for stream in streams]
+        places = [k + (i - 0.5 * (len(names) - 1)) * width for k in range(len(streams))]
+        axes.bar(places, heights, width, label=name, color=f"C{i}")
+    axes.set_yscale("log")
+    axes.set_ylabel("median time [µs]")
+    labels = [stream["name"].replace(", ", ",\n") for stream in streams]
+    axes.set_xticks(range(len(streams)), labels)
+    axes.legend(fontsize="x-small", ncols=3)
+    return figure
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """The lines of a Markdown table."""
+    lines = [f"| {' | '.join(head)} |", f"|{' --- |' * len(head)}"]
+    return lines + [f"| {' | '.join(row)} |" for row in rows]
+
+
+def _residual(value: float | None) -> str:
+    return "" if value is None else f"{value:.1e}"
+
+
+def _cpu() -> str:
+    """The processor's name, as Linux knows it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    return next(
+        (line.split(":", 1)[1].strip() for line in lines if "model name" in line), "unknown"
+    )

@@ -1,0 +1,167 @@
+r"""The controller closed around a target that may jump.
+
+A dragged target can be far away, and out of reach. The feedback of the scheme asks for the
+velocity :math:`\delta e`, so the error is cut to what the tip may do,
+:math:`\|e\| \le v_{max} / \delta`, and likewise for the orientation. Where even that has no
+solution, shorter errors are tried, and in the end the arm stands still. It also does so rather than
+be stretched out to a singular posture, which it could not leave again within its joints' speeds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.results.record import FloatArray
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.schemes import DoubleIndicator
+
+TIP_SPEED, TIP_RATE = 0.25, 1.0
+"""What the tip may do: [m/s] and [rad/s]. 0.25 m/s is what robots may do beside people."""
+
+LEAST_SINGULAR_VALUE = 0.05
+"""Of the Jacobian's: below it, leaving at 0.1 m/s would ask for 2 rad/s of the joints."""
+
+_SHARES = (1.0, 0.3, 0.1, 0.03, 0.0)
+_AT_REST = np.zeros(3)
+
+
+@dataclass(frozen=True)
+class FollowerState:
+    """What a step came to.
+
+    Attributes:
+        q: Joint positions [rad], (n,).
+        position_error: Distance from tip to target [m].
+        orientation_error: Angle between them [rad].
+        kkt_residual: Largest KKT residual of the network's answer.
+        share: How much of the error was asked for: below 1 the target cannot be followed in full,
+            at 0 the tip stands still.
+    """
+
+    q: Vector
+    position_error: float
+    orientation_error: float
+    kkt_residual: float
+    share: float
+
+
+class Follower:
+    """An arm that follows a target, one control period after the other.
+
+    Attributes:
+        robot: The robot, n joints, with the limits that are kept.
+        dt: Control period [s].
+    """
+
+    def __init__(
+        self, robot: Robot, q0: ArrayLike, scheme: DoubleIndicator | None = None, dt: float = 5e-3
+    ) -> None:
+        """Start at rest.
+
+        Args:
+            robot: The robot.
+            q0: Joint positions at the start [rad], (n,); also the posture to come back to, where
+                the scheme has none.
+            scheme: Weight, gains and kinetic index; None takes the defaults.
+            dt: Control period [s].
+
+        Raises:
+            InvalidInputError: If `q0` is not acceptable.
+        """
+        self.robot, self.dt = robot, dt
+        self._scratch = robot.model.createData()
+        start = Configuration(robot, q0, self._scratch)
+        self._q = start.q
+        scheme = DoubleIndicator() if scheme is None else scheme
+        self._controller = Controller(scheme.anchored(start), DNNSolver(), "converged", dt)
+        self._command: Command | None = None
+        self._level = 0  # which share of the error to try first
+
+    @property
+    def scheme(self) -> DoubleIndicator:
+        """The scheme in use."""
+        scheme: DoubleIndicator = self._controller.scheme  # type: ignore[assignment]
+        return scheme
+
+    @property
+    def configuration(self) -> Configuration:
+        """Where the arm is."""
+        return Configuration(self.robot, self._q)
+
+    def tune(self, **parameters: float) -> None:
+        """Change parameters of the scheme: ``weight``, ``position_gain`` and so on.
+
+        Raises:
+            InvalidInputError: If one is out of range; nothing has changed then.
+        """
+        self._controller.scheme = replace(self.scheme, **parameters)  # type: ignore[arg-type]
+
+    def step(self, position: FloatArray, rotation: FloatArray) -> FollowerState:
+        """Move towards a target for one control period.
+
+        Args:
+            position: Where the tip is wanted [m], (3,).
+            rotation: How, (3, 3).
+
+        Returns:
+            Where the arm is afterwards.
+        """
+        conf = Configuration(self.robot, self._q, self._scratch)
+        shift = position - conf.position
+        turn = np.asarray(pin.log3(rotation @ conf.rotation.T))
+        distance, angle = float(np.linalg.norm(shift)), float(np.linalg.norm(turn))
+        scheme = self.scheme
+        shift *= _share(distance, TIP_SPEED, scheme.position_gain)
+        turn *= _share(angle, TIP_RATE, scheme.orientation_gain)
+        asked, residual = 0.0, float("inf")
+        for level in range(self._level, len(_SHARES)):
+            share = _SHARES[level]
+            near = pin.exp3(share * turn) @ conf.rotation
+            target = Target(conf.position + share * shift, near, _AT_REST, _AT_REST)
+            command = self._controller.step(conf, target)
+            residual = command.solution.residuals.largest
+            if not command.solution.found:
+                # The multipliers of a program without a solution grow and grow: a bad start.
+                self._controller.solver.reset()
+                continue
+            self._command = command
+            q = conf.q + self.dt * command.dq
+            if self._stays_clear(conf, Configuration(self.robot, q, self._scratch)):
+                self._q, asked = q, share
+                # The next step begins one share higher: at the edge, few programs are in vain.
+                self._level = max(0, level - 1)
+                break
+        return FollowerState(self._q, distance, angle, residual, asked)
+
+    def _stays_clear(self, now: Configuration, then: Configuration) -> bool:
+        """Whether a step does not lead the arm into, or deeper into, a singular posture."""
+        rows = 3 if self.scheme.orientation == "none" else 6
+        least = [np.linalg.svd(conf.jacobian[:rows], compute_uv=False)[-1] for conf in (now, then)]
+        return bool(least[1] >= min(LEAST_SINGULAR_VALUE, least[0]))
+
+    def check(self, check: CrossCheck) -> float:
+        """Ask the reference solvers for the last program's solution.
+
+        Returns:
+            The largest gap [rad/s]; NaN before the first step, inf where a reference has no answer.
+        """
+        if self._command is None:
+            return float("nan")
+        gaps = check.check(self._command.qp, self._command.dq).solution_gap
+        return float("inf") if np.isnan(gaps).any() else float(np.max(gaps, initial=0.0))
+
+
+def _share(size: float, fastest: float, gain: float) -> float:
+    """How much of an error may be fed back, so that gain times it is no faster than allowed."""
+    speed = gain * size
+    return 1.0 if speed <= fastest else fastest / speed

@@ -1,0 +1,69 @@
+"""What the page says in words and bars: pure functions that return HTML."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from iiwa_dnn.results.record import FloatArray
+
+_NEAR = 0.9  # share of the way from the middle to a limit from which on a bar is red
+_ROW = "display:flex;align-items:center;gap:6px;margin:3px 0;font-size:12px"
+
+
+def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
+    """Joint angles as marks on bars that reach from limit to limit.
+
+    Args:
+        q: Joint angles [rad], (n,).
+        lower: Lower limits [rad], (n,); infinite for none.
+        upper: Upper limits [rad], (n,).
+
+    Returns:
+        HTML, one row a joint; a mark near a limit, or beyond it, is red.
+    """
+    rows = []
+    for i, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True), 1):
+        if np.isfinite(low) and np.isfinite(high):
+            share = (angle - low) / (high - low)
+            ends, near = (f"{low:.2f}", f"{high:.2f}"), abs(2.0 * share - 1.0) > _NEAR
+        else:
+            share, ends, near = 0.5, ("-", "-"), False
+        place = 100.0 * float(np.clip(share, 0.0, 1.0))
+        colour = "#d6001c" if near else "#1c7ed6"
+        rows.append(
+            f'<div style="{_ROW}"><span style="width:18px">q{i}</span>'
+            f'<span style="width:40px;text-align:right;color:#888">{ends[0]}</span>'
+            '<span style="position:relative;flex:1;height:8px;background:#e5e7ec;'
+            'border-radius:4px">'
+            f'<span style="position:absolute;left:calc({place:.1f}% - 4px);top:-2px;width:8px;'
+            f'height:12px;border-radius:3px;background:{colour}"></span></span>'
+            f'<span style="width:34px;color:#888">{ends[1]}</span>'
+            f'<b style="width:52px;text-align:right">{angle:+.3f}</b></div>'
+        )
+    return '<div style="padding:2px 10px">' + "".join(rows) + "</div>"
+
+
+def facts(values: Mapping[str, str]) -> str:
+    """Named values, one a row, as HTML; the text may hold anything."""
+    rows = "".join(
+        f'<div style="{_ROW}"><span style="flex:1;color:#666">{html.escape(name)}</span>'
+        f'<b style="font-variant-numeric:tabular-nums">{html.escape(value)}</b></div>'
+        for name, value in values.items()
+    )
+    return f'<div style="padding:2px 10px">{rows}</div>'
+
+
+def length(metres: float) -> str:
+    """A length in the unit that suits its size."""
+    for unit, size in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
+        if abs(metres) >= size:
+            return f"{metres / size:.3g} {unit}"
+    return f"{metres:.2g} m"
+
+
+def limits(values: Sequence[float | None], unlimited: float) -> FloatArray:
+    """Limits out of a record's settings, (n,); None there is no limit."""
+    return np.array([unlimited if value is None else value for value in values])

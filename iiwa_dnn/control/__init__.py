@@ -1,0 +1,1 @@
+"""The velocity controller: one control step, and the policies for steps without a solution."""

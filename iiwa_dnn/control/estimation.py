@@ -1,0 +1,108 @@
+r"""A Kalman filter for joint angles that are measured with noise and driven with a bias.
+
+For each joint by itself, with q the angle, d an unknown and nearly constant disturbance of its
+velocity, and u the velocity that was commanded:
+
+.. math::
+
+    q^+ = q + dt\,(u + d + \sigma n_1), \qquad d^+ = d + \sqrt{dt}\,\beta\,n_2, \qquad
+    z = q + \sigma_m n_3
+
+All joints share the covariance, so the gains are computed once a step, two numbers. Feeding back
+the estimated q instead of z keeps the encoders' noise out of the command; taking the estimated d
+off the command removes a bias in the joints themselves, whatever the posture, which an integral
+term of the tip's error cannot do in motion.
+
+Source: R. E. Kalman, "A new approach to linear filtering and prediction problems", Journal of Basic
+Engineering 82 (1960).
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.qp.program import Vector
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """What the filter is told of the noise.
+
+    Attributes:
+        velocity: Standard deviation sigma of white noise on each velocity command [rad/s].
+        measurement: sigma_m, of white noise on each measured angle [rad]; above 0.
+        bias_walk: beta, how fast the disturbance may change [rad/s per sqrt(s)]; with 0 there is
+            none, and nothing is taken off the command.
+        bias: Standard deviation of the disturbance at the start [rad/s].
+    """
+
+    velocity: float = 0.01
+    measurement: float = 1e-5
+    bias_walk: float = 0.0
+    bias: float = 0.1
+
+    def __post_init__(self) -> None:
+        """Check the numbers; raises InvalidInputError naming the one that is wrong."""
+        checks.positive("measurement", self.measurement)
+        for name in ("velocity", "bias_walk", "bias"):
+            checks.not_negative(name, getattr(self, name))
+
+    def settings(self) -> dict[str, Any]:
+        """Name and numbers, as values that JSON can hold."""
+        return {"name": "kalman", **asdict(self)}
+
+
+class JointEstimator:
+    """The filter of n joints, one control step after the other.
+
+    Attributes:
+        model: What it is told of the noise.
+        dt: Control period [s].
+        bias: Estimated disturbance of the velocity [rad/s], (n,).
+    """
+
+    def __init__(self, model: NoiseModel, dt: float) -> None:
+        """Know nothing yet.
+
+        Raises:
+            InvalidInputError: `dt` is not a positive time.
+        """
+        self.model, self.dt = model, checks.positive("dt", dt)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything."""
+        self._q: Vector | None = None
+        self.bias: Vector = np.zeros(0)
+
+    def update(self, reading: Vector) -> Vector:
+        """Take in measured angles (n,) [rad]; returns the estimated ones, a new array."""
+        model = self.model
+        noise = model.measurement**2
+        if self._q is None:
+            self._q, self.bias = reading.copy(), np.zeros_like(reading)
+            # Covariance of (q, d): the first reading is all that is known of q.
+            self._qq, self._qd = noise, 0.0
+            self._dd = model.bias**2 if model.bias_walk else 0.0
+            return self._q.copy()
+        innovation, total = reading - self._q, self._qq + noise
+        k_q, k_d = self._qq / total, self._qd / total
+        self._q = self._q + k_q * innovation
+        self.bias = self.bias + k_d * innovation
+        # The measured direction's share goes; noise / total is 1 - k_q without cancellation.
+        self._dd -= k_d * self._qd
+        self._qq, self._qd = noise * k_q, self._qd * noise / total
+        return self._q.copy()
+
+    def predict(self, command: Vector) -> None:
+        """Let the joints move with a velocity command (n,) [rad/s] for one control period."""
+        assert self._q is not None, "predict comes after update"
+        dt, model = self.dt, self.model
+        self._q = self._q + dt * (command + self.bias)
+        self._qq += dt * (2.0 * self._qd + dt * self._dd) + (dt * model.velocity) ** 2
+        self._qd += dt * self._dd
+        self._dd += dt * model.bias_walk**2

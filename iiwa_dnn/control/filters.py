@@ -1,0 +1,43 @@
+r"""Filters of the joint velocity.
+
+The moving average is the paper's anti-noise mechanism, equation (9):
+
+.. math::
+
+    w_{\text{filtered}}(t) = \frac1N \sum_{i=0}^{N-1} w_{\text{noisy}}(t - i\,\Delta t)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn import checks, kernels
+from iiwa_dnn.qp.program import Vector
+
+
+class MovingAverage:
+    """Mean of the last samples; before the window is full, of those that there are.
+
+    Attributes:
+        window: Number of samples N; 1 passes every sample unchanged.
+    """
+
+    def __init__(self, window: int) -> None:
+        """Start empty.
+
+        Raises:
+            InvalidInputError: `window` is below 1.
+        """
+        self.window = checks.integer("filter_window", window, 1)
+        self._count = 0
+        self._samples = np.empty((0, 0))
+
+    def __call__(self, sample: Vector) -> Vector:
+        """Take one sample (n,) [rad/s] and return the mean of the window (n,)."""
+        if self.window == 1:
+            return sample
+        if self._count == 0:
+            self._samples = np.zeros((self.window, sample.size))
+        mean: Vector = kernels.window_mean(self._samples, self._count, sample)
+        self._count += 1
+        return mean

@@ -1,0 +1,45 @@
+"""What every integrator does: advance a network by a time, or until it has settled."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol
+
+from iiwa_dnn.networks import Network
+from iiwa_dnn.qp.program import QP, Vector
+
+Settled = tuple[int, float, float, float, float]
+"""How far a network was advanced, and the residuals of the point it stands for.
+
+``(iterations, network_time, primal, dual, gap)``: linear systems solved (implicit) or steps taken
+(explicit), the time that passed in units of rho, and qpsolvers' three residuals. A plain tuple,
+since a control loop asks for it at every step.
+"""
+
+
+class Integrator(Protocol):
+    """One way to integrate a network.
+
+    Attributes:
+        order: Order of the method in its step length.
+    """
+
+    order: ClassVar[int]
+
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
+        """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""
+        ...
+
+    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
+        """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
+
+        Args:
+            network: The network.
+            qp: The program, which does not change meanwhile.
+            state: Where to start, (size,); holds the last state afterwards.
+            point: Output ``[x | y | z | z_box]`` of size n + p + m + n.
+            tol: Absolute tolerance on each residual.
+
+        Returns:
+            What was reached, above `tol` if the budget of steps ended first.
+        """
+        ...

@@ -1,0 +1,99 @@
+"""Explicit Euler with a step that is computed to be stable."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from iiwa_dnn import checks, kernels
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks import Network, ProjectionNetwork
+from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.qp.program import QP, Residuals, Vector
+
+SAFETY = 0.95
+"""Share of the computed stable step that is used: the bound itself is only marginally stable."""
+
+
+@dataclass(frozen=True)
+class ExplicitEuler:
+    r"""Explicit Euler: ``s <- s + h F(s)``, of order 1.
+
+    One control step of the paper is h = 1.11 in units of rho, where its own heart needs h < 0.155
+    (PAPER: one Euler step a control step is unstable; the projections only hide it). So a
+    duration is cut into sub-steps below `Network.stable_step`.
+
+    Attributes:
+        substeps: Sub-steps per `advance`; None computes how many are needed for stability.
+        max_steps: Budget of `settle`.
+    """
+
+    order: ClassVar[int] = 1
+    substeps: int | None = None
+    max_steps: int = 1_000_000
+
+    def __post_init__(self) -> None:
+        """Check the numbers."""
+        if self.substeps is not None:
+            checks.integer("substeps", self.substeps, 1)
+        checks.integer("max_steps", self.max_steps, 1)
+
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
+        """Advance `state` in place by `duration` [rho].
+
+        Returns:
+            Sub-steps taken.
+
+        Raises:
+            InvalidInputError: P is singular, so that no step is known to be stable, and
+                `substeps` was not given.
+        """
+        count = self.substeps
+        if count is None:
+            count = max(1, math.ceil(duration / self._stable_step(network, qp, state)))
+        _steps(network, qp, state, duration / count, count, -1.0)
+        return count
+
+    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
+        """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
+
+        Raises:
+            InvalidInputError: P is singular, so that no step is known to be stable.
+        """
+        step = self._stable_step(network, qp, None)
+        taken, rate_tol = 0, tol
+        while True:
+            taken += _steps(network, qp, state, step, self.max_steps - taken, rate_tol)
+            residuals = Residuals(*network.read(qp, state, point))
+            # The gap weighs the rates with the multipliers, so they may have to be smaller still.
+            if residuals.largest <= tol or taken >= self.max_steps or rate_tol < 1e-3 * tol:
+                return taken, taken * step, *residuals
+            rate_tol *= 0.1
+
+    def _stable_step(self, network: Network, qp: QP, state: Vector | None) -> float:
+        step = SAFETY * network.stable_step(qp, state)
+        if step <= 0.0:
+            raise InvalidInputError(
+                "P", "is singular, so no explicit step is known to be stable; integrate implicitly"
+            )
+        return step
+
+
+def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol: float) -> int:
+    """Take up to `count` steps, until the largest rate is at most `tol`; returns how many."""
+    if isinstance(network, ProjectionNetwork):
+        n, m, p = qp.sizes
+        taken, _ = kernels.explicit_euler(
+            qp.data, n, m, p, network.primal_projection, state, step, count, tol
+        )
+        return int(taken)
+    flow = network.flow(qp)
+    for done in range(count):
+        rates = flow.rates(state)
+        if not np.abs(rates).max() > tol:
+            return done
+        state += step * rates
+    return count

@@ -1,0 +1,200 @@
+"""The same program, asked of an established solver, and how far its answer is from ours.
+
+The reference gets P, q, A, b, lb and ub (and G, h where there are any) through qpsolvers, and
+nothing of the network's state. Its own residuals are looked at before it is believed.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from iiwa_dnn import checks, kernels
+from iiwa_dnn.qp.program import QP, Matrix, Vector
+
+if TYPE_CHECKING:
+    import qpsolvers
+
+# Tight enough that a gap of 1e-6 rad/s says something about the network and not about the
+# reference. OSQP at its defaults (1e-3) would not do; polishing takes it to machine precision.
+_SOLVER_OPTIONS: dict[str, dict[str, Any]] = {
+    "proxqp": {
+        "backend": "dense",
+        "eps_abs": 1e-10,
+        "eps_rel": 0.0,
+        # Off by default, and the gap of an answer called solved was then seen at 1e-4.
+        "check_duality_gap": True,
+        "eps_duality_gap_abs": 1e-9,
+        # Ten are enough for a program that has a solution; on one that has none, as the paper's
+        # rows once the tool lags, the default of 10,000 takes 0.1 s a program.
+        "max_iter": 50,
+    },
+    "osqp": {
+        "eps_abs": 1e-9,
+        "eps_rel": 0.0,
+        "polishing": True,
+        "max_iter": 10_000,
+        "raise_error": False,
+    },
+}
+SOLVERS = tuple(_SOLVER_OPTIONS)
+
+
+class Agreement(NamedTuple):
+    """What k reference solvers say of answers to N programs; NaN gaps where a reference failed.
+
+    Attributes:
+        solution_gap: Largest difference in x, (N, k); joint velocities in [rad/s].
+        objective_gap: Absolute difference in the objective, (N, k).
+        reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
+    """
+
+    solution_gap: Matrix
+    objective_gap: Matrix
+    reference_residual: Matrix
+
+    @classmethod
+    def joined(cls, parts: Sequence[Agreement], solvers: int) -> Agreement:
+        """The agreements of several blocks, one after the other, for k = `solvers`."""
+        nothing = [np.empty((0, solvers))]
+        return cls(*(np.concatenate(nothing + [part[i] for part in parts]) for i in range(3)))
+
+    def worst_of(self, group: int) -> Agreement:
+        """The largest of each `group` of consecutive programs, as for the stages of a step."""
+        steps, k = len(self.solution_gap) // group, self.solution_gap.shape[1]
+        return Agreement(*(array.reshape(steps, group, k).max(axis=1) for array in self))
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """Reference solvers and what counts as agreement.
+
+    Attributes:
+        solvers: Names of the references, out of ``SOLVERS``; none switches the check off.
+        tolerance: Largest gap in x that counts as agreement [rad/s].
+        reference_tolerance: Largest KKT residual at which a reference is believed.
+    """
+
+    solvers: tuple[str, ...] = ("proxqp",)
+    tolerance: float = 1e-6
+    reference_tolerance: float = 1e-8
+    _options: dict[str, dict[str, Any]] = field(
+        default_factory=lambda: _SOLVER_OPTIONS, repr=False, compare=False
+    )
+
+    def __post_init__(self) -> None:
+        """Check the names and the tolerances; raises InvalidInputError naming the argument."""
+        for name in self.solvers:
+            checks.one_of("solvers", name, SOLVERS)
+        for name in ("tolerance", "reference_tolerance"):
+            checks.positive(name, getattr(self, name))
+
+    def check(self, qp: QP, x: Vector) -> Agreement:
+        """Ask every reference for one program's solution and compare; N = 1.
+
+        Args:
+            qp: The program, n variables.
+            x: The answer to be judged, (n,).
+        """
+        return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(x)[np.newaxis])
+
+    def check_block(self, programs: Matrix, sizes: tuple[int, int, int], x: Matrix) -> Agreement:
+        """Ask every reference for the solutions of N programs of one shape and compare.
+
+        Args:
+            programs: One `QP.data` a row.
+            sizes: Their `QP.sizes`.
+            x: The answers to be judged, (N, n).
+
+        Returns:
+            Gaps and residuals, one row a program and one column a reference.
+        """
+        count, k = len(x), len(self.solvers)
+        if not k:
+            return Agreement(*(np.empty((count, 0)) for _ in range(3)))
+        n, m, p = sizes
+        points = np.full((count, k, 2 * n + m + p), np.nan)
+        # Solvers may take minutes over one NaN.
+        askable = np.flatnonzero(~np.isnan(programs).any(axis=1))
+        for i in askable:
+            problem = QP.from_data(programs[i], sizes).to_qpsolvers()
+            for j, name in enumerate(self.solvers):
+                reference = self._solve(name, problem)
+                if reference is not None and reference.x is not None:
+                    _copy_point(reference, sizes, points[i, j])
+        residuals = np.empty((count, k))
+        kernels.largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
+        references = np.where(
+            residuals[..., np.newaxis] <= self.reference_tolerance, points, np.nan
+        )
+        references = references[..., :n]
+        step = x[:, np.newaxis] - references
+        cost = programs[:, : n * n].reshape(count, n, n)
+        linear = programs[:, n * n : n * (n + 1)]
+        # As a difference of points: subtracting two objectives would cancel.
+        curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
+        objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
+        return Agreement(np.abs(step).max(axis=2), objective_gap, residuals)
+
+    def options(self, name: str) -> dict[str, Any]:
+        """What qpsolvers is given when it asks the reference of this name, a copy."""
+        return dict(self._options[name])
+
+    def settings(self) -> dict[str, Any]:
+        """What the record says of the check."""
+        return {
+            "solvers": list(self.solvers),
+            "tolerance": self.tolerance,
+            "reference_tolerance": self.reference_tolerance,
+        }
+
+    def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
+        """The reference's solution, or None where it has none."""
+        import qpsolvers
+
+        options = self._options[name]
+        try:
+            if name == "osqp":
+                solution = _solve_sparse(problem, options)
+            else:
+                solution = qpsolvers.solve_problem(problem, solver=name, **options)
+        except Exception:  # whatever a reference raises, it has no answer
+            return None
+        return solution if solution.found else None
+
+
+def _copy_point(
+    solution: qpsolvers.Solution, sizes: tuple[int, int, int], point: Vector
+) -> None:  # fmt: skip
+    """Write a solution into `point`, laid out as `Solution.point`; what it lacks becomes zero."""
+    n, m, p = sizes
+    point[:n] = solution.x
+    point[n : n + p] = 0.0 if solution.y is None else solution.y
+    if m:
+        point[n + p : n + p + m] = 0.0 if solution.z is None else solution.z
+    point[n + p + m :] = 0.0 if solution.z_box is None else solution.z_box
+
+
+def _solve_sparse(problem: qpsolvers.Problem, options: dict[str, Any]) -> qpsolvers.Solution:
+    """OSQP's answer: it takes sparse matrices only, and qpsolvers warns when it converts."""
+    import qpsolvers
+    import scipy.sparse as spa
+
+    sparse = qpsolvers.Problem(
+        spa.csc_matrix(problem.P),
+        problem.q,
+        None if problem.G is None else spa.csc_matrix(problem.G),
+        problem.h,
+        None if problem.A is None else spa.csc_matrix(problem.A),
+        problem.b,
+        problem.lb,
+        problem.ub,
+    )
+    with warnings.catch_warnings():
+        # It also warns of every program that is not solved; the residual says so, too.
+        warnings.simplefilter("ignore", UserWarning)
+        return qpsolvers.solve_problem(sparse, solver="osqp", **options)

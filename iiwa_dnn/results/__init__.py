@@ -1,0 +1,1 @@
+"""Records of runs, and the numbers, figures and reports made of them."""

@@ -1,0 +1,306 @@
+"""The record of one run: what was asked, what came out, and how each step was judged."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+import tokenize
+import warnings
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.files import one_line, plain, write_atomically
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+MODES = ("converged", "continuous")
+
+# N steps, n joints, k reference solvers. `t`, `q` and `solution_gap` set these sizes.
+_SHAPES: dict[str, tuple[str | int, ...]] = {
+    "t": ("N+1",),
+    "q": ("N+1", "n"),
+    "dq": ("N", "n"),
+    "dq_solver": ("N", "n"),
+    "position": ("N+1", 3),
+    "rotation": ("N+1", 3, 3),
+    "position_desired": ("N+1", 3),
+    "rotation_desired": ("N+1", 3, 3),
+    "kinetic_index": ("N",),
+    "kkt_residual": ("N",),
+    "iterations": ("N",),
+    "solution_gap": ("N", "k"),
+    "objective_gap": ("N", "k"),
+    "reference_residual": ("N", "k"),
+}
+# Only runs that have them; a file without them is whole.
+_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
+    "torque": ("N", "n"),
+    "bound_multiplier": ("N", "n"),
+    "clipped": ("N", "n"),
+    "action": ("N",),
+    "fraction": ("N",),
+    "blocking": ("N", "n"),
+}
+_WHOLE: dict[str, type[np.signedinteger[Any]]] = {
+    "iterations": np.int64,
+    "clipped": np.int8,
+    "action": np.int8,
+    "blocking": np.int8,
+}
+
+# What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
+_DAMAGE = (
+    ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
+    NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
+
+    The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
+    sample i to sample i + 1. In the last three arrays NaN means that the reference was not asked
+    at that step and inf that it gave no answer.
+
+    Attributes:
+        t: Time [s], (N+1,), increasing.
+        q: Joint positions [rad], (N+1, n).
+        dq: Joint velocities that moved the robot [rad/s], (N, n).
+        dq_solver: Joint velocities that the network answered [rad/s], (N, n).
+        position: Tip position [m], (N+1, 3).
+        rotation: Tip orientation, tip axes to world axes, (N+1, 3, 3).
+        position_desired: Desired tip position [m], (N+1, 3).
+        rotation_desired: Desired tip orientation, (N+1, 3, 3).
+        kinetic_index: dqᵀ G(q) dq of each step, (N,): [rad²/s²] with G = I, [J] with G the
+            inertia matrix.
+        kkt_residual: Largest KKT residual of the network's answer, (N,).
+        iterations: Network iterations (sub-steps) spent on each step, (N,), integers.
+        solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
+        objective_gap: Difference in the objective to each reference, (N, k).
+        reference_residual: Largest KKT residual of each reference's own answer, (N, k).
+        settings: What was asked for, in JSON types; an infinite limit reads None.
+        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
+            run that has no masses.
+        bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
+            one, negative at a lower one, 0 where the bound does not act; by how much the
+            objective falls for each rad/s that the bound gives way. None where none ever acted.
+        clipped: Which joints' commands were clipped to their bounds on leaving the controller,
+            (N, n), 1 or 0; None where none ever was.
+        action: What was done at each step in place of the network's answer, (N,): codes of
+            `iiwa_dnn.control.policies.Action`. None where its answer was always taken, as in the
+            next two.
+        fraction: Share of a control period by which the reference's clock advanced, (N,).
+        blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
+            1 for a position limit's, 2 for a velocity limit, 0 where none is in the way.
+        wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
+        crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
+            was asked.
+    """
+
+    t: FloatArray
+    q: FloatArray
+    dq: FloatArray
+    dq_solver: FloatArray
+    position: FloatArray
+    rotation: FloatArray
+    position_desired: FloatArray
+    rotation_desired: FloatArray
+    kinetic_index: FloatArray
+    kkt_residual: FloatArray
+    iterations: IntArray
+    solution_gap: FloatArray
+    objective_gap: FloatArray
+    reference_residual: FloatArray
+    settings: dict[str, Any]
+    torque: FloatArray | None = None
+    bound_multiplier: FloatArray | None = None
+    clipped: NDArray[np.int8] | None = None
+    action: NDArray[np.int8] | None = None
+    fraction: FloatArray | None = None
+    blocking: NDArray[np.int8] | None = None
+    wall_time_s: float | None = None
+    crosscheck_gap: FloatArray = field(init=False)
+
+    def __post_init__(self) -> None:
+        shapes = self._shapes
+        for name, shape in shapes.items():
+            array = _read_only(name, getattr(self, name), len(shape))
+            object.__setattr__(self, name, array)
+        sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
+        for name, shape in shapes.items():
+            expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
+            if getattr(self, name).shape != expected:
+                symbols = ", ".join(str(size) for size in shape)
+                raise InvalidInputError(
+                    name,
+                    f"shape {getattr(self, name).shape}, expected ({symbols}) = {expected}",
+                    getattr(self, name),
+                )
+        if sizes["N"] < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+            raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
+        checked = _checked(self.settings, self.dof, self.references, self.torque is not None)
+        object.__setattr__(self, "settings", checked)
+        object.__setattr__(self, "crosscheck_gap", _largest_gap(self.solution_gap))
+
+    @property
+    def steps(self) -> int:
+        """N, the number of steps taken."""
+        return len(self.t) - 1
+
+    @property
+    def dof(self) -> int:
+        """n, the number of joints."""
+        return int(self.q.shape[1])
+
+    @property
+    def references(self) -> int:
+        """k, the number of reference solvers; their names are in the settings."""
+        return int(self.solution_gap.shape[1])
+
+    @property
+    def _shapes(self) -> dict[str, tuple[str | int, ...]]:
+        """Shapes of the arrays that this record has, by name."""
+        present = {k: v for k, v in _OPTIONAL_SHAPES.items() if getattr(self, k) is not None}
+        return _SHAPES | present
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the record as an uncompressed .npz file, atomically and without pickles.
+
+        The same record gives the same bytes.
+
+        Args:
+            path: The file; ``.npz`` is not appended.
+
+        Raises:
+            FileError: If the file cannot be written.
+        """
+        arrays = {name: getattr(self, name) for name in (*self._shapes, "crosscheck_gap")}
+        text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
+        # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
+        write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Record:
+        """Read a record written by `save`.
+
+        Args:
+            path: The file.
+
+        Returns:
+            The record; its `wall_time_s` is None, since the file does not hold it.
+
+        Raises:
+            FileError: If the file is missing, damaged or not a record.
+        """
+        try:
+            with Path(path).open("rb") as file, warnings.catch_warnings():
+                # Of a head that is not quite right NumPy warns before it gives up.
+                warnings.simplefilter("ignore", UserWarning)
+                arrays = np.load(file, allow_pickle=False)
+                if not isinstance(arrays, np.lib.npyio.NpzFile):
+                    raise FileError(path, "not a record: not an .npz archive")
+                stored: dict[str, Any] = {
+                    key: arrays[key] for key in (*_SHAPES, "crosscheck_gap", "settings")
+                }
+                stored |= {key: arrays[key] for key in _OPTIONAL_SHAPES if key in arrays.files}
+            stored_gap = stored.pop("crosscheck_gap")
+            settings = json.loads(str(stored.pop("settings")))
+            record = cls(settings=settings, **stored)
+            same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
+        except FileError:
+            raise
+        except OSError as error:
+            raise FileError(path, f"cannot be read ({one_line(error)})") from error
+        except KeyError as error:
+            raise FileError(path, f"not a record: {one_line(error)}") from error
+        except _DAMAGE as error:
+            raise FileError(path, f"not a record, or damaged: {one_line(error)}") from error
+        if not same_gap:
+            raise FileError(path, "crosscheck_gap is not the largest solution_gap of each step")
+        return record
+
+
+def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
+    """Copy an array, unless it is protected: nothing done to it later can change the record."""
+    array = np.asarray(value)
+    kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
+    # An empty list is an array of floats to NumPy, whatever it was meant to hold.
+    if array.dtype.kind not in kinds and array.size:
+        raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
+    if array.ndim != dimensions:
+        raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
+    if array.dtype == target and array.flags.c_contiguous and _is_protected(array):
+        return array
+    copy = np.array(array, dtype=target, order="C")
+    copy.flags.writeable = False
+    return copy
+
+
+def _is_protected(array: NDArray[Any]) -> bool:
+    """Whether neither the array nor any that it is a view of can be written into."""
+    view: Any = array
+    while isinstance(view, np.ndarray):
+        if view.flags.writeable:
+            return False
+        view = view.base
+    return view is None
+
+
+def _largest_gap(solution_gap: FloatArray) -> FloatArray:
+    """Largest gap of each step, (N,): one solver's NaN does not hide another's answer."""
+    gap: FloatArray = np.fmax.reduce(solution_gap, axis=1, initial=np.nan)
+    gap.flags.writeable = False
+    return gap
+
+
+def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict[str, Any]:
+    """Return the settings in JSON types, once all that the metrics need is seen to be there."""
+    limits = ("q_lower", "q_upper", "dq_max") + (("torque_max",) if torques else ())
+    if not isinstance(settings, Mapping):
+        raise InvalidInputError("settings", "must be a dict", settings)
+    try:
+        checked: dict[str, Any] = plain(settings)
+        for key in limits:
+            values = checked[key]
+            if len(values) != n or not all(value is None or _is_number(value) for value in values):
+                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
+        names = checked["check"]["solvers"]
+        if len(names) != k or not all(isinstance(name, str) for name in names):
+            problem = f"must name {k} solvers, one for each column of solution_gap"
+            raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
+        check, times = checked["check"], (checked["dt"], checked["duration"])
+        tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
+        numbers = all(map(_is_number, (*times, *tolerances)))
+        if not (numbers and min(times) > 0 and min(tolerances) >= 0):
+            problem = "dt and duration must be positive, and no tolerance negative"
+            raise InvalidInputError("settings", problem, (*times, *tolerances))
+        if not math.isfinite(checked["duration"] / checked["dt"]):
+            raise InvalidInputError("settings", "duration / dt is not finite", times)
+        texts = all(isinstance(checked[key], str) for key in ("robot", "status"))
+        if checked["mode"] not in MODES or not texts:
+            problem = f"mode must be one of {MODES}, robot and status a text"
+            raise InvalidInputError("settings", problem, checked["mode"])
+    except KeyError as error:
+        raise InvalidInputError("settings", f"{error} is missing", settings) from error
+    except TypeError as error:
+        raise InvalidInputError("settings", str(error), settings) from error
+    return checked
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value out of JSON is a number that a float can hold; its integers know no end."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= sys.float_info.max

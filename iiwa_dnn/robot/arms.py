@@ -1,0 +1,76 @@
+"""Arms of other makers that can be loaded by name: which file, which tip, what is held still.
+
+The files are those of the package ``example-robot-data`` (extra ``robots``), which brings the URDFs
+as their makers publish them and no code.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+from iiwa_dnn.errors import MissingDependencyError
+
+_PACKAGE = "example-robot-data"
+_FOLDER = "cmeel.prefix/share/example-robot-data/robots"
+
+
+@dataclass(frozen=True)
+class Arm:
+    """What the URDF of an arm does not say.
+
+    Attributes:
+        file: The URDF's path in the package's folder of robots.
+        tip: Frame that follows references.
+        locked: Joints of its gripper, which are held still.
+        start: A posture with the elbow bent, away from limits and singular postures [rad], (n,).
+    """
+
+    file: str
+    tip: str
+    locked: tuple[str, ...]
+    start: tuple[float, ...]
+
+    @property
+    def path(self) -> Path:
+        """The URDF file.
+
+        Raises:
+            MissingDependencyError: The package of the files is not installed.
+        """
+        try:
+            folder = Path(str(distribution(_PACKAGE).locate_file(_FOLDER)))
+        except PackageNotFoundError:
+            folder = Path("missing")
+        if not folder.is_dir():
+            raise MissingDependencyError(_PACKAGE, "pip install 'iiwa-dnn[robots]'")
+        return folder / self.file
+
+
+ARMS = {
+    "panda": Arm(
+        "panda_description/urdf/panda.urdf",
+        "panda_hand_tcp",
+        ("panda_finger_joint1", "panda_finger_joint2"),
+        (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
+    ),
+    "talos_left_arm": Arm(
+        "talos_data/robots/talos_left_arm.urdf",
+        "gripper_left_base_link",
+        ("gripper_left_joint",),
+        (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
+    ),
+    "ur5": Arm(
+        "ur_description/urdf/ur5_robot.urdf",
+        "tool0",
+        (),
+        (0.0, -1.2, 1.6, -1.97, -1.57, 0.0),
+    ),
+    "xarm7": Arm(
+        "xarm_description/urdf/xarm7.urdf",
+        "link_eef",
+        (),
+        (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0),
+    ),
+}

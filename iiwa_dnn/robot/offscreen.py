@@ -1,0 +1,119 @@
+"""OpenGL without a display, for MuJoCo to draw with.
+
+If the environment variable MUJOCO_GL names a library of these two, that one is taken. Otherwise, on
+Linux, EGL (a graphics card, or Mesa's software driver), else OSMesa (always in software); neither
+needs a display. Where there is neither, physics runs all the same and pictures are refused in one
+line.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import os
+import sys
+from typing import Any
+
+from iiwa_dnn.errors import MissingDependencyError
+
+_EGL_PLATFORM_DEVICE = 0x313F
+_MAX_DEVICES = 32
+
+_LIBRARIES = ("egl", "osmesa")
+_OPENGL_REMEDY = "on Debian and Ubuntu: apt-get install libosmesa6 (or, for EGL: libegl1 libgl1)"
+
+
+def import_mujoco() -> Any:
+    """MuJoCo's Python package.
+
+    Raises:
+        MissingDependencyError: If it is not installed, or the OpenGL library is not that the
+            environment variable MUJOCO_GL makes it load.
+    """
+    try:
+        return importlib.import_module("mujoco")
+    except ModuleNotFoundError as error:
+        package = "the Python package mujoco"
+        raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
+    except Exception as error:  # whatever PyOpenGL meets where that library is not there
+        if (wanted := os.environ.get("MUJOCO_GL", "").lower()) not in _LIBRARIES:
+            raise
+        library = f"the OpenGL library that MUJOCO_GL={wanted} asks for"
+        raise MissingDependencyError(library, _OPENGL_REMEDY) from error
+
+
+def opengl_library() -> str:
+    """Which of the modules ``mujoco.egl``, ``mujoco.osmesa`` or ``mujoco.gl_context`` can draw.
+
+    Returns:
+        ``"egl"``, ``"osmesa"``, or ``"gl_context"``: MuJoCo's own choice, off Linux.
+
+    Raises:
+        MissingDependencyError: On Linux, if there is none; it names the Debian package.
+    """
+    if not sys.platform.startswith("linux"):
+        return "gl_context"
+    libraries = {"egl": egl_works, "osmesa": osmesa_works}
+    # PyOpenGL loads one library in a process, and MuJoCo sets the first of these to say which.
+    wanted = [os.environ.get(name, "").lower() for name in ("PYOPENGL_PLATFORM", "MUJOCO_GL")]
+    for name in [name for name in wanted if name in libraries][:1] or libraries:
+        if libraries[name]():
+            return name
+    raise MissingDependencyError(
+        "an OpenGL library for pictures without a display",
+        _OPENGL_REMEDY,
+    )
+
+
+def open_context(width: int, height: int) -> Any:
+    """An OpenGL context to draw pictures of this size [pixel] in, made the current one.
+
+    Raises:
+        MissingDependencyError: If MuJoCo or an OpenGL library is not there.
+    """
+    import_mujoco()
+    module = importlib.import_module(f"mujoco.{opengl_library()}")
+    context = module.GLContext(width, height)
+    context.make_current()
+    return context
+
+
+def egl_works() -> bool:
+    """Whether EGL opens a display on some device; a library without a driver does not."""
+    try:
+        egl = ctypes.CDLL("libEGL.so.1")
+        ctypes.CDLL("libOpenGL.so.0" if _loads("libOpenGL.so.0") else "libGL.so.1")
+    except OSError:
+        return False
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
+    get_display = egl.eglGetProcAddress(b"eglGetPlatformDisplayEXT")
+    if not (query and get_display):
+        return False
+    devices, count = (ctypes.c_void_p * _MAX_DEVICES)(), ctypes.c_int()
+    query = ctypes.CFUNCTYPE(ctypes.c_uint, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)(query)
+    get_display = ctypes.CFUNCTYPE(
+        ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p
+    )(get_display)
+    if not query(_MAX_DEVICES, devices, ctypes.byref(count)):
+        return False
+    egl.eglInitialize.argtypes = [ctypes.c_void_p] * 3
+    for device in devices[: count.value]:
+        display = get_display(_EGL_PLATFORM_DEVICE, device, None)
+        # Left open: MuJoCo gets the same display and closes it.
+        if display and egl.eglInitialize(display, None, None):
+            return True
+    return False
+
+
+def osmesa_works() -> bool:
+    """Whether OSMesa is there; it needs neither a device nor a display."""
+    return _loads("libOSMesa.so.8") or _loads("libOSMesa.so")
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,126 @@
+"""The shapes that a robot is drawn with: the <visual> primitives of its URDF, link by link."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.robot import urdf
+from iiwa_dnn.robot.robot import Robot
+
+STICK_RADIUS = 0.02
+"""Of the sticks that stand for links without a primitive shape [m]."""
+
+_GREY = (0.6, 0.6, 0.6)
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One primitive, fixed to a joint's frame.
+
+    Attributes:
+        kind: ``"cylinder"`` (along its own z axis), ``"sphere"`` or ``"box"``.
+        size: Radius and length, radius, or three edges [m].
+        joint: Index of Pinocchio's joint that carries it; 0 is the base.
+        position: Its middle in the joint's frame [m], (3,).
+        rotation: Its axes in the joint's frame, (3, 3).
+        colour: Red, green, blue, 0 to 1.
+    """
+
+    kind: Literal["cylinder", "sphere", "box"]
+    size: tuple[float, ...]
+    joint: int
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    colour: tuple[float, float, float]
+
+
+def visual_shapes(robot: Robot) -> list[Shape]:
+    """The primitives of a robot; sticks from joint to joint where it has only meshes.
+
+    Args:
+        robot: The robot, from its URDF file.
+
+    Returns:
+        The shapes, the base's too.
+
+    Raises:
+        InvalidInputError: If the robot does not come from a file.
+        FileError: If the file cannot be read any more.
+    """
+    if robot.path is None:
+        raise InvalidInputError("robot", "must come from a URDF file", robot)
+    root = ET.fromstring(urdf.read(robot.path)[0])
+    for link in root.findall("link"):
+        for visual in link.findall("visual"):
+            if visual.find("geometry/mesh") is not None:
+                link.remove(visual)  # meshes are not read
+    text = ET.tostring(root, encoding="unicode")
+    visuals = pin.buildGeomFromUrdfString(robot.model, text, pin.GeometryType.VISUAL)
+    shapes = []
+    for found in visuals.geometryObjects:
+        kind, size = _measure(found.geometry)
+        if kind is not None:
+            red, green, blue = map(float, found.meshColor[:3])
+            place = found.placement
+            shapes.append(
+                Shape(
+                    kind, size, int(found.parentJoint), place.translation.copy(),
+                    place.rotation.copy(), (red, green, blue),
+                )
+            )  # fmt: skip
+    return shapes or _sticks(robot)
+
+
+def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> list[pin.SE3]:
+    """Where each joint's frame is in the world, the base (0) first: what `Shape.joint` counts.
+
+    Args:
+        robot: The robot, n joints.
+        q: Joint positions [rad], (n,).
+        data: Room for Pinocchio to work in; None makes it.
+    """
+    data = robot.model.createData() if data is None else data
+    pin.forwardKinematics(robot.model, data, np.asarray(q, dtype=np.float64))
+    return [data.oMi[i].copy() for i in range(robot.model.njoints)]
+
+
+def _measure(
+    geometry: object,
+) -> tuple[Literal["cylinder", "sphere", "box"] | None, tuple[float, ...]]:
+    """Kind and size of one of coal's primitives; None for anything else."""
+    name = type(geometry).__name__
+    shape: pin.CollisionGeometry = geometry
+    if name == "Cylinder":
+        return "cylinder", (float(shape.radius), 2.0 * float(shape.halfLength))
+    if name == "Sphere":
+        return "sphere", (float(shape.radius),)
+    if name == "Box":
+        return "box", tuple(2.0 * float(half) for half in shape.halfSide)
+    return None, ()
+
+
+def _sticks(robot: Robot) -> list[Shape]:
+    """A cylinder from each joint to the next, and to the tip."""
+    model = robot.model
+    tip = model.frames[robot.tip_id]
+    places = model.jointPlacements
+    ends = [(model.parents[i], places[i].translation) for i in range(1, model.njoints)]
+    ends.append((tip.parentJoint, tip.placement.translation))
+    sticks = []
+    for joint, end in ends:
+        length = float(np.linalg.norm(end))
+        if length > 1e-6:
+            turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), end / length)
+            sticks.append(
+                Shape(
+                    "cylinder", (STICK_RADIUS, length), int(joint), 0.5 * end, turn.matrix(), _GREY
+                )
+            )
+    return sticks

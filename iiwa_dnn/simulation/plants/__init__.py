@@ -1,0 +1,1 @@
+"""Plants: what moves under the controller's velocity commands."""

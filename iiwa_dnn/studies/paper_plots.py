@@ -1,0 +1,174 @@
+"""The paper's figures 1 and 2 out of records, and one that sums up its tables.
+
+The tables are those that `iiwa_dnn.studies` makes, in JSON types; nothing is computed here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.results.panels import draw_error, legend_above
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, overview_figure, write_figures
+from iiwa_dnn.results.record import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+PANELS = ("no noise, no filter", "noise, no filter", "no noise, filter", "noise, filter")
+"""The paper's Fig. 2 (a)-(d); its text and Table II go through them in another order."""
+
+FAR = 100.0
+"""A change by more than this [%] is named at the edge and not drawn to scale."""
+
+Table = Mapping[str, Any]
+
+
+def save_paper_figures(
+    fig1: Record,
+    fig2: Mapping[str, Record],
+    tables: Mapping[str, Table],
+    folder: str | os.PathLike[str],
+) -> list[Path]:
+    """Draw ``fig1``, ``fig2`` and ``tables``, each as PNG and PDF, atomically.
+
+    Args:
+        fig1: The run of Fig. 1.
+        fig2: The runs of Fig. 2, by the names of its `PANELS`.
+        tables: ``table1``, ``table2`` and ``ablation``.
+        folder: Where to; made if need be.
+
+    Returns:
+        The files written, each PNG followed by its PDF.
+
+    Raises:
+        FileError: If the folder cannot be written.
+    """
+    figures = {
+        "fig1": partial(overview_figure, fig1),
+        "fig2": partial(error_figure, fig2),
+        "tables": partial(tables_figure, tables),
+    }
+    return write_figures(figures, folder)
+
+
+def error_figure(records: Mapping[str, Record]) -> Figure:
+    """Position error of the four cases on one scale: the paper's Fig. 2 (a)-(d)."""
+    figure = new_figure(DOUBLE_COLUMN, 5.0)
+    largest = max(float(np.linalg.norm(position_error(r), axis=1).max()) for r in records.values())
+    for axes, letter, case in zip(figure.subplots(2, 2).flat, "abcd", PANELS, strict=True):
+        draw_error(axes, records[case], largest)
+        axes.set_xlabel(f"{axes.get_xlabel()}\n({letter}) {case}")
+    return figure
+
+
+def tables_figure(tables: Mapping[str, Table]) -> Figure:
+    """Error and drift over the weight, what the filter changes, and the drift over sub-steps."""
+    figure = new_figure(DOUBLE_COLUMN, 5.4)
+    panels = figure.subplots(2, 2)
+    _draw_row(panels[0, 0], tables["table1"], "max_position_error_m", "Largest position error [m]")
+    _draw_row(panels[0, 1], tables["table1"], "joint_drift_rad", "Joint drift [rad]")
+    _draw_filter(panels[1, 0], tables["table2"])
+    _draw_substeps(panels[1, 1], tables["ablation"])
+    for axes, letter in zip(panels.flat, "abcd", strict=True):
+        axes.set_xlabel(f"{axes.get_xlabel()}\n({letter})")
+    return figure
+
+
+def _draw_row(axes: Axes, table: Table, key: str, label: str) -> None:
+    """One row of Table I over the weight, the paper's and those with G = I."""
+    styles = (("o", "-", "0.0"), ("s", "--", "0.5"))
+    ours = [name for name in table["variants"] if "inertia" not in name]
+    _draw_points(axes, table["weights"], table["paper"][key], "x", ":", "0.0", "paper")
+    for name, (marker, line, colour) in zip(ours, styles, strict=False):
+        values = table["variants"][name]["rows"][key]
+        _draw_points(axes, table["weights"], values, marker, line, colour, name)
+    axes.set_yscale("log")
+    axes.set_xlabel("Weight ξ")
+    axes.set_ylabel(label)
+    legend_above(axes, columns=3)
+
+
+def _draw_points(
+    axes: Axes, x: list[Any], y: list[Any], marker: str, line: str, colour: str, label: str
+) -> None:
+    """A curve through the points that there are."""
+    known = [(a, b) for a, b in zip(x, y, strict=True) if b is not None]
+    axes.plot(
+        [a for a, _ in known],
+        [b for _, b in known],
+        marker=marker,
+        linestyle=line,
+        color=colour,
+        label=label,
+    )
+
+
+def _draw_filter(axes: Axes, table: Table) -> None:
+    """What the filter changes under noise, in per cent, with its interval; and in the paper."""
+    styles = {
+        "max_position_error_m": ("MAX E", "o", "0.0"),
+        "mse_position_error_m2": ("MSE", "s", "0.5"),
+    }
+    names = [(mode, entry) for mode, entries in table["modes"].items() for entry in entries]
+    for offset, (key, (label, marker, colour)) in zip((-0.14, 0.14), styles.items(), strict=True):
+        for row, (mode, entry) in enumerate(names):
+            change = table["modes"][mode][entry][key]["changes"]["filter, with noise"]
+            at, mean = row + offset, 100.0 * change["mean"]
+            if mean > FAR:  # one far off would hide the others
+                edge = axes.get_yaxis_transform()
+                axes.text(0.98, at, f"× {1.0 + change['mean']:.3g} →", color=colour,
+                          transform=edge, ha="right", va="center", fontsize=7)  # fmt: skip
+                continue
+            reach = [[mean - 100.0 * change["low"]], [100.0 * change["high"] - mean]]
+            axes.errorbar([mean], [at], xerr=reach, fmt=marker, color=colour, capsize=2)
+        paper = 100.0 * table["paper_changes"][key]["filter, with noise"]
+        axes.axvline(paper, color=colour, linestyle=":", label=f"{label}, paper")
+        axes.plot([], [], linestyle="", marker=marker, color=colour, label=label)
+    axes.axvline(0.0, color="0.0", linewidth=0.6)
+    # By their first words, to leave room for the data.
+    axes.set_yticks(range(len(names)), [f"{mode.split(',')[0]},\n{entry}" for mode, entry in names])
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.set_xlabel("Change by the filter [%]")
+    legend_above(axes, columns=4)
+
+
+def _draw_substeps(axes: Axes, table: Table) -> None:
+    """Drift without noise over the number of sub-steps; hollow where a sub-step is unstable."""
+    styles = {"block": ("o", "-", "0.0"), "so3": ("s", "--", "0.5")}
+    names = list(dict.fromkeys(str(row["substeps"]) for row in table["rows"]))
+    for orientation, (marker, line, colour) in styles.items():
+        rows = [
+            row
+            for row in table["rows"]
+            if row["orientation"] == orientation and row["noise_at"] == "none"
+        ]
+        at = [names.index(str(row["substeps"])) for row in rows]
+        drift = [row["joint_drift_rad"] for row in rows]
+        _draw_points(axes, at, drift, "", line, colour, "")
+        for stable, face in ((True, colour), (False, "1.0")):
+            part = [
+                (x, y) for x, y, row in zip(at, drift, rows, strict=True) if row["stable"] is stable
+            ]
+            axes.plot(
+                [x for x, _ in part],
+                [y for _, y in part],
+                linestyle="",
+                marker=marker,
+                color=colour,
+                markerfacecolor=face,
+                label=f"{orientation}, {'stable' if stable else 'unstable'}",
+            )
+    axes.axhline(table["paper"]["joint_drift_rad"], color="0.0", linestyle=":", label="paper")
+    axes.set_yscale("log")
+    axes.set_xticks(range(len(names)), names)
+    axes.set_xlabel("Sub-steps in a control step")
+    axes.set_ylabel("Joint drift [rad]")
+    legend_above(axes, columns=3)

@@ -1,0 +1,73 @@
+"""Two singular poses: a vertical tool, whose tilt the paper's block loses, and a stretched arm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn.control.controller import Mode
+from iiwa_dnn.control.policies import Policy
+from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.references import Line
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.schemes.orientation import Orientation
+from iiwa_dnn.simulation import simulate
+from iiwa_dnn.studies.runs import paper_robot
+
+TILT = 0.05
+"""By how much the tool is off its desired orientation at the start [rad]."""
+
+_STILL = Line(offset=(1e-12, 0.0, 0.0), period=1e3)
+
+
+def vertical_start() -> Configuration:
+    """A bent arm whose tool points straight down."""
+    # In the arm's own plane, joints 2, 4 and 6 turn the tool by q2 - q4 + q6.
+    return Configuration(paper_robot(), [0.3, 0.5, 0.0, -1.6, 0.0, np.pi - 2.1, 0.2])
+
+
+def tilted_run(orientation: Orientation, mode: Mode) -> Record:
+    """Half a second of holding the vertical orientation, from a start tilted by ``TILT``.
+
+    Args:
+        orientation: Form of the orientation rows.
+        mode: ``"converged"``, or ``"continuous"``, the paper's.
+    """
+    desired = vertical_start()
+    q0 = desired.q.copy()
+    q0[5] += TILT
+    return simulate(
+        paper_robot(),
+        DoubleIndicator(orientation=orientation, weight=1.0),
+        _STILL.anchored(desired),
+        q0,
+        dt=1e-4,
+        duration=0.5,
+        mode=mode,
+        check=CrossCheck(()),
+    )
+
+
+def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
+    """Four seconds along a line that leads 0.3 m further out than the arm reaches, and back.
+
+    Args:
+        policy: What is done where there is no solution.
+        dt: Control period [s].
+    """
+    start = vertical_start()
+    outward = start.position * [1.0, 1.0, 0.0]
+    reach = 0.8 - float(np.linalg.norm(outward))
+    offset = (reach + 0.3) * outward / np.linalg.norm(outward)
+    x, y, z = offset.tolist()
+    return simulate(
+        paper_robot(),
+        DoubleIndicator(orientation="none"),
+        Line(offset=(x, y, z), period=4.0).anchored(start),
+        start.q,
+        dt=dt,
+        duration=4.0,
+        policy=policy,
+        check=CrossCheck(()),
+    )

@@ -1,0 +1,159 @@
+r"""Means with intervals, paired differences, and trends.
+
+With :math:`\bar x` the mean and s the standard deviation of k independent samples, the interval
+
+.. math::  \bar x \pm t_{k-1,\,(1+c)/2}\, s / \sqrt{k}
+
+holds the true mean with confidence c (Student's t). Where two runs share their noise, the
+difference is taken run by run before it is averaged: what the noise did to both cancels, and the
+interval is the narrower for it.
+
+Sources: Student, "The probable error of a mean", Biometrika 6 (1908); M. G. Kendall, "A new measure
+of rank correlation", Biometrika 30 (1938).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.stats import t as student
+
+from iiwa_dnn.checks import finite_array
+from iiwa_dnn.errors import InvalidInputError
+
+CONFIDENCE = 0.95
+FLAT = 0.05
+"""A series whose values differ by no more than this share of their mean is called constant."""
+
+Trend = Literal["rising", "falling", "constant", "none"]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A mean and how well it is known.
+
+    Attributes:
+        mean: Mean of the samples.
+        half_width: Half the width of the confidence interval around it; 0 of an exact value.
+        samples: How many there were; 1 of an exact value.
+    """
+
+    mean: float
+    half_width: float
+    samples: int
+
+    @classmethod
+    def exact(cls, value: float) -> Estimate:
+        """A number without chance in it, such as a run without noise."""
+        return cls(float(value), 0.0, 1)
+
+    @property
+    def low(self) -> float:
+        """Lower end of the interval."""
+        return self.mean - self.half_width
+
+    @property
+    def high(self) -> float:
+        """Upper end of the interval."""
+        return self.mean + self.half_width
+
+    @property
+    def sign(self) -> int:
+        """1 or -1 where the whole interval is above or below zero, 0 where zero lies in it."""
+        return int(self.low > 0.0) - int(self.high < 0.0)
+
+    def to_json(self) -> dict[str, Any]:
+        """The estimate in JSON types, for a table."""
+        return {
+            "mean": self.mean,
+            "low": self.low,
+            "high": self.high,
+            "samples": self.samples,
+        }
+
+
+def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
+    """Mean of independent samples and its confidence interval.
+
+    Args:
+        samples: At least two finite numbers, (k,).
+        confidence: Probability that the interval holds the true mean, above 0 and below 1.
+
+    Returns:
+        The estimate, in the unit of the samples.
+
+    Raises:
+        InvalidInputError: There are fewer than two samples, one is not finite, or the confidence
+            is out of range.
+    """
+    values = finite_array("samples", samples, (-1,))
+    if values.size < 2:
+        raise InvalidInputError("samples", f"must be two or more, not {values.size}", samples)
+    if not 0.0 < confidence < 1.0:
+        raise InvalidInputError("confidence", f"must be in (0, 1), not {confidence}", confidence)
+    quantile = float(student.ppf(0.5 * (1.0 + confidence), values.size - 1))
+    half_width = quantile * float(values.std(ddof=1)) / float(np.sqrt(values.size))
+    return Estimate(float(values.mean()), half_width, values.size)
+
+
+def paired_difference(
+    after: ArrayLike, before: ArrayLike, confidence: float = CONFIDENCE
+) -> Estimate:
+    """Mean of ``after - before`` over pairs, and its confidence interval.
+
+    Args:
+        after: Samples, (k,).
+        before: Their partners, (k,): entry i of both shares its noise.
+        confidence: As for `estimate`.
+
+    Raises:
+        InvalidInputError: The lengths differ, or as for `estimate`.
+    """
+    one = finite_array("after", after, (-1,))
+    other = finite_array("before", before, (one.size,))
+    return estimate(one - other, confidence)
+
+
+def kendall_tau(x: ArrayLike, y: ArrayLike) -> float:
+    """Kendall's tau-a: share of the pairs that x and y order alike minus share ordered unlike.
+
+    Args:
+        x: Numbers, (k,), k at least 2.
+        y: Numbers, (k,).
+
+    Returns:
+        A number in [-1, 1]; pairs with a tie count as neither.
+
+    Raises:
+        InvalidInputError: The lengths differ, there are fewer than two, or one is not finite.
+    """
+    one = finite_array("x", x, (-1,))
+    other = finite_array("y", y, (one.size,))
+    if one.size < 2:
+        raise InvalidInputError("x", f"must hold two or more numbers, not {one.size}", x)
+    first, second = np.triu_indices(one.size, 1)
+    agreement = np.sign(one[second] - one[first]) * np.sign(other[second] - other[first])
+    return float(agreement.mean())
+
+
+def trend(x: ArrayLike, y: ArrayLike) -> Trend:
+    """Which way y goes as x grows: the sign of Kendall's tau, or ``constant``.
+
+    Args:
+        x: Numbers, (k,), k at least 2.
+        y: Numbers, (k,); ``constant`` if they spread over at most ``FLAT`` of their mean.
+
+    Returns:
+        ``none`` where tau is zero.
+
+    Raises:
+        InvalidInputError: As for `kendall_tau`.
+    """
+    tau = kendall_tau(x, y)
+    values = np.asarray(y, dtype=np.float64)
+    if np.ptp(values) <= FLAT * abs(float(values.mean())):
+        return "constant"
+    return "none" if tau == 0.0 else "rising" if tau > 0.0 else "falling"

@@ -1,0 +1,142 @@
+r"""Table II: noise and filter, on and off, over many seeds that all cases share.
+
+What theory expects without a filter: in the task's space the position error of a converged run is
+an Ornstein-Uhlenbeck process, driven by J n at every step and drawn back at the rate of the
+position gain :math:`\delta`. With velocity noise of standard deviation :math:`\sigma` its mean
+squared error per axis is
+
+.. math::  \frac{\operatorname{tr}(J J^T)}{3}\,\frac{\sigma^2\,\Delta t}{2\,\delta},
+
+and with noise on the measured angles, which the feedback multiplies by :math:`\delta` before the
+robot moves by it, :math:`\delta^2` times that (docs/theory.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.simulation import NOISE_ENTRIES, NoiseEntry
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.runs import HeartRun
+from iiwa_dnn.studies.scope import Scope
+from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference
+from iiwa_dnn.studies.verdicts import judge_change, judge_row
+
+# Eight sub-steps are what is computed to be stable along the whole heart; the runs' growth of a
+# sub-step, which is in the table, says so again, and to compute it at every step takes time.
+MODES: dict[str, HeartRun] = {
+    "continuous, block": HeartRun(substeps=8),
+    "converged, SO(3)": HeartRun(mode="converged", orientation="so3"),
+}
+"""Ways to run Table II; the first is the paper's own."""
+
+MEASURES = {"max_position_error_m": paper.CASES_MAX_ERROR, "mse_position_error_m2": paper.CASES_MSE}
+"""The paper's two measures and its numbers, in the order of `paper.CASES`."""
+
+
+def cells(scope: Scope) -> list[HeartRun]:
+    """The runs: for each mode, two without noise, then for each entry all seeds twice."""
+    runs = []
+    for mode in MODES.values():
+        base = replace(mode, dt=scope.dt, duration=scope.duration)
+        runs += [replace(base, filter_window=window) for window in (1, paper.WINDOW)]
+        runs += [
+            replace(base, noise=paper.NOISE, noise_at=entry, filter_window=window, seed=seed)
+            for entry in NOISE_ENTRIES
+            for window in (1, paper.WINDOW)
+            for seed in range(scope.seeds)
+        ]
+    return runs
+
+
+def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The table, beside the paper's, with its verdicts.
+
+    Args:
+        scope: What was run.
+        results: The numbers of `cells`, in that order.
+
+    Returns:
+        The table in JSON types.
+    """
+    left = iter(results)
+    modes: dict[str, Any] = {}
+    growth: dict[str, list[float | None]] = {}
+    for name in MODES:
+        quiet = [next(left) for _ in range(2)]
+        modes[name] = {}
+        growth[name] = [run["amplification"] for run in quiet]
+        for entry in NOISE_ENTRIES:
+            noisy = [[next(left) for _ in range(scope.seeds)] for _ in range(2)]
+            growth[name] += [run["amplification"] for runs in noisy for run in runs]
+            modes[name][entry] = {key: _measure(key, quiet, noisy) for key in MEASURES} | {
+                "theory_noise_mse_m2": _theory(entry, quiet[0], scope)
+            }
+    return {
+        "scope": scope.to_json(),
+        "weight": paper.WEIGHT,
+        "noise": paper.NOISE,
+        "filter_window": paper.WINDOW,
+        "cases": list(paper.CASES),
+        "paper": {key: list(values) for key, values in MEASURES.items()},
+        "paper_changes": {key: _paper_changes(values) for key, values in MEASURES.items()},
+        "modes": modes,
+        "amplification": {
+            name: max((value for value in values if value is not None), default=None)
+            for name, values in growth.items()
+        },
+    }
+
+
+def _measure(
+    key: str, quiet: Sequence[Mapping[str, Any]], noisy: Sequence[Sequence[Mapping[str, Any]]]
+) -> dict[str, Any]:
+    """One measure of the four cases, and what noise and filter change in it."""
+    still = [values[key] for values in quiet]
+    plain, filtered = (np.array([values[key] for values in runs], float) for runs in noisy)
+    cases = [*map(Estimate.exact, still), estimate(plain), estimate(filtered)]
+    changes = {
+        "filter, with noise": _relative(paired_difference(filtered, plain), float(plain.mean())),
+        "filter, without noise": Estimate.exact(still[1] / still[0] - 1.0),
+        "noise, without filter": _relative(estimate(plain - still[0]), still[0]),
+    }
+    printed = _paper_changes(MEASURES[key])
+    return {
+        "cases": [case.to_json() for case in cases],
+        "verdict": judge_row(range(4), MEASURES[key], [case.mean for case in cases]).to_json(),
+        "difference": paired_difference(filtered, plain).to_json(),
+        "changes": {
+            name: change.to_json() | judge_change(printed[name], change).to_json()
+            for name, change in changes.items()
+        },
+    }
+
+
+def _relative(difference: Estimate, base: float) -> Estimate:
+    """A difference as a share of what it is compared with."""
+    return Estimate(difference.mean / base, difference.half_width / base, difference.samples)
+
+
+def _paper_changes(values: Sequence[float]) -> dict[str, float]:
+    """The same relative changes out of the paper's four numbers."""
+    quiet, quiet_filtered, noisy, noisy_filtered = values
+    return {
+        "filter, with noise": noisy_filtered / noisy - 1.0,
+        "filter, without noise": quiet_filtered / quiet - 1.0,
+        "noise, without filter": noisy / quiet - 1.0,
+    }
+
+
+def _theory(entry: NoiseEntry, quiet: Mapping[str, Any], scope: Scope) -> float | None:
+    """The mean squared error that theory expects noise to add [m^2]; None where it says nothing."""
+    if entry == "network":
+        return None
+    gain = DoubleIndicator().position_gain
+    velocity = paper.NOISE if entry == "velocity" else gain * paper.NOISE
+    square: float = quiet["jacobian_square_m2"] / 3.0 * velocity**2 * scope.dt / (2.0 * gain)
+    return square

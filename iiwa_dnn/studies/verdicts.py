@@ -1,0 +1,114 @@
+"""Verdicts on the paper's numbers, computed from ours: one rule for all of them.
+
+``reproduced``: every number of ours is within a factor 2 of the paper's. Otherwise ``same trend``:
+ours goes the same way as the paper's along the row. Otherwise ``not reproduced``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.studies.statistics import Estimate, trend
+
+FACTOR = 2.0
+"""How far a number may be off and still count as reproduced."""
+
+NEGLIGIBLE = 1e-3
+"""A relative change below this is none, however narrow its interval; the paper's least is 0.015."""
+
+Level = Literal["reproduced", "same trend", "not reproduced"]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of one row of the paper's numbers.
+
+    Attributes:
+        level: The verdict.
+        ratios: Ours over the paper's, entry by entry; None where either is missing.
+        ours: Which way ours goes.
+        paper: Which way the paper's goes.
+    """
+
+    level: Level
+    ratios: tuple[float | None, ...]
+    ours: str
+    paper: str
+
+    def to_json(self) -> dict[str, Any]:
+        """The verdict in JSON types, for a table."""
+        return {
+            "verdict": self.level,
+            "ours_over_paper": list(self.ratios),
+            "our_trend": self.ours,
+            "paper_trend": self.paper,
+        }
+
+
+def within_factor(ratio: float | None) -> bool:
+    """Whether ours is within `FACTOR` of the paper's, ratio being ours over the paper's."""
+    return ratio is not None and 1.0 / FACTOR <= ratio <= FACTOR
+
+
+def judge_row(
+    x: Sequence[float], paper: Sequence[float | None], ours: Sequence[float | None]
+) -> Verdict:
+    """Judge a row of numbers that belong to the increasing parameter x.
+
+    Args:
+        x: The parameter, (k,).
+        paper: The paper's numbers, (k,); None where the paper has none.
+        ours: Ours, (k,); None where a run came to no number.
+
+    Returns:
+        The verdict on the entries that the paper has, two at least; a number that we lack makes
+        it ``not reproduced``.
+
+    Raises:
+        InvalidInputError: The lengths differ, or the paper has fewer than two numbers.
+    """
+    if not len(x) == len(paper) == len(ours):
+        raise InvalidInputError("ours", f"has {len(ours)} entries for {len(x)}", ours)
+    ratios = tuple(
+        None if p is None or o is None else o / p for p, o in zip(paper, ours, strict=True)
+    )
+    known = [(i, p) for i, p in enumerate(paper) if p is not None]
+    at = [x[i] for i, _ in known]
+    paper_trend = trend(at, [p for _, p in known])
+    mine = [o for i, _ in known if (o := ours[i]) is not None]
+    if len(mine) < len(known):
+        return Verdict("not reproduced", ratios, "unknown", paper_trend)
+    our_trend = trend(at, mine)
+    level: Level = "same trend" if our_trend == paper_trend else "not reproduced"
+    if all(within_factor(ratios[i]) for i, _ in known):
+        level = "reproduced"
+    return Verdict(level, ratios, our_trend, paper_trend)
+
+
+def judge_change(paper: float, ours: Estimate) -> Verdict:
+    """Judge a relative change, such as what the filter does to the error.
+
+    Args:
+        paper: The paper's relative change; -0.1 is a tenth less.
+        ours: Ours, with its interval.
+
+    Returns:
+        ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
+        factor 2, ``same trend`` if only the former, else ``not reproduced``.
+    """
+    ratio = ours.mean / paper if paper else None
+    mine, said = _direction(ours), _direction(Estimate.exact(paper))
+    level: Level = "not reproduced"
+    if mine == said and said != "no effect shown":
+        level = "reproduced" if within_factor(ratio) else "same trend"
+    return Verdict(level, (ratio,), mine, said)
+
+
+def _direction(change: Estimate) -> str:
+    """Which way a relative change goes, as far as its interval tells."""
+    if change.sign == 0 or abs(change.mean) < NEGLIGIBLE:
+        return "no effect shown"
+    return "raises" if change.sign > 0 else "lowers"

@@ -1,8 +1,0 @@
-"""A page in the browser that replays a record; served by viser, which comes with extra ``view``."""
-
-from iiwa_dnn.viewer.playback import Playback
-from iiwa_dnn.viewer.replay import ReplayPanel
-from iiwa_dnn.viewer.server import close_server, open_server
-from iiwa_dnn.viewer.stage import Stage
-
-__all__ = ["Playback", "ReplayPanel", "Stage", "close_server", "open_server"]

@@ -1,0 +1,100 @@
+"""The controller closed around a target that jumps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from helpers_physics import START, papers_robot
+from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, InvalidInputError
+from iiwa_dnn.app.live import Follower
+from iiwa_dnn.app.live.follower import TIP_RATE, TIP_SPEED
+from iiwa_dnn.app.live.panel import describe
+
+
+@pytest.fixture
+def robot():
+    return papers_robot()
+
+
+def test_it_stays_where_the_target_is(robot):
+    follower = Follower(robot, START)
+    start = follower.configuration
+    for _ in range(20):
+        state = follower.step(start.position, start.rotation)
+    np.testing.assert_allclose(state.q, START, atol=1e-12)
+    assert describe(state) == "at the target"
+
+
+def test_it_reaches_a_target_no_faster_than_it_may(robot):
+    follower = Follower(robot, START)
+    start = follower.configuration
+    position = start.position + np.array([-0.08, -0.12, 0.1])
+    rotation = pin.exp3(np.array([0.2, -0.3, 0.4])) @ start.rotation
+    before, speeds, rates, gaps = start, [], [], []
+    for _ in range(400):
+        state = follower.step(position, rotation)
+        now = follower.configuration
+        speeds.append(np.linalg.norm(now.position - before.position) / follower.dt)
+        turn = pin.log3(now.rotation @ before.rotation.T)
+        rates.append(np.linalg.norm(turn) / follower.dt)
+        gaps.append(follower.check(CrossCheck()) if len(gaps) % 40 == 0 else 0.0)
+        before = now
+    np.testing.assert_allclose(now.position, position, atol=1e-5)
+    np.testing.assert_allclose(now.rotation, rotation, atol=1e-5)
+    assert max(speeds) <= 1.02 * TIP_SPEED
+    assert max(speeds) > 0.9 * TIP_SPEED
+    assert max(rates) <= 1.02 * TIP_RATE
+    assert max(gaps) <= 1e-6
+    assert state.kkt_residual <= 1e-9
+
+
+@pytest.mark.parametrize("direction", [(1, 1, 0), (0, 0, -1), (0, 0, 1), (-1, -1, 0)])
+def test_a_target_out_of_reach_leaves_it_still_and_within_its_limits(robot, direction):
+    follower = Follower(robot, START)
+    start = follower.configuration
+    far = start.position + 3.0 * np.array(direction)
+    for _ in range(1500):
+        state = follower.step(far, start.rotation)
+        assert (np.abs(state.q) <= 2.5).all()
+    drifted = follower.configuration.position
+    for _ in range(50):
+        follower.step(far, start.rotation)
+    assert np.linalg.norm(follower.configuration.position - drifted) < 0.02
+    # And back again.
+    for _ in range(2500):
+        state = follower.step(start.position, start.rotation)
+    assert state.position_error < 1e-3, describe(state)
+
+
+def test_tuning(robot):
+    follower = Follower(robot, START, DoubleIndicator(weight=0.5))
+    follower.tune(weight=0.9, position_gain=3.0)
+    assert (follower.scheme.weight, follower.scheme.position_gain) == (0.9, 3.0)
+    assert follower.scheme.home == tuple(START)
+    with pytest.raises(InvalidInputError, match="weight"):
+        follower.tune(weight=2.0)
+    assert follower.scheme.weight == 0.9
+    # A smaller gain: a slower approach.
+    start = Configuration(robot, START)
+    position = start.position + np.array([0.0, 0.0, 0.02])
+    errors = []
+    for gain in (2.0, 10.0):
+        follower = Follower(robot, START, DoubleIndicator(position_gain=gain))
+        for _ in range(40):
+            state = follower.step(position, start.rotation)
+        errors.append(state.position_error)
+    assert errors[0] == pytest.approx(0.02 * np.exp(-2.0 * 0.195), rel=0.05)
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_a_gain_of_zero_holds_still(robot):
+    follower = Follower(robot, START, DoubleIndicator(position_gain=0.0, orientation_gain=0.0))
+    start = follower.configuration
+    state = follower.step(start.position + 0.1, start.rotation)
+    np.testing.assert_allclose(state.q, START, atol=1e-9)
+
+
+def test_nobody_has_been_asked_before_the_first_step(robot):
+    assert np.isnan(Follower(robot, START).check(CrossCheck()))

@@ -1,0 +1,103 @@
+"""``iiwa-dnn``: the right command runs, a wrong one is told, nothing is coloured when piped."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import iiwa_dnn
+from iiwa_dnn.app.main import COMMANDS, main
+
+SCRIPTS = {"track": "track_heart"}
+
+
+def program(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "iiwa_dnn", *arguments],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+
+
+def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in ([], ["--help"], ["-h"]):
+        assert main(arguments) == 0
+        text = capsys.readouterr().out
+        assert all(f"\n  {name} " in text for name in COMMANDS)
+        assert text.count("\n") < 24
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"iiwa-dnn {iiwa_dnn.__version__}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_and_its_script_have_one_help(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main([name, "--help"])
+    assert end.value.code == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"usage: iiwa-dnn {name} ")
+    if name in SCRIPTS:
+        script = Path(__file__).parents[2] / "scripts" / f"{SCRIPTS[name]}.py"
+        result = subprocess.run(
+            [sys.executable, script, "--help"], capture_output=True, text=True, check=True
+        )
+        # Frames are drawn where the stream's encoding has them.
+        words = [re.findall(r"\w[\w/|,.:-]*", said) for said in (result.stdout, text)]
+        assert words[0][2:] == words[1][3:]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["trakc"], "no command 'trakc'; did you mean: track"),
+        (["completion"], "there are: bash, zsh, tcsh"),
+        (["completion", "bsh"], "did you mean: bash"),
+    ],
+)
+def test_an_unknown_command_is_one_line(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+    error = capsys.readouterr().err
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_piped_output_has_no_colour_and_errors_are_one_line() -> None:
+    done = program("track", "--help")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in done.stdout
+    done = program("track", "--robot", "iiwa8", TERM="xterm-256color")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "iiwa-dnn track: error: no robot 'iiwa8'; did you mean: iiwa7\n"
+
+
+def test_completion_knows_commands_and_options() -> None:
+    done = program("completion", "bash")
+    assert done.returncode == 0
+    bash = shutil.which("bash")
+    assert bash is not None
+    checked = subprocess.run([bash, "-n"], input=done.stdout, text=True, capture_output=True)
+    assert (checked.returncode, checked.stderr) == (0, "")
+    assert all(name in done.stdout for name in (*COMMANDS, "--filter-window"))
+
+
+def test_importing_the_package_does_not_import_the_command_line() -> None:
+    code = (
+        "import sys, iiwa_dnn; print({'tyro', 'tomli_w', 'iiwa_dnn.app.track'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"

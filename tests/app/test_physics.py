@@ -1,0 +1,174 @@
+"""The script that draws in physics: what it writes, what it refuses, how it exits."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from helpers_physics import needs_opengl, run_python
+from iiwa_dnn import Record
+from iiwa_dnn.app.physics import simulate_physics
+from iiwa_dnn.robot import offscreen
+
+QUICK = ("--duration", "0.05", "--quiet", "--no-plots")
+DRY = (*QUICK, "--no-pictures", "--no-video")
+
+needs_mujoco = pytest.mark.usefixtures("mujoco")
+
+
+@pytest.fixture
+def mujoco():
+    return pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+
+
+def run(capsys, *arguments: str) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error."""
+    try:
+        code = simulate_physics(arguments)
+    except SystemExit as end:
+        code = int(end.code or 0)
+    out, err = capsys.readouterr()
+    return code, out, err
+
+
+@needs_mujoco
+@needs_opengl
+def test_everything_is_written(capsys, tmp_path):
+    arguments = ("--duration", "0.2", "--out", str(tmp_path), "--disturb", "--push", "0", "10", "0")
+    code, out, err = run(capsys, *arguments, "--push-at", "0.1", "--push-for", "0.05")
+    assert (code, err) == (0, "")
+    for name in ("record.npz", "metrics.json", "report.md", "moments.png", "moments.pdf",
+                 "torques.png", "torques.pdf", "overview.png", "video.mp4"):  # fmt: skip
+        assert (tmp_path / name).stat().st_size > 1000, name
+    assert "cross-check        proxqp, 200 steps checked, 0 disagreements, 0 failures" in out
+    assert "torque             max" in out
+    metrics = json.loads((tmp_path / "metrics.json").read_text())
+    assert metrics["physics"]["push"]["force"] == [0.0, 10.0, 0.0]
+    assert metrics["physics"]["max_torque_share"] < 0.5
+    assert metrics["settings"]["physics"]["disturbances"]["encoder_bits"] == 18
+    report = (tmp_path / "report.md").read_text()
+    assert "(moments.png)" in report
+    assert "(torques.png)" in report
+    record = Record.load(tmp_path / "record.npz")
+    assert record.torque is not None
+    assert record.torque.shape == (200, 7)
+
+
+@needs_mujoco
+def test_disturbances_one_by_one(capsys, tmp_path):
+    arguments = (*DRY, "--check", "none", "--out", str(tmp_path), "--seed", "3")
+    chosen = ("--friction", "0.02", "--delay", "0", "--disturb")
+    assert run(capsys, *arguments, *chosen)[0] == 0
+    settings = Record.load(tmp_path / "record.npz").settings["physics"]["disturbances"]
+    assert settings == {
+        "mass_error": 0.1, "friction": 0.02, "encoder_noise": 1e-5, "encoder_bits": 18,
+        "delay": 0, "push": None,
+    }  # fmt: skip
+    assert run(capsys, *arguments)[0] == 0
+    settings = Record.load(tmp_path / "record.npz").settings["physics"]["disturbances"]
+    assert not any(settings.values())
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "metrics.json", "record.npz", "report.md", "settings.toml",
+    ]  # fmt: skip
+
+
+@needs_mujoco
+def test_the_check_can_fail(capsys, tmp_path):
+    code, _, err = run(capsys, *DRY, "--tolerance", "1e-18", "--out", str(tmp_path))
+    assert code == 1
+    assert "proxqp differs by" in err
+
+
+@needs_mujoco
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--dt", "0"), "dt"),
+        (("--physics-dt", "2e-3", "--dt", "2e-3"), "at most 0.001"),
+        (("--physics-dt", "3e-4"), "must divide"),
+        (("--mass-error", "2"), "mass_error"),
+        (("--friction", "-1"), "friction"),
+        (("--encoder-bits", "99"), "encoder_bits"),
+        (("--delay", "-1"), "delay"),
+        (("--push", "nan", "0", "0"), "push"),
+        (("--push", "1", "0", "0", "--push-for", "-1"), "push_for"),
+        (("--seed", "-1"), "seed"),
+        (("--robot", "iiwa8"), "iiwa7"),
+        (("--q0", "1", "2"), "shape"),
+        (("--weight", "2"), "weight"),
+        (("--nonsense",), "--help"),
+        (("--out", "/proc/nothing"), "/proc/nothing"),
+    ],
+)
+def test_bad_input_is_one_line_and_2(capsys, tmp_path, arguments, words):
+    out = () if "--out" in arguments else ("--out", str(tmp_path / "run"))
+    code, out_text, err = run(capsys, *DRY, *out, *arguments)
+    assert code == 2
+    assert out_text == ""
+    assert words in err
+    assert err.count("\n") == 1
+    assert "Traceback" not in err
+    assert not (tmp_path / "run" / "record.npz").exists()
+
+
+@needs_mujoco
+def test_without_opengl_one_line_names_the_package_before_the_run(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(offscreen, "egl_works", lambda: False)
+    monkeypatch.setattr(offscreen, "osmesa_works", lambda: False)
+    code, _, err = run(capsys, *QUICK, "--out", str(tmp_path / "run"))
+    assert code == 2
+    assert "apt-get install libosmesa6" in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "run").exists()
+    assert run(capsys, *DRY, "--out", str(tmp_path / "run"))[0] == 0  # physics needs none
+
+
+@pytest.mark.parametrize(
+    ("missing", "arguments"), [("mujoco", DRY), ("imageio_ffmpeg", (*QUICK, "--no-pictures"))]
+)
+def test_without_the_extra_one_line_says_what_to_install(tmp_path, missing, arguments):
+    if missing == "imageio_ffmpeg":
+        pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+        if offscreen_is_missing():
+            pytest.skip("no OpenGL: on Debian, apt-get install libosmesa6")
+    result = run_python(
+        f"import sys; sys.modules['{missing}'] = None\n"
+        "from iiwa_dnn.app.physics import simulate_physics\n"
+        f"sys.exit(simulate_physics({[*arguments, '--out', str(tmp_path)]!r}))"
+    )
+    assert result.returncode == 2
+    assert "pip install 'iiwa-dnn[sim]'" in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def offscreen_is_missing() -> bool:
+    return not (offscreen.egl_works() or offscreen.osmesa_works())
+
+
+@needs_mujoco
+def test_another_robot(capsys, tmp_path):
+    """A made-up arm with other joints: nothing is taken from the iiwa."""
+    links = "".join(
+        f'<link name="l{i}"><inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
+        '<inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        for i in range(8)
+    )
+    axes = ("0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1")
+    joints = "".join(
+        f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/>'
+        f'<origin xyz="0 0 0.2"/><axis xyz="{axis}"/>'
+        '<limit lower="-3" upper="3" velocity="3" effort="90"/></joint>'
+        for i, axis in enumerate(axes)
+    )
+    path = tmp_path / "arm.urdf"
+    path.write_text(f'<robot name="arm">{links}{joints}</robot>')
+    q0 = ("--q0", "0.2", "0.6", "0.1", "0.9", "-0.1", "0.8", "0")
+    arguments = ("--robot", str(path), *q0, "--out", str(tmp_path / "run"))
+    assert run(capsys, *DRY, *arguments, "--check", "none")[0] == 0
+    record = Record.load(tmp_path / "run" / "record.npz")
+    np.testing.assert_array_equal(record.settings["torque_max"], np.full(7, 90.0))

@@ -1,0 +1,101 @@
+"""``solve FILE``: the answer, its residuals, and files that hold no program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import qpsolvers
+
+from iiwa_dnn.app.solve import solve
+
+# min ||x - c||^2 / 2 on a line with bounds.
+PROGRAM: dict[str, Any] = {
+    "P": np.eye(3), "q": [-1.0, 0.0, 1.0], "A": [[1.0, 1.0, 1.0]], "b": [0.5],
+    "lb": np.full(3, -0.2), "ub": np.full(3, 0.6),
+}  # fmt: skip
+
+
+def saved(folder: Path, **arrays: Any) -> str:
+    path = folder / "qp.npz"
+    np.savez(path, **arrays)
+    return str(path)
+
+
+def test_the_answer_is_printed_and_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "answer"
+    file = saved(tmp_path, **PROGRAM)
+    assert solve([file, "--check", "both", "-v", "--out", str(out)]) == 0
+    lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
+    problem = qpsolvers.Problem(**{name: np.array(part) for name, part in PROGRAM.items()})
+    expected = qpsolvers.solve_problem(problem, solver="proxqp", eps_abs=1e-11)
+    np.testing.assert_allclose(np.fromstring(lines["x"], sep=" "), expected.x, atol=1e-9)
+    np.testing.assert_allclose(np.fromstring(lines["y"], sep=" "), expected.y, atol=1e-9)
+    assert lines["status"].startswith("solved")
+    assert all(lines[name].startswith("gap ") for name in ("proxqp", "osqp"))
+    with np.load(out) as answer:
+        np.testing.assert_allclose(answer["x"], expected.x, atol=1e-9)
+        assert set(answer.files) == {"x", "y", "z_box"}
+
+
+def test_inequalities_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = saved(tmp_path, P=np.eye(2), q=np.zeros(2), G=[[-1.0, -1.0]], h=[-2.0])
+    assert solve([file]) == 0
+    assert "x          1 1\n" in capsys.readouterr().out
+
+
+def test_no_solution_is_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = saved(tmp_path, **{**PROGRAM, "b": [5.0]})
+    out = tmp_path / "answer"
+    assert solve([file, "--out", str(out)]) == 1
+    assert "not an answer" in capsys.readouterr().out
+    assert not out.exists()
+    assert solve([file, "-q"]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("primal infeasible: primal ")
+
+
+def test_quiet_prints_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert solve([saved(tmp_path, **PROGRAM), "-q"]) == 0
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"Aeq": np.eye(3)}, "'Aeq'"),
+        ({"P": -np.eye(3)}, "not convex"),
+        ({"P": np.eye(2)}, "P: has shape (2, 2)"),
+        ({"q": [np.nan, 0.0, 0.0]}, "q"),
+        ({"b": np.zeros(2)}, "b"),
+        ({"P": np.array([None])}, "cannot be read"),
+        ({"lb": np.array(["a", "b", "c"])}, "lb"),
+    ],
+)
+def test_bad_programs_are_one_line_and_2(
+    change: dict[str, Any], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert solve([saved(tmp_path, **{**PROGRAM, **change})]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("solve: error: ")
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_what_is_no_archive(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    np.save(tmp_path / "one.npy", np.eye(2))
+    (tmp_path / "text.npz").write_text("P = 1")
+    whole = Path(saved(tmp_path, **PROGRAM))
+    (tmp_path / "half.npz").write_bytes(whole.read_bytes()[:200])
+    (tmp_path / "empty.npz").write_bytes(b"")
+    saved(tmp_path, P=np.eye(2))
+    for name in ("one.npy", "text.npz", "half.npz", "empty.npz", "none.npz", ".", "qp.npz"):
+        assert solve([str(tmp_path / name)]) == 2, name
+        assert capsys.readouterr().err.count("\n") == 1, name
+    assert solve([str(whole), "--tol", "0"]) == 2
+    assert "tol" in capsys.readouterr().err

@@ -1,0 +1,633 @@
+"""The script: what it writes, what it says, and its exit codes."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import resource
+import socket
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import PAPER_Q0, dh_pose
+from iiwa_dnn.app import track as cli
+from iiwa_dnn.app.track import track_heart
+from iiwa_dnn.errors import IiwaDnnError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.program import QP, Solution
+from iiwa_dnn.simulation import runner as loop
+
+SCRIPT = Path(__file__).parents[2] / "scripts" / "track_heart.py"
+IIWA7 = next((SCRIPT.parents[1] / "robots" / "iiwa7").glob("*.urdf"))
+SHORT = ["--dt", "1e-3", "--duration", "0.05"]
+QUICK = [*SHORT, "--no-plots"]
+
+
+def call(arguments: list[str]) -> int:
+    """The exit code, whether the parser ends the process or the function returns."""
+    try:
+        return track_heart(arguments)
+    except SystemExit as end:
+        return int(str(end.code))
+
+
+def results(folder: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Record and metrics, read with numpy and json alone."""
+    with np.load(folder / "record.npz", allow_pickle=False) as archive:
+        arrays = dict(archive)
+    return arrays, json.loads((folder / "metrics.json").read_text())
+
+
+def run(folder: Path, *arguments: str) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    assert call([*QUICK, *arguments, "--out", str(folder)]) == 0
+    return results(folder)
+
+
+# What a run leaves
+
+
+def test_a_run_writes_record_metrics_report_and_figures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "new" / "runs"
+    assert call([*SHORT, "--out", str(folder)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    assert str(folder) in captured.out
+    assert "verdict" in captured.out
+    files = {path.name for path in folder.iterdir()}
+    assert {"record.npz", "metrics.json", "report.md"} <= files
+    figures = {path.stem for path in folder.glob("*.png")}
+    assert figures == {path.stem for path in folder.glob("*.pdf")}
+    assert len(figures) >= 5
+    assert all((folder / name).stat().st_size > 0 for name in files)
+    report = (folder / "report.md").read_text()
+    assert all(f"({figure}.png)" in report for figure in figures)
+
+
+def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call([*QUICK, "--quiet", "--out", str(tmp_path)]) == 0
+    captured = capsys.readouterr()
+    assert (captured.out, captured.err) == ("", "")
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"record.npz", "metrics.json", "report.md", "settings.toml"}
+
+
+def test_no_network_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*args: object, **options: object) -> None:
+        raise AssertionError("a connection was opened")
+
+    monkeypatch.setattr(socket.socket, "connect", refuse)
+    monkeypatch.setattr(socket, "getaddrinfo", refuse)
+    assert call([*QUICK, "--quiet", "--out", str(tmp_path)]) == 0
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("--noise", "0.01", "--filter-window", "10", "--seed", "4"),
+        ("--motion", "rk4", "--check", "both"),
+        ("--mode", "continuous", "--orientation", "block", "--dt", "1e-4", "--duration", "0.02"),
+        ("--joint-limit", "2.3571", "--weight", "1"),
+    ],
+    ids=["default", "noise", "rk4", "continuous", "limit"],
+)
+def test_metrics_can_be_recomputed_from_the_record_alone(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    record, metrics = run(tmp_path, *arguments)
+    position, rotation = dh_pose(record["q"])
+    error = position - record["position_desired"]
+    # tr(R_d' R) = 1 + 2 cos(angle) is useless near zero; ||R - R_d||_F = 2 sqrt(2) sin(angle / 2).
+    desired = np.broadcast_to(dh_pose(record["q"][0])[1], rotation.shape)
+    chord = np.sqrt(((rotation - desired) ** 2).sum(axis=(1, 2)))
+    settings = json.loads(str(record["settings"]))
+    lower, upper = np.array(settings["q_lower"]), np.array(settings["q_upper"])
+    excess = np.maximum(lower - record["q"], record["q"] - upper)
+    dq = np.diff(record["q"], axis=0) / settings["dt"]
+    expected = {
+        "max_position_error_m": np.sqrt((error**2).sum(axis=1)).max(),
+        "mse_position_error_m2": (error**2).mean(),
+        "max_orientation_error_rad": (2.0 * np.arcsin(chord / np.sqrt(8.0))).max(),
+        "joint_drift_rad": np.abs(record["q"][-1] - record["q"][0]).max(),
+        "max_kinetic_index": (dq**2).sum(axis=1).max(),
+        "position_limit_violation_rad": max(excess.max(), 0.0),
+        "velocity_limit_violation_rad_s": max((np.abs(dq) - settings["dq_max"]).max(), 0.0),
+        "max_kkt_residual": record["kkt_residual"].max(),
+    }
+    for name, value in expected.items():
+        assert metrics[name] == pytest.approx(value, rel=1e-9, abs=1e-9), name
+    assert metrics["steps"] == len(record["dq"]) == round(settings["duration"] / settings["dt"])
+    assert metrics["dt_s"] == settings["dt"]
+    assert metrics["duration_s"] == pytest.approx(record["t"][-1])
+    assert metrics["wall_time_s"] > 0.0
+    assert metrics["realtime_factor"] == pytest.approx(
+        metrics["duration_s"] / metrics["wall_time_s"]
+    )
+    check = metrics["crosscheck"]
+    gap = record["solution_gap"].max(axis=1)
+    np.testing.assert_array_equal(record["crosscheck_gap"], gap)
+    believed = record["reference_residual"] <= 1e-8
+    assert believed.any()
+    assert check["steps_checked"] == metrics["steps"]
+    assert check["max_solution_gap"] == record["solution_gap"][believed].max()
+    assert check["max_objective_gap"] == record["objective_gap"][believed].max()
+    residual = record["reference_residual"]
+    assert check["max_reference_residual"] == residual[np.isfinite(residual)].max()
+    assert check["reference_failures"] == (record["reference_residual"] > 1e-8).sum()
+    if settings["mode"] == "converged":
+        assert check["disagreements"] == (gap > 1e-6).sum()
+
+
+@pytest.mark.parametrize(
+    ("check", "solver", "columns"),
+    [("proxqp", "proxqp", 1), ("osqp", "osqp", 1), ("both", "proxqp+osqp", 2), ("none", "none", 0)],
+)
+def test_references(check: str, solver: str, columns: int, tmp_path: Path) -> None:
+    record, metrics = run(tmp_path, "--check", check)
+    assert record["solution_gap"].shape == (50, columns)
+    assert metrics["crosscheck"]["solver"] == solver
+    assert metrics["crosscheck"]["steps_checked"] == (50 if columns else 0)
+    assert metrics["crosscheck"]["disagreements"] == 0
+    assert metrics["crosscheck"]["reference_failures"] == 0
+    if columns:
+        assert 0.0 < metrics["crosscheck"]["max_solution_gap"] <= 1e-6
+
+
+def test_options_reach_the_run(tmp_path: Path) -> None:
+    q0 = [0.1, 0.5, -0.2, 1.2, 0.3, -0.8, 0.0]
+    _, metrics = run(
+        tmp_path,
+        *("--q0", *map(str, q0)),
+        *("--weight", "0.7", "--kinetic", "inertia", "--orientation", "none"),
+        *("--joint-limit", "2", "--scale", "1e-3", "--motion", "midpoint"),
+        *("--noise", "1e-4", "--noise-at", "measurement", "--filter-window", "3", "--seed", "8"),
+        *("--check", "osqp", "--tolerance", "1e-5", "--tip", "iiwa7_link_7"),
+    )
+    settings = metrics["settings"]
+    expected = {
+        "robot": "iiwa7",
+        "tip": "iiwa7_link_7",
+        "q0": q0,
+        "q_lower": [-2.0] * 7,
+        "q_upper": [2.0] * 7,
+        "dt": 1e-3,
+        "duration": 0.05,
+        "mode": "converged",
+        "motion": "midpoint",
+        "noise": 1e-4,
+        "noise_at": "measurement",
+        "filter_window": 3,
+        "seed": 8,
+    }
+    assert expected.items() <= settings.items()
+    scheme = {"weight": 0.7, "kinetic": "inertia", "orientation": "none", "home": q0}
+    assert scheme.items() <= settings["scheme"].items()
+    assert settings["reference"]["scale"] == 1e-3
+    assert settings["check"]["tolerance"] == 1e-5
+
+
+def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: dict[str, Any] = {}
+
+    def take(robot: Any, scheme: Any, reference: Any, q0: Any, **options: Any) -> None:
+        asked.update(options, robot=robot, scheme=scheme, reference=reference, q0=q0)
+        raise IiwaDnnError("seen enough")
+
+    monkeypatch.setattr(cli, "Simulation", take)
+    assert call([]) == 2
+    assert asked["robot"].name == "iiwa7"
+    np.testing.assert_array_equal(asked["robot"].q_lower, np.full(7, -2.5))
+    np.testing.assert_array_equal(asked["robot"].q_upper, np.full(7, 2.5))
+    np.testing.assert_array_equal(asked["q0"], PAPER_Q0)
+    scheme = asked["scheme"]
+    gains = (scheme.drift_gain, scheme.position_gain, scheme.orientation_gain, scheme.limit_gain)
+    assert gains == (10.2, 10.2, 10.2, 20.0)
+    assert (scheme.weight, scheme.orientation, scheme.kinetic) == (0.2, "so3", "identity")
+    assert (asked["reference"].scale, asked["reference"].period) == (3.45e-3, 10.0)
+    np.testing.assert_allclose(
+        asked["reference"].at(0.0).position, dh_pose(PAPER_Q0)[0], rtol=0, atol=1e-12
+    )
+    expected = {
+        "dt": 1e-4,
+        "duration": 10.0,
+        "mode": "converged",
+        "motion": "euler",
+        "noise": 0.0,
+        "filter_window": 1,
+        "seed": 0,
+    }
+    assert expected.items() <= asked.items()
+    assert (asked["check"].solvers, asked["check"].tolerance) == (("proxqp",), 1e-6)
+
+
+def test_datasheet_limits(tmp_path: Path) -> None:
+    _, metrics = run(tmp_path, "--joint-limit", "datasheet", "--check", "none")
+    degrees = np.rad2deg(metrics["settings"]["q_upper"])
+    np.testing.assert_allclose(degrees, [170, 120, 170, 120, 170, 120, 175], atol=1e-6)
+
+
+def test_negative_numbers_are_taken_in_every_notation(tmp_path: Path) -> None:
+    q0 = ["-1e-3", "-.5", "-2e-1", "1.2", "-3E-1", "-0.8", "0"]
+    _, metrics = run(tmp_path, "--q0", *q0, "--check", "none")
+    assert metrics["settings"]["q0"] == [float(value) for value in q0]
+
+
+def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
+    q0 = map(str, np.delete(PAPER_Q0, 2))
+    record, metrics = run(
+        tmp_path,
+        *("--robot", str(IIWA7), "--lock", "iiwa7_joint_3", "--q0", *q0, "--scale", "1e-3"),
+    )
+    assert record["q"].shape == (51, 6)
+    position, _ = dh_pose(np.insert(record["q"], 2, 0.0, axis=1))
+    np.testing.assert_allclose(record["position"], position, rtol=0, atol=1e-12)
+    assert metrics["max_position_error_m"] < 1e-5
+
+
+# Exit code 1
+
+
+def test_a_tolerance_that_nothing_meets_names_step_gap_and_solver(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call([*QUICK, "--tolerance", "1e-18", "--out", str(tmp_path)]) == 1
+    record, metrics = results(tmp_path)
+    step = int(np.flatnonzero(record["crosscheck_gap"] > 1e-18)[0])
+    gap = f"{record['crosscheck_gap'][step]:.3g}"
+    output = capsys.readouterr().out
+    for text in (output, (tmp_path / "report.md").read_text()):
+        (line,) = [line for line in text.splitlines() if "differs by" in line]
+        assert f"step {step} " in line
+        assert "proxqp" in line
+        assert gap in line
+    assert metrics["crosscheck"]["disagreements"] == (record["crosscheck_gap"] > 1e-18).sum() > 40
+
+
+def test_the_reasons_are_told_even_when_quiet(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["--quiet", "--check", "both", "--tolerance", "1e-18", "--out", str(tmp_path)]
+    assert call([*QUICK, *arguments]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "differs by" in captured.err
+
+
+def test_one_wrong_answer_of_the_network_is_caught(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Liar(DNNSolver):
+        calls = 0
+
+        def solve(self, qp: QP) -> Solution:
+            solution = super().solve(qp)
+            Liar.calls += 1
+            if Liar.calls != 24:
+                return solution
+            return solution._replace(point=solution.point + 1e-5)
+
+    monkeypatch.setattr(loop, "DNNSolver", Liar)
+    assert call([*QUICK, "--check", "both", "--out", str(tmp_path)]) == 1
+    output = capsys.readouterr().out
+    assert "step 23 (t = 0.023 s)" in output
+    assert "1e-05 rad/s" in output
+    record, metrics = results(tmp_path)
+    assert np.flatnonzero(record["crosscheck_gap"] > 1e-6).tolist() == [23]
+    assert metrics["crosscheck"]["disagreements"] == 1
+    assert metrics["crosscheck"]["first_disagreement"]["step"] == 23
+
+
+def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # The start itself is outside.
+    assert call([*QUICK, "--joint-limit", "2.35", "--out", str(tmp_path)]) == 1
+    assert "joint position limit broken by 0.007 rad; joint 1" in capsys.readouterr().out
+    _, metrics = results(tmp_path)
+    assert metrics["position_limit_violation_rad"] == pytest.approx(0.007)
+
+
+def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    # A heart of 3 m: out of the arm's reach.
+    far = [*QUICK, "--scale", "0.1", "--duration", "2", "--policy", "stop"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    record, metrics = results(tmp_path)
+    steps = len(record["dq"])
+    assert steps < 2000
+    assert metrics["settings"]["status"].startswith(f"stopped at step {steps - 1} ")
+    output = capsys.readouterr().out
+    assert f"ended after {steps} of 2,000 steps" in output
+    assert "against joint 4 lower velocity limit" in output
+    np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
+
+
+def test_a_step_that_raises_writes_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    far = [*QUICK, "--scale", "0.1", "--duration", "1", "--policy", "raise"]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err == (
+        "track_heart: error: step 403: no joint velocity inside the bounds fulfils the task\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> None:
+    far = [*QUICK, "--scale", "0.008", "--speed", "0.06", "--duration", "1", "--policy", policy]
+    assert call([*far, "--out", str(tmp_path)]) == 1
+    record, metrics = results(tmp_path)
+    assert metrics["settings"]["status"] == "completed"
+    assert len(record["dq"]) == 1000
+    limits = 0.06 * np.deg2rad([98, 98, 100, 130, 140, 180, 180])
+    assert (np.abs(record["dq"]) <= limits + 1e-12).all()
+    assert metrics["incidents"][f"{policy}_steps"] > 300
+    assert metrics["incidents"]["blocking"][0]["joint"] == 4
+    report = (tmp_path / "report.md").read_text()
+    assert "joint 4 lower velocity limit" in report
+    if policy == "slow":  # exactly along the path, later
+        assert metrics["max_position_error_m"] < 1e-4
+        assert metrics["incidents"]["path_time_s"] < 0.9
+    else:  # in time, beside the path
+        assert metrics["max_position_error_m"] > 1e-3
+        assert metrics["incidents"]["path_time_s"] == pytest.approx(1.0)
+
+
+# Exit code 2
+
+
+def not_xml(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_text("solid robot\n")
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def half_xml(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_text('<robot name="r">\n  <link name="a"/>\n')
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def no_joints(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def written(folder: Path, text: str) -> list[str]:
+    (folder / "robot.urdf").write_text(text)
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def xml_bomb(folder: Path) -> list[str]:
+    # Each entity is ten of the one before: 10 GB of text.
+    entities = ['<!ENTITY e0 "0123456789">']
+    entities += [f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 10)]
+    return written(folder, f'<!DOCTYPE r [{"".join(entities)}]><robot name="&e9;"/>')
+
+
+def external_entity(folder: Path) -> list[str]:
+    secret = (folder / "secret").as_uri()
+    (folder / "secret").write_text("s3cret")
+    return written(folder, f'<!DOCTYPE r [<!ENTITY e SYSTEM "{secret}">]><robot name="&e;"/>')
+
+
+def deep_xml(folder: Path) -> list[str]:
+    return written(folder, "<robot>" * 100_000)
+
+
+def no_text(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_bytes(bytes(range(256)))
+    return ["--robot", str(folder / "robot.urdf")]
+
+
+def limits_crossed(folder: Path) -> list[str]:
+    text = IIWA7.read_text()
+    assert 'lower="-' in text
+    return written(folder, text.replace('lower="-', 'lower="'))
+
+
+def nan_in_urdf(folder: Path) -> list[str]:
+    text = IIWA7.read_text()
+    assert 'xyz="0 0 0.1925"' in text
+    return written(folder, text.replace('xyz="0 0 0.1925"', 'xyz="0 nan 0.1925"'))
+
+
+def below_a_file(folder: Path) -> list[str]:
+    (folder / "file").write_text("in the way")
+    return ["--out", str(folder / "file" / "run")]
+
+
+def a_file(folder: Path) -> list[str]:
+    (folder / "file").write_text("in the way")
+    return ["--out", str(folder / "file")]
+
+
+def q0(*values: str) -> list[str]:
+    return ["--q0", *values]
+
+
+BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
+    "unknown robot": (["--robot", "iiwa14"], "'iiwa14'; did you mean: iiwa7"),
+    "unknown robot, none near": (["--robot", "zebra"], "'zebra'; there are: iiwa7"),
+    "missing file": (["--robot", "none/robot.urdf"], "none/robot.urdf"),
+    "a folder": (["--robot", "./"], "directory"),
+    "not XML": (not_xml, "not XML"),
+    "half XML": (half_xml, "not XML"),
+    "no joints": (no_joints, "no joints"),
+    "an XML bomb": (xml_bomb, "DOCTYPE"),
+    "an external entity": (external_entity, "DOCTYPE"),
+    "elements without end": (deep_xml, "not XML"),
+    "not text": (no_text, "not XML"),
+    "limits the wrong way round": (limits_crossed, "is not below"),
+    "an origin that is not a number": (nan_in_urdf, "robot.urdf"),
+    "unknown frame": (["--tip", "iiwa7_link_77"], "'iiwa7_link_77'; did you mean: iiwa7_link_7"),
+    "unknown joint": (["--lock", "elbow"], "'elbow'"),
+    "q0 NaN": (q0("nan", *"000000"), "q"),
+    "q0 infinite": (q0(*"000000", "inf"), "q"),
+    "q0 too short": (q0("0", "0.1"), "7"),
+    "q0 too long": (q0(*"00000000"), "7"),
+    "q0 a word": (q0("home"), "'home'"),
+    "dt 0": (["--dt", "0"], "dt"),
+    "dt negative": (["--dt", "-0.001"], "dt"),
+    "dt NaN": (["--dt", "nan"], "dt"),
+    "dt infinite": (["--dt", "inf"], "dt"),
+    "dt a word": (["--dt", "fast"], "--dt"),
+    "dt for more steps than memory": (["--dt", "1e-14"], "dt"),
+    "dt for more steps than numbers": (["--dt", "5e-324"], "dt"),
+    "dt longer than the run": (["--dt", "1"], "duration"),
+    "duration 0": (["--duration", "0"], "duration"),
+    "duration negative": (["--duration", "-1"], "duration"),
+    "duration NaN": (["--duration", "nan"], "duration"),
+    "duration infinite": (["--duration", "inf"], "duration"),
+    "duration for more steps than memory": (["--duration", "1e12"], "duration"),
+    "duration for more steps than numbers": (["--duration", "1e308"], "duration"),
+    "weight above 1": (["--weight", "1.5"], "weight"),
+    "weight negative": (["--weight", "-0.1"], "weight"),
+    "weight NaN": (["--weight", "nan"], "weight"),
+    "noise negative": (["--noise", "-0.01"], "noise"),
+    "noise negative, in powers of ten": (["--noise", "-1e-2"], "noise"),
+    "noise NaN": (["--noise", "nan"], "noise"),
+    "noise that overflows": (["--noise", "1e308"], "noise"),
+    "noise infinite": (["--noise", "inf"], "noise"),
+    "filter window 0": (["--filter-window", "0"], "filter"),
+    "filter window a fraction": (["--filter-window", "2.5"], "filter"),
+    "seed negative": (["--seed", "-1"], "seed"),
+    "seed a word": (["--seed", "lucky"], "seed"),
+    "scale 0": (["--scale", "0"], "scale"),
+    "scale NaN": (["--scale", "nan"], "scale"),
+    "joint limit a word": (["--joint-limit", "abc"], "joint-limit"),
+    "joint limit negative": (["--joint-limit", "-1"], "joint-limit"),
+    "joint limit 0": (["--joint-limit", "0"], "joint-limit"),
+    "joint limit NaN": (["--joint-limit", "nan"], "joint-limit"),
+    "speed 0": (["--speed", "0"], "speed"),
+    "speed negative": (["--speed", "-0.5"], "speed"),
+    "speed NaN": (["--speed", "nan"], "speed"),
+    "gain negative": (["--gain", "-1"], "gain"),
+    "gain NaN": (["--gain", "nan"], "gain"),
+    "integral gain negative": (["--integral-gain", "-1"], "integral_gain"),
+    "unknown policy": (["--policy", "hope"], "'hope'"),
+    "tolerance 0": (["--tolerance", "0"], "tolerance"),
+    "tolerance NaN": (["--tolerance", "nan"], "tolerance"),
+    "unknown mode": (["--mode", "discrete"], "'discrete'"),
+    "unknown motion": (["--motion", "heun"], "'heun'"),
+    "unknown orientation": (["--orientation", "quaternion"], "'quaternion'"),
+    "unknown kinetic": (["--kinetic", "mass"], "'mass'"),
+    "unknown check": (["--check", "gurobi"], "'gurobi'"),
+    "unknown noise entry": (["--noise-at", "motor"], "'motor'"),
+    "unknown option": (["--wieght", "0.2"], "--wieght"),
+    "an argument too many": (["heart"], "heart"),
+    "an option without its value": (["--weight"], "--weight"),
+    "continuous and RK4": (["--mode", "continuous", "--motion", "rk4"], "continuous"),
+    "out below a file": (below_a_file, "file"),
+    "out a file": (a_file, "file"),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_exits_2_with_one_clear_line_and_leaves_nothing(
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    bad, said = BAD[case]
+    arguments = bad(tmp_path) if callable(bad) else bad
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*")}
+    assert call(["--out", str(tmp_path / "new" / "run"), *QUICK, *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1
+    assert captured.err.startswith("track_heart: error: ")
+    assert captured.err.endswith("\n")
+    assert said in captured.err
+    assert "Traceback" not in captured.err
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*")} == before
+
+
+@pytest.mark.parametrize("case", ["weight above 1", "dt NaN", "unknown robot", "an XML bomb"])
+def test_bad_input_leaves_earlier_results_alone(case: str, tmp_path: Path) -> None:
+    folder, (bad, _) = tmp_path / "run", BAD[case]
+    run(folder)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert call([*QUICK, *(bad(tmp_path) if callable(bad) else bad), "--out", str(folder)]) == 2
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS])
+def test_a_full_or_broken_disk_is_one_line_and_keeps_the_old_run(
+    code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path)
+    capsys.readouterr()
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def fail(descriptor: int) -> None:
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr(os, "fsync", fail)  # where the system tells of it at the latest
+    assert call([*QUICK, "--seed", "1", "--out", str(tmp_path)]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert os.strerror(code) in captured.err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_file_that_the_system_cuts_off(tmp_path: Path) -> None:
+    # No mock: the process may write no file above 4 kB, the record is larger.
+    run(tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    done = script(tmp_path, *QUICK, "--out", ".", largest_file=4096)
+    assert done.returncode == 2
+    assert done.stderr == "track_heart: error: record.npz: cannot be written (File too large)\n"
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize("name", ["two\nlines", "nul\0"])
+def test_an_out_folder_with_a_strange_name_makes_one_line_too(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("in the way")
+    assert call([*QUICK, "--out", f"{tmp_path}/file/{name}"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["--help"]) == 0
+    text = capsys.readouterr().out
+    options = (
+        "robot mode weight orientation joint-limit dt duration scale motion noise filter-window "
+        "seed check tolerance out no-plots quiet policy speed gain integral-gain"
+    )
+    for option in options.split():
+        assert f"--{option}" in text
+
+
+# The script itself
+
+
+def script(
+    folder: Path, *arguments: str, largest_file: int | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run the script as a process, which may write no file above that size [bytes]."""
+
+    def restrict() -> None:
+        if largest_file is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+    environment = {**os.environ, "MPLBACKEND": "", "DISPLAY": ""}
+    return subprocess.run(
+        [sys.executable, str(SCRIPT), *arguments],
+        cwd=folder,
+        env={name: value for name, value in environment.items() if value},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+        preexec_fn=restrict,
+    )
+
+
+def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None:
+    arguments = [*SHORT, "--check", "osqp", "--noise", "0.01"]
+    done = script(tmp_path, *arguments, "--out", "here")
+    # No terminal, no progress bar; and any warning would be on standard error.
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "verdict" in done.stdout
+    assert list((tmp_path / "here").glob("*.png"))
+    call([*arguments, "--no-plots", "--quiet", "--out", str(tmp_path / "there")])
+    # The same seed gives the same record, bit for bit, in another process too.
+    here, there = (tmp_path / name / "record.npz" for name in ("here", "there"))
+    assert here.read_bytes() == there.read_bytes()
+
+
+def test_the_scripts_exit_code_is_the_functions(tmp_path: Path) -> None:
+    done = script(tmp_path, *QUICK, "--weight", "1.5")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == "track_heart: error: weight: must be in [0, 1], not 1.5\n"
+    assert list(tmp_path.iterdir()) == []

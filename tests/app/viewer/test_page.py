@@ -1,0 +1,248 @@
+"""The page in a real browser: what it shows, and what hands can do to it."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from urllib.parse import urlsplit
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from helpers_browser import needs_browser, open_browser, picture, requested, wait_for
+from helpers_physics import START, heart_without_physics, papers_robot
+from iiwa_dnn import InvalidInputError
+from iiwa_dnn.app.live.page import Page
+from iiwa_dnn.robot.shapes import joint_poses
+
+pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")
+selenium = pytest.importorskip("selenium", reason="pip install 'iiwa-dnn[test]'")
+
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.by import By  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def page():
+    """The page of a heart, kept moving as the script does it."""
+    robot = papers_robot()
+    record = heart_without_physics(robot)
+    page = Page(robot, record.q[0], record, port=0)
+    page.server.scene.configure_default_lights(cast_shadow=False)  # slow without a graphics card
+    stop = threading.Event()
+    loop = threading.Thread(target=page.run, args=(stop.is_set,))
+    loop.start()
+    yield page
+    stop.set()
+    loop.join()
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def browser(page, tmp_path_factory):
+    with open_browser(tmp_path_factory.mktemp("profile")) as browser:
+        browser.get_log("performance")  # what the empty start page asked for
+        browser.get(page.address)
+        wait_for(lambda: buttons(browser, "Play"), "the page's controls")
+        wait_for(lambda: arm(picture(browser)).sum() > 1000, "the arm")
+        yield browser
+
+
+def buttons(browser, text: str) -> list:
+    return browser.execute_script(
+        "return [...document.querySelectorAll('button')].filter("
+        "button => button.innerText.trim() === arguments[0])",
+        text,
+    )
+
+
+def click(browser, text: str) -> None:
+    """Click a button; the page may put a new one in its place meanwhile."""
+
+    def try_to() -> bool:
+        found = buttons(browser, text)
+        if found:
+            found[0].click()
+        return bool(found)
+
+    wait_for(try_to, f"the button {text!r}")
+
+
+def sliders(browser) -> list:
+    return browser.execute_script(
+        "return [...document.querySelectorAll('[role=slider]')].filter("
+        "slider => slider.offsetParent !== null)"
+    )
+
+
+def arm(image: np.ndarray) -> np.ndarray:
+    """Orange pixels, left of the page's controls, which are orange too."""
+    image = image[:, :600].astype(int)
+    return (image[..., 0] > image[..., 1] + 60) & (image[..., 1] > image[..., 2] + 40)
+
+
+def red(image: np.ndarray) -> np.ndarray:
+    """Pixels of the drawn path."""
+    image = image[:, :600].astype(int)
+    return (image[..., 0] > 170) & (image[..., 1] < 90) & (image[..., 2] < 110)
+
+
+@needs_browser
+def test_it_loads_from_this_machine_alone_and_is_not_blank(browser, page):
+    image = picture(browser)
+    assert arm(image).sum() > 1000
+    assert len(np.unique(image[:, :600].reshape(-1, 3), axis=0)) > 500
+    ours = {
+        urlsplit(address).netloc
+        for address in requested(browser)
+        if urlsplit(address).scheme in ("http", "https", "ws", "wss")
+    }
+    assert ours == {urlsplit(page.address).netloc}
+    errors = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+    assert not [entry for entry in errors if "favicon" not in entry["message"]]
+    assert "position error" in browser.page_source
+    assert "cross-check gap (proxqp)" in browser.page_source
+
+
+@needs_browser
+def test_the_slider_moves_the_arm(browser, page):
+    sliders(browser)[0].send_keys(Keys.HOME)
+    wait_for(lambda: page.replay.playback.time == 0.0, "the start")
+    start = wait_for(lambda: still(browser), "a still picture")
+    slider = sliders(browser)[0]
+    ActionChains(browser).drag_and_drop_by_offset(slider, 60, 0).perform()
+    wait_for(lambda: 1.0 <= page.replay.playback.time < 10.0, "the slider to move the replay")
+    assert not page.replay.playback.playing
+    moved = wait_for(lambda: still(browser), "a still picture")
+    changed = np.abs(start[:, :600].astype(int) - moved[:, :600]).max(axis=-1) > 40
+    assert changed.sum() > 500
+    assert red(moved).sum() > red(start).sum() + 20  # the path drawn so far
+    # What is on the stage is the record's own posture at that time.
+    shown = [np.array(joint.position) for joint in page.stage._joints]
+    q = page.replay.record.q[page.replay.sample]
+    there = [pose.translation for pose in joint_poses(page.stage.robot, q)]
+    np.testing.assert_allclose(shown, there, atol=1e-6)
+
+
+def still(browser) -> np.ndarray | None:
+    """A picture, once two in a row are the same."""
+    first, second = picture(browser), picture(browser)
+    return second if np.array_equal(first, second) else None
+
+
+@needs_browser
+def test_play_runs_and_pause_stops(browser, page):
+    sliders(browser)[0].send_keys(Keys.HOME)
+    wait_for(lambda: page.replay.playback.time == 0.0, "the start")
+    first = picture(browser)
+    click(browser, "Play")
+    wait_for(lambda: page.replay.playback.time > 1.0, "the replay to run")
+    assert page.replay.playback.playing
+    wait_for(lambda: buttons(browser, "Pause"), "the button to say Pause")
+    second = picture(browser)
+    assert (np.abs(first[:, :600].astype(int) - second[:, :600]).max(axis=-1) > 40).sum() > 500
+    click(browser, "Pause")
+    wait_for(lambda: not page.replay.playback.playing, "the replay to stop")
+    time = page.replay.playback.time
+    wait_for(lambda: buttons(browser, "Play"), "the button to say Play")
+    assert page.replay.playback.time == time
+    shown = float(sliders(browser)[0].get_attribute("aria-valuenow"))
+    assert shown == pytest.approx(time, abs=0.02)
+
+
+@needs_browser
+def test_live_the_arm_follows_the_dragged_target(browser, page):
+    click(browser, "live")
+    wait_for(lambda: page.live.active, "the live mode")
+    wait_for(lambda: len(sliders(browser)) == 4, "weight and gains")
+    wait_for(lambda: "distance to the target" in browser.page_source, "the read-out")
+    start = np.array(page.live.target.position)
+    drag(browser, page, 0.05)
+    moved = wait_for(
+        lambda: (
+            np.linalg.norm(np.array(page.live.target.position) - start) > 0.01
+            and np.array(page.live.target.position)
+        ),
+        "the target to be dragged",
+    )
+    follower = page.live.follower
+    wait_for(
+        lambda: np.linalg.norm(follower.configuration.position - moved) < 1e-3,
+        "the arm to follow",
+    )
+    before = follower.scheme.weight
+    sliders(browser)[0].send_keys(Keys.ARROW_RIGHT)
+    wait_for(lambda: follower.scheme.weight > before, "the weight to change")
+    click(browser, "Target back to the start")
+    wait_for(lambda: np.linalg.norm(follower.configuration.position - start) < 1e-3, "the way back")
+    click(browser, "replay")
+    wait_for(lambda: not page.live.active and buttons(browser, "Play"), "the replay again")
+
+
+def drag(browser, page: Page, metres: float) -> None:
+    """Take the handle of one of the target's axes with the mouse and pull it."""
+    camera = next(iter(page.server.get_clients().values())).camera
+    w, x, y, z = map(float, camera.wxyz)
+    to_camera = pin.Quaternion(w, x, y, z).matrix().T
+    scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
+
+    def pixel(point: np.ndarray) -> np.ndarray:
+        seen = to_camera @ (point - camera.position)
+        return scale * seen[:2] / seen[2]  # from the middle of the canvas
+
+    origin = np.array(page.live.target.position)
+    w, x, y, z = map(float, page.live.target.wxyz)
+    axes = pin.Quaternion(w, x, y, z).matrix().T
+    # The axis that lies across the picture, not the one that points into it.
+    axis = max(axes, key=lambda axis: np.linalg.norm(pixel(origin + axis) - pixel(origin)))
+    canvas = max(
+        browser.find_elements(By.CSS_SELECTOR, "canvas"), key=lambda canvas: canvas.size["width"]
+    )
+    grip, goal = pixel(origin + 0.12 * axis), pixel(origin + (0.12 + metres) * axis)
+    hand = ActionChains(browser).move_to_element_with_offset(canvas, *map(int, grip))
+    hand = hand.click_and_hold().pause(0.2).move_by_offset(*map(int, goal - grip))
+    hand.pause(0.3).release().perform()
+
+
+def test_only_this_machine_is_let_in_unless_told_otherwise():
+    robot = papers_robot()
+    page = Page(robot, START, port=0)
+    try:
+        address = urlsplit(page.address)
+        assert address.hostname == "127.0.0.1"
+        with socket.create_connection(("127.0.0.1", address.port), timeout=5):
+            pass
+        # Another address of this same machine: nobody listens there.
+        with pytest.raises(OSError):  # noqa: PT011
+            socket.create_connection(("127.0.0.2", address.port), timeout=5)
+        assert page.live.active
+        page.tick(0.1)
+    finally:
+        page.close()
+    open_page = Page(robot, START, host="0.0.0.0", port=0)
+    try:
+        port = urlsplit(open_page.address).port
+        with socket.create_connection(("127.0.0.2", port), timeout=5):
+            pass
+    finally:
+        open_page.close()
+
+
+def test_a_port_that_is_taken():
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        with pytest.raises(InvalidInputError, match=f"cannot listen on 127.0.0.1:{port}"):
+            Page(papers_robot(), START, port=port)
+
+
+@pytest.mark.parametrize(("host", "port"), [("127.0.0.1", 70_000), ("no such host", 0)])
+def test_an_address_that_is_none(host, port):
+    with pytest.raises(InvalidInputError, match="cannot listen"):
+        Page(papers_robot(), START, host=host, port=port)
+
+
+def test_the_start_is_checked():
+    with pytest.raises(InvalidInputError, match="q"):
+        Page(papers_robot(), START[:5], port=0)

@@ -1,0 +1,46 @@
+"""The replay's clock."""
+
+from __future__ import annotations
+
+import pytest
+
+from iiwa_dnn.app.viewer.playback import Playback
+
+
+def test_it_stands_still_until_it_is_told_to_play():
+    playback = Playback(0.0, 10.0)
+    playback.advance(3.0)
+    assert playback.time == 0.0
+    playback.play()
+    playback.advance(3.0)
+    assert playback.time == 3.0
+    playback.pause()
+    playback.advance(3.0)
+    assert playback.time == 3.0
+
+
+@pytest.mark.parametrize("speed", [0.1, 1.0, 5.0])
+def test_speed(speed):
+    playback = Playback(2.0, 10.0, 2.0, speed)
+    playback.play()
+    playback.advance(1.0)
+    assert playback.time == pytest.approx(2.0 + speed)
+
+
+def test_it_stops_at_the_end_and_starts_again():
+    playback = Playback(1.0, 2.0)
+    assert playback.time == 1.0
+    playback.toggle()
+    playback.advance(5.0)
+    assert (playback.time, playback.playing) == (2.0, False)
+    playback.toggle()
+    assert (playback.time, playback.playing) == (1.0, True)
+    playback.toggle()
+    assert not playback.playing
+
+
+def test_seeking_stays_inside_the_record():
+    playback = Playback(1.0, 2.0)
+    for asked, time in ((-5.0, 1.0), (1.5, 1.5), (9.0, 2.0)):
+        playback.seek(asked)
+        assert playback.time == time

@@ -1,0 +1,218 @@
+"""What is done at a step without a solution: limits hold, and as much of the task as can be had."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import near_target, paper_robot, solve_by
+from iiwa_dnn.control import policies
+from iiwa_dnn.control.policies import Action, largest_fraction, least_violation, resolve
+from iiwa_dnn.errors import NoSolutionError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.program import QP, Solution, Status
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.schemes import DoubleIndicator
+
+WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
+
+
+def program(seed: int, orientation: str = "so3", velocity: float = 0.3, outside: float = 0.0) -> QP:
+    """A step of the iiwa whose target is far off; `outside` puts joint 1 below its limit."""
+    rng = np.random.default_rng(seed)
+    q = np.clip(np.array(PAPER_Q0) + 0.3 * rng.standard_normal(7), -2.4, 2.4)
+    if outside:
+        q[0] = -2.5 - outside
+    robot = paper_robot().with_limits(velocity=velocity)
+    scheme = DoubleIndicator(orientation=orientation, home=PAPER_Q0)
+    return scheme.build_qp(Configuration(robot, q), near_target(q, seed, 0.3))
+
+
+def two_joints(b: float, ub: tuple[float, float] = (1.0, 1.0)) -> QP:
+    """Both joints push the same way: x1 + 2 x2 = b inside a box from -1."""
+    return QP(np.eye(2), np.zeros(2), A=[[1.0, 2.0]], b=[b], lb=[-1.0, -1.0], ub=ub)
+
+
+def failed(qp: QP) -> Solution:
+    solution = DNNSolver().solve(qp)
+    assert not solution.found
+    return solution
+
+
+def inside(dq: np.ndarray, qp: QP) -> bool:
+    return bool(((qp.lb <= dq) & (dq <= qp.ub)).all())
+
+
+def undamped(qp: QP) -> policies.Reach:
+    return least_violation(qp, damping=0.0)
+
+
+def distance(rows: np.ndarray, rhs: np.ndarray, qp: QP) -> float:
+    """Half the squared distance of `rhs` from what the bounds let the rows be."""
+    return lsq_linear(rows, rhs, (qp.lb, qp.ub), "trf", tol=1e-15, max_iter=1000).cost
+
+
+def test_the_largest_fraction_in_closed_form() -> None:
+    # At most 1 + 2 = 3 of the 12 that are asked for; both upper bounds are in the way.
+    reach = largest_fraction(two_joints(12.0))
+    assert reach.fraction == pytest.approx(0.25, abs=1e-9)
+    np.testing.assert_allclose(reach.dq, [1.0, 1.0], rtol=0, atol=1e-9)
+    assert reach.sides.tolist() == [1, 1]
+    reach = largest_fraction(two_joints(-12.0))
+    assert reach.fraction == pytest.approx(0.25, abs=1e-9)
+    assert reach.sides.tolist() == [-1, -1]
+    assert largest_fraction(two_joints(2.5)).fraction == 1.0
+    # A row that no joint moves: only nothing is feasible, and no bound is to blame.
+    stuck = QP(np.eye(2), np.zeros(2), A=[[0.0, 0.0]], b=[1.0], lb=[-1, -1], ub=[1, 1])
+    assert largest_fraction(stuck).fraction == pytest.approx(0.0, abs=1e-9)
+    # Joint 1 has to come back, joint 2 cannot make up for it: not even rest is feasible.
+    back = QP(np.eye(2), np.zeros(2), A=[[1.0, 0.5]], b=[1.0], lb=[-1, -1], ub=[-0.8, 1])
+    assert np.isnan(largest_fraction(back).fraction)
+
+
+@pytest.mark.parametrize("orientation", ["so3", "block", "none"])
+def test_a_little_more_than_the_largest_fraction_is_not_feasible(orientation: str) -> None:
+    fractions = []
+    for seed in range(10):
+        qp = program(seed, orientation)
+        reach = largest_fraction(qp)
+        fractions.append(reach.fraction)
+        np.testing.assert_allclose(qp.A @ reach.dq, reach.fraction * qp.b, rtol=0, atol=1e-9)
+        assert inside(reach.dq, qp)
+        # Another method: the distance to the nearest attainable velocity, by least squares.
+        for share, feasible in ((0.999, True), (1.001, False)):
+            gap = distance(qp.A, share * reach.fraction * qp.b, qp)
+            assert (gap < 1e-16) == feasible
+    assert 0.0 < min(fractions) < max(fractions) < 1.0
+
+
+@pytest.mark.parametrize("outside", [0.0, 0.002])
+def test_the_least_violation_is_a_quadratic_programs_solution(outside: float) -> None:
+    for seed in range(10):
+        qp = program(seed, outside=outside)
+        rows, rhs = WEIGHTS @ qp.A, WEIGHTS @ qp.b
+        for damping in (0.0, 0.01, None):
+            dq = least_violation(qp, damping).dq
+            assert inside(dq, qp)
+            if damping is None:  # a hundredth of what is left without it
+                damping = 0.01 * np.sqrt(2.0 * distance(rows, rhs, qp))
+            # The seventh direction is free; a touch of the norm makes it one point for ProxQP.
+            cost = rows.T @ rows + max(damping, 1e-9) * np.eye(7)
+            other = solve_by("proxqp", QP(cost, -rows.T @ rhs, lb=qp.lb, ub=qp.ub))
+            np.testing.assert_allclose(rows @ dq, rows @ other, rtol=0, atol=1e-6)
+
+
+def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
+    blamed = 0
+    for seed in range(10):
+        for find in (largest_fraction, undamped):
+            qp = program(seed)
+            sides = find(qp).sides
+            for i in range(7):
+                wider = QP.from_data(qp.data.copy(), qp.sizes)
+                wider.lb[i] -= 1e-3
+                wider.ub[i] += 1e-3
+                if find is largest_fraction:
+                    gain = find(wider).fraction - find(qp).fraction
+                else:
+                    before, after = (distance(WEIGHTS @ p.A, WEIGHTS @ p.b, p) for p in (qp, wider))
+                    gain = before - after
+                assert (gain > 1e-9) == (sides[i] != 0)
+                blamed += int(sides[i] != 0)
+    assert blamed > 20
+
+
+@pytest.mark.parametrize("orientation", ["so3", "block", "none"])
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_policies_that_go_on_keep_the_rows_and_the_bounds(
+    policy: policies.Policy, orientation: str
+) -> None:
+    for seed in range(10):
+        qp, solver = program(seed, orientation), DNNSolver()
+        data = qp.data.copy()
+        answer = resolve(qp, failed(qp), policy, solver)
+        np.testing.assert_array_equal(qp.data, data)
+        assert answer.action is (Action.SLOW if policy == "slow" else Action.RELAX)
+        assert inside(answer.solution.x, qp)
+        assert answer.solution.status is Status.SOLVED
+        # The same program but for b, and its best point by qpsolvers' own residuals.
+        np.testing.assert_array_equal(answer.qp.P, qp.P)
+        np.testing.assert_array_equal(answer.qp.lb, qp.lb)
+        np.testing.assert_array_equal(answer.qp.ub, qp.ub)
+        np.testing.assert_array_equal(answer.qp.A, qp.A)
+        problem = answer.qp.to_qpsolvers()
+        assert answer.solution.to_qpsolvers(problem).is_optimal(1e-8)
+        if policy == "slow":
+            np.testing.assert_allclose(
+                qp.A @ answer.solution.x, answer.fraction * qp.b, rtol=0, atol=1e-8
+            )
+        else:
+            assert answer.fraction == 1.0
+            np.testing.assert_array_equal(answer.solution.x, least_violation(qp).dq)
+
+
+def test_a_joint_outside_its_limits_comes_back_whatever_the_task_says() -> None:
+    for seed in range(10):
+        qp = program(seed, outside=0.1)
+        assert qp.lb[0] == qp.ub[0] == 0.3  # as fast as it may
+        answer = resolve(qp, failed(qp), "slow", DNNSolver())
+        assert answer.solution.x[0] == 0.3
+        assert inside(answer.solution.x, qp)
+        assert answer.action in (Action.SLOW, Action.RELAX)
+
+
+def test_stop_is_no_velocity_and_names_the_bounds() -> None:
+    qp = two_joints(12.0)
+    answer = resolve(qp, failed(qp), "stop", DNNSolver())
+    assert (answer.action, answer.fraction) == (Action.STOP, 0.0)
+    assert not answer.solution.x.any()
+    assert not answer.solution.found
+    assert answer.sides.tolist() == [1, 1]
+
+
+def test_raise_carries_the_program() -> None:
+    qp = two_joints(12.0)
+    with pytest.raises(NoSolutionError, match="no joint velocity") as caught:
+        resolve(qp, failed(qp), "raise", DNNSolver())
+    np.testing.assert_array_equal(caught.value.problem.b, qp.b)
+    np.testing.assert_array_equal(caught.value.problem.ub, qp.ub)
+    assert not caught.value.solution.found
+
+
+@pytest.mark.parametrize("policy", policies.POLICIES)
+def test_a_program_that_has_a_solution_is_answered_by_the_reference(
+    policy: policies.Policy,
+) -> None:
+    qp = program(3, velocity=100.0)
+    missed = DNNSolver().solve(qp)._replace(status=Status.NOT_SETTLED)
+    answer = resolve(qp, missed, policy, DNNSolver())
+    assert answer.action is Action.FALLBACK
+    assert answer.qp is qp
+    assert answer.solution.residuals.largest <= 1e-9
+    np.testing.assert_allclose(answer.solution.x, solve_by("osqp", qp), rtol=0, atol=1e-6)
+    stationarity = qp.P @ answer.solution.x + qp.q + qp.A.T @ answer.solution.y
+    np.testing.assert_allclose(stationarity + answer.solution.z_box, 0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_a_program_that_is_no_number_stops(bad: float) -> None:
+    qp = two_joints(1.0)
+    qp.b[0] = bad
+    answer = resolve(qp, DNNSolver().solve(qp), "slow", DNNSolver())
+    assert answer.action is Action.STOP
+    assert not answer.solution.x.any()
+
+
+def test_no_answer_at_all_is_still_inside_the_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Lost(DNNSolver):
+        def solve(self, qp: QP) -> Solution:
+            return super().solve(qp)._replace(status=Status.NOT_SETTLED)
+
+    monkeypatch.setattr(policies, "ask_reference", lambda qp, tol: None)
+    qp = program(4)
+    answer = resolve(qp, failed(qp), "slow", Lost())
+    assert inside(answer.solution.x, qp)
+    assert not answer.solution.found
+    np.testing.assert_allclose(qp.A @ answer.solution.x, answer.fraction * qp.b, atol=1e-6)

@@ -1,0 +1,150 @@
+"""Both integrators against scipy's at tight tolerance, their order, and what they settle to."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from helpers_qp import known_qp, network_rates
+from iiwa_dnn import (
+    QP,
+    Configuration,
+    DNNSolver,
+    DoubleIndicator,
+    ExplicitEuler,
+    Heart,
+    ImplicitEuler,
+    InvalidInputError,
+    ProjectionNetwork,
+    load_robot,
+)
+from iiwa_dnn.app.track import PAPER_START
+
+
+def heart_qp(orientation: str = "so3") -> QP:
+    """A program of the heart, one second into it with the robot still at its start."""
+    robot = load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    conf = Configuration(robot, PAPER_START)
+    return DoubleIndicator(orientation=orientation).build_qp(conf, Heart().anchored(conf).at(1.0))
+
+
+def flow(qp: QP, duration: float, project: bool) -> np.ndarray:
+    """The state after `duration` from zero: independent field, independent integrator."""
+    size = ProjectionNetwork().state_size(qp)
+    solution = solve_ivp(
+        lambda _, state: network_rates(qp, state, project),
+        (0.0, duration),
+        np.zeros(size),
+        method="DOP853",
+        rtol=1e-11,
+        atol=1e-13,
+        max_step=0.05,  # the field has kinks where a bound becomes active
+    )
+    assert solution.success
+    return solution.y[:, -1]
+
+
+CASES = {
+    "heart": heart_qp(),
+    "bounds": known_qp(np.random.default_rng(3), 5, 2, 2, inequalities=2)[0],
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    ("project", "substeps_of"),
+    [(True, ExplicitEuler), (False, ExplicitEuler), (False, ImplicitEuler)],
+)
+def test_order_by_regression_against_scipy(name: str, project: bool, substeps_of: type) -> None:
+    qp, duration = CASES[name], 2.0
+    exact = flow(qp, duration, project)
+    network = ProjectionNetwork(primal_projection=project)
+    counts = np.array([100, 200, 400, 800])
+    errors = []
+    for count in counts:
+        if substeps_of is ExplicitEuler:
+            integrator = ExplicitEuler(substeps=int(count))
+        else:
+            integrator = ImplicitEuler(step=duration / count)
+        state = network.initial_state(qp)
+        integrator.advance(network, qp, state, duration)
+        errors.append(np.abs(state - exact).max())
+    slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert slope == pytest.approx(substeps_of.order, abs=0.15)
+    assert errors[-1] < 0.02 * np.abs(exact).max()
+
+
+def test_computed_substeps_follow_the_flow() -> None:
+    qp = CASES["heart"]
+    network, state = ProjectionNetwork(), ProjectionNetwork().initial_state(qp)
+    for _ in range(20):
+        ExplicitEuler().advance(network, qp, state, 1e-4 / network.rho)
+    exact = flow(qp, 20 * 1e-4 / network.rho, project=True)
+    assert np.abs(state - exact).max() < 0.05 * np.abs(exact).max()
+
+
+def test_eight_substeps_are_stable_for_the_papers_start_and_seven_are_not() -> None:
+    qp = heart_qp("block")
+    network, state = ProjectionNetwork(), ProjectionNetwork().initial_state(qp)
+    step = 1e-4 / network.rho
+    assert ExplicitEuler().advance(network, qp, state.copy(), step) == 8
+    ends = {}
+    for count in (7, 8):
+        state = network.initial_state(qp)
+        for _ in range(400):
+            ExplicitEuler(substeps=count).advance(network, qp, state, step)
+        ends[count] = np.abs(network.rates(qp, state)).max()
+    assert ends[8] < 0.05
+    assert ends[7] > 1.0  # it chatters at the velocity bounds, which keep it finite
+
+
+@pytest.mark.parametrize("integrator", [ExplicitEuler(), ImplicitEuler()])
+def test_settling_reaches_the_known_solution(integrator: ExplicitEuler | ImplicitEuler) -> None:
+    rng = np.random.default_rng(4)
+    for case in range(12):
+        qp, x = known_qp(rng, 5, case % 3, case % 4, inequalities=case % 2)
+        solution = DNNSolver(tol=1e-8, settler=integrator).solve(qp)
+        assert solution.found
+        assert np.abs(solution.x - x).max() < 1e-5
+
+
+def test_explicit_settling_without_a_stable_step_says_so() -> None:
+    qp = QP(np.diag([1.0, 0.0]), np.zeros(2), A=[[1.0, 1.0]], b=[1.0])
+    with pytest.raises(InvalidInputError, match="singular"):
+        DNNSolver(settler=ExplicitEuler()).solve(qp)
+    assert DNNSolver().solve(qp).found
+
+
+def test_a_budget_that_is_too_small_is_not_called_solved() -> None:
+    qp, _ = known_qp(np.random.default_rng(5), 6, 3, 3)
+    for integrator in (ExplicitEuler(max_steps=3), ImplicitEuler(max_steps=1)):
+        solution = DNNSolver(settler=integrator).solve(qp)
+        assert not solution.found
+        assert solution.residuals.largest > 1e-9
+
+
+def test_one_implicit_step_is_the_fixed_point_of_its_definition() -> None:
+    # Backward Euler: s+ = s + h F(s+), checked with the independent field at any step length.
+    rng = np.random.default_rng(6)
+    network = ProjectionNetwork(primal_projection=False)
+    for step in (1e-2, 1.0, 1e2, 1e4):
+        qp, _ = known_qp(rng, 6, 2, 3, inequalities=3)
+        start = rng.standard_normal(network.state_size(qp))
+        state = start.copy()
+        ImplicitEuler(step=step).advance(network, qp, state, step)
+        defect = state - start - step * network_rates(qp, state, project=False)
+        assert np.abs(defect).max() < 1e-9 * max(1.0, step)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: ExplicitEuler(substeps=0),
+        lambda: ExplicitEuler(max_steps=0),
+        lambda: ImplicitEuler(step=0.0),
+        lambda: ImplicitEuler(long_step=-1.0),
+        lambda: ImplicitEuler(max_steps=0),
+    ],
+)
+def test_impossible_settings_are_refused(make: object) -> None:
+    with pytest.raises(InvalidInputError):
+        make()

@@ -1,0 +1,170 @@
+"""Programs without a solution: recognised, and the proof judged by numpy and by scipy's linprog."""
+
+import numpy as np
+import pytest
+from scipy.optimize import linprog
+
+import iiwa_dnn
+from benchmarks import programs
+from helpers_qp import known_qp
+from iiwa_dnn import QP, DNNSolver, Status
+from iiwa_dnn.networks import certificates
+
+
+def finite_rows(qp: QP) -> tuple[np.ndarray, np.ndarray]:
+    """All inequalities and bounds as rows, those that limit nothing left out."""
+    n = qp.q.size
+    rows = np.vstack([qp.G, np.eye(n), -np.eye(n)])
+    limits = np.concatenate([qp.h, qp.ub, -qp.lb])
+    return rows[np.isfinite(limits)], limits[np.isfinite(limits)]
+
+
+def assert_farkas(qp: QP, certificate: np.ndarray) -> None:
+    """The multipliers contradict the constraints: by the lemma, with numpy alone."""
+    n, m, p = qp.sizes
+    y, z, z_box = np.split(certificate, [p, p + m])
+    assert z_box.shape == (n,)
+    assert (z >= 0.0).all()
+    assert (qp.ub[z_box > 0.0] < np.inf).all()
+    assert (qp.lb[z_box < 0.0] > -np.inf).all()
+    assert (qp.h[z > 0.0] < np.inf).all()
+    value = qp.b @ y + qp.h[z > 0.0] @ z[z > 0.0]
+    value += qp.ub[z_box > 0.0] @ z_box[z_box > 0.0] + qp.lb[z_box < 0.0] @ z_box[z_box < 0.0]
+    residual = np.abs(qp.A.T @ y + qp.G.T @ z + z_box).sum()
+    assert value < -1e8 * residual
+    assert value < -1e-9 * np.abs(certificate).max()
+
+
+def assert_recession(qp: QP, direction: np.ndarray) -> None:
+    """The cost falls along the direction, and no constraint ends it."""
+    rows, _ = finite_rows(qp)
+    residual = np.abs(qp.P @ direction).max() + np.abs(qp.A @ direction).max(initial=0.0)
+    residual += (rows @ direction).max(initial=0.0)
+    assert qp.q @ direction < -1e7 * residual
+
+
+def linprog_status(qp: QP, cost: np.ndarray) -> int:
+    rows, limits = finite_rows(qp)
+    return linprog(
+        cost, rows if limits.size else None, limits if limits.size else None,
+        qp.A if qp.b.size else None, qp.b if qp.b.size else None, (None, None),
+    ).status  # fmt: skip
+
+
+def test_a_thousand_infeasible_programs_are_recognised_with_a_proof() -> None:
+    for seed in range(1000):
+        qp = programs.infeasible(np.random.default_rng([2, seed]))
+        solution = DNNSolver().solve(qp)
+        assert solution.status is Status.PRIMAL_INFEASIBLE, seed
+        assert not solution.found
+        assert_farkas(qp, solution.certificate)
+        if seed % 5 == 0:
+            assert linprog_status(qp, np.zeros(qp.q.size)) == 2, seed
+
+
+def test_two_hundred_unbounded_programs_are_recognised_with_a_proof() -> None:
+    # Seed 264 drifts for long before its last row takes part.
+    for seed in [*range(200), 264]:
+        qp = programs.unbounded(np.random.default_rng([2, seed]))
+        solution = DNNSolver().solve(qp)
+        assert solution.status is Status.UNBOUNDED, seed
+        assert not solution.found
+        assert_recession(qp, solution.certificate)
+        # The program is feasible, and the linear program over its recession cone has no end.
+        assert linprog_status(qp, np.zeros(qp.q.size)) == 0
+        cone = QP(
+            qp.P, qp.q, qp.G, np.zeros(qp.h.size), np.vstack([qp.A, qp.P]),
+            np.zeros(qp.b.size + qp.q.size), np.where(qp.lb > -np.inf, 0.0, -np.inf),
+            np.where(qp.ub < np.inf, 0.0, np.inf),
+        )  # fmt: skip
+        assert linprog_status(cone, qp.q) in (3, 4), seed  # HiGHS: "unbounded", or it says neither
+
+
+def test_no_solvable_program_is_called_infeasible() -> None:
+    # A budget too small to solve anything, so that a certificate is looked for each time.
+    hurried = DNNSolver(settler=iiwa_dnn.ImplicitEuler(max_steps=1))
+    unsolved = 0
+    for seed in range(300):
+        qp, _ = programs.strictly_convex(np.random.default_rng([4, seed]))
+        hurried.reset()
+        solution = hurried.solve(qp)
+        assert solution.status in (Status.SOLVED, Status.NOT_SETTLED), seed
+        assert solution.certificate is None
+        unsolved += not solution.found
+    assert unsolved > 250
+
+
+def test_solution_of_qpsolvers_carries_the_certificate() -> None:
+    problem = QP(np.eye(2), np.zeros(2), G=[[-1.0, -1.0]], h=[-3.0], ub=[1.0, 1.0]).to_qpsolvers()
+    solution = iiwa_dnn.solve_problem(problem)
+    assert solution.found is False
+    assert solution.x is None
+    assert solution.extras["status"] == "primal infeasible"
+    np.testing.assert_allclose(solution.extras["certificate"], [1.0, 1.0, 1.0], atol=1e-12)
+    # x1 falls for ever, x0 does not.
+    falling = QP(np.diag([1.0, 0.0]), [1.0, 1.0], lb=[0.0, -np.inf]).to_qpsolvers()
+    solution = iiwa_dnn.solve_problem(falling)
+    assert solution.extras["status"] == "dual infeasible (unbounded)"
+    np.testing.assert_allclose(solution.extras["certificate"], [0.0, -1.0], atol=1e-12)
+
+
+def test_a_program_that_is_both_is_called_infeasible() -> None:
+    qp = QP(np.zeros((2, 2)), [0.0, 1.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0])
+    assert DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
+
+
+def test_a_linear_program_with_a_far_solution_is_solved() -> None:
+    # The state travels a long way at constant speed, as on an unbounded one, and then arrives.
+    qp = QP(np.zeros((2, 2)), [-1.0, -1.0], G=[[1.0, 1.0]], h=[1e4], lb=[0.0, 0.0], ub=[1e4, 10.0])
+    solution = DNNSolver(tol=1e-7).solve(qp)
+    assert solution.found
+    assert solution.x.sum() == pytest.approx(1e4)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        [1.0, -1.0, 0.0, 0.0],  # z below zero
+        [1.0, 1.0, 0.0, 0.0],  # a residual
+        [0.0, 0.0, 1.0, 0.0],  # at a bound that is not there
+        [0.0, 0.0, 0.0, 0.0],  # nothing
+        [np.nan, 1.0, 0.0, 0.0],
+    ],
+)
+def test_wrong_multipliers_prove_nothing(wrong: list[float]) -> None:
+    # x0 <= -1 and x0 = 0, and x1 <= 0
+    qp = QP(np.eye(2), np.zeros(2), [[1.0, 0.0]], [-1.0], [[1.0, 0.0]], [0.0], ub=[np.inf, 0.0])
+    right = np.array([-1.0, 1.0, 0.0, 0.0])
+    assert certificates.infeasibility_radius(qp, right) > 1e12
+    assert certificates.infeasibility_radius(qp, np.array(wrong)) < 10.0
+
+
+@pytest.mark.parametrize("wrong", [[1.0, 1.0], [0.0, -1.0], [-1.0, 1.0], [0.0, 0.0], [np.inf, 1.0]])
+def test_wrong_directions_prove_nothing(wrong: list[float]) -> None:
+    # the cost falls with x1, which nothing ends; x0 costs, and is not below zero
+    qp = QP(np.diag([1.0, 0.0]), [0.0, -1.0], lb=[0.0, -np.inf])
+    assert certificates.unboundedness_radius(qp, np.array([0.0, 1.0])) > 1e12
+    assert certificates.unboundedness_radius(qp, np.array(wrong)) < 10.0
+
+
+def test_the_radius_is_what_it_says() -> None:
+    # x0 (1 + 1e-4) <= -1 and x0 >= -1 + 2e-4 contradict each other, and nearly do not.
+    slope, bound = 1.0 + 1e-4, -1.0 + 2e-4
+    qp = QP(np.eye(1), np.zeros(1), [[slope]], [-1.0], lb=[bound])
+    # Multipliers that ignore the slope leave a residual of 1e-4 and a value of -2e-4: radius 2.
+    assert certificates.infeasibility_radius(qp, np.array([1.0, -1.0])) == pytest.approx(2.0)
+    with_solution = QP(np.eye(1), np.zeros(1), [[slope]], [-1.0], lb=[-10.0])
+    for z, z_box in ((1.0, -1.0), (1.0, -0.9), (1.0, -slope)):
+        # x0 = -1 is feasible: no multipliers may claim a radius above 10.
+        assert certificates.infeasibility_radius(with_solution, np.array([z, z_box])) <= 10.0
+
+
+def test_a_good_program_after_a_bad_one_is_solved() -> None:
+    good, x = known_qp(np.random.default_rng(0), 4, 2, 1)
+    bad = QP(np.zeros((4, 4)), np.ones(4), A=good.A, b=good.b)
+    solver = DNNSolver()
+    for _ in range(2):
+        assert solver.solve(bad).status is Status.UNBOUNDED
+        solution = solver.solve(good)
+        assert solution.found
+        np.testing.assert_allclose(solution.x, x, atol=1e-6)

@@ -1,0 +1,119 @@
+"""The check behind the loop: order, completeness, and workers that die."""
+
+from __future__ import annotations
+
+import os
+import signal
+from concurrent.futures.process import BrokenProcessPool
+
+import loky
+import numpy as np
+import pytest
+
+from helpers_qp import known_qp
+from iiwa_dnn import DNNSolver
+from iiwa_dnn.qp.checkpool import CheckPool, Job
+from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+
+CHECK = CrossCheck(("osqp",))  # ProxQP does not repeat its last digits
+
+
+def jobs(count: int, size: int = 20) -> list[Job]:
+    """Blocks of programs; answer i of block j is off by about i + 100 j units of 1e-7."""
+    made = []
+    for number in range(count):
+        rng = np.random.default_rng(number)
+        qps = [known_qp(rng, 5, 2, 1)[0] for _ in range(size)]
+        x = np.stack([DNNSolver().solve(qp).x for qp in qps])
+        x[:, 0] += 1e-7 * (100 * number + np.arange(size))
+        made.append((np.stack([qp.data for qp in qps]), qps[0].sizes, x))
+    return made
+
+
+def judged(pool: CheckPool, blocks: list[Job]) -> Agreement:
+    for block in blocks:
+        pool.submit(*block)
+    return pool.finish()
+
+
+def kill_workers() -> None:
+    """End every process of the executor that the pool shares, without warning."""
+    executor = loky.get_reusable_executor(max_workers=1, timeout=60)
+    executor.submit(os.getpid).result()
+    for pid in list(executor._processes):
+        os.kill(pid, signal.SIGKILL)
+
+
+def assert_same(one: Agreement, other: Agreement) -> None:
+    for left, right in zip(one, other, strict=True):
+        np.testing.assert_array_equal(left, right)
+
+
+def test_workers_change_nothing_and_keep_the_order() -> None:
+    blocks = jobs(6)
+    alone = judged(CheckPool(CHECK, 120, workers=0), blocks)
+    assert_same(judged(CheckPool(CHECK, 120, workers=1), blocks), alone)
+    # In order: the gap of program i of block j is the one that was put there.
+    expected = 1e-7 * (100 * np.arange(6)[:, None] + np.arange(20)).ravel()
+    np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
+
+
+def test_blocks_of_a_worker_that_dies_are_judged_all_the_same() -> None:
+    blocks = jobs(6)
+    alone = judged(CheckPool(CHECK, 120, workers=0), blocks)
+    pool = CheckPool(CHECK, 120, workers=1)
+    for block in blocks[:3]:
+        pool.submit(*block)
+    kill_workers()
+    for block in blocks[3:]:
+        pool.submit(*block)
+    assert_same(pool.finish(), alone)
+
+
+def test_a_worker_that_dies_in_the_middle_of_a_block() -> None:
+    class Dying(CrossCheck):
+        """Kills the process that it runs in, unless that is the test's own."""
+
+        home = os.getpid()
+
+        def check_block(self, *job: object) -> Agreement:
+            if os.getpid() != self.home:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return super().check_block(*job)
+
+    blocks = jobs(4)
+    pool = CheckPool(Dying(CHECK.solvers), 80, workers=1)
+    assert_same(judged(pool, blocks), judged(CheckPool(CHECK, 80, workers=0), blocks))
+    assert pool.workers == 0  # noticed
+
+
+def test_without_processes_to_be_had_the_caller_judges_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(**options: object) -> None:
+        raise BrokenProcessPool
+
+    monkeypatch.setattr(loky, "get_reusable_executor", refuse)
+    blocks = jobs(2)
+    pool = CheckPool(CHECK, 40, workers=1)
+    assert_same(judged(pool, blocks), judged(CheckPool(CHECK, 40, workers=0), blocks))
+
+
+def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
+    programs, sizes, x = jobs(1)[0]
+    pool = CheckPool(CHECK, 20, workers=1)
+    pool.submit(programs, sizes, x[:, :3])  # answers of a wrong shape
+    with pytest.raises(ValueError, match="shapes"):
+        pool.finish()
+
+
+def test_nobody_is_asked_where_there_is_no_reference() -> None:
+    pool = CheckPool(CrossCheck(()), 1_000_000)
+    assert pool.workers == 0
+    verdict = judged(pool, jobs(2))
+    assert verdict.solution_gap.shape == (40, 0)
+
+
+def test_few_programs_start_no_process() -> None:
+    assert CheckPool(CHECK, 100).workers == 0
+    assert CheckPool(CHECK, 100_000).workers == loky.cpu_count() - 1

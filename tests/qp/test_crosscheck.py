@@ -1,0 +1,334 @@
+"""The cross-check has to agree with right answers, see wrong ones, and distrust references."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+import qpsolvers
+
+from helpers_kinematics import PAPER_Q0
+from helpers_qp import known_qp
+from helpers_simulation import heart, near_target, paper_start, run
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.crosscheck import SOLVERS, Agreement, CrossCheck
+from iiwa_dnn.qp.program import QP, Solution
+from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.schemes import DoubleIndicator
+
+BOTH = CrossCheck(("proxqp", "osqp"))
+EACH = [CrossCheck((name,)) for name in SOLVERS]
+IDS = list(SOLVERS)
+
+
+def heart_qp(t: float = 1.3, orientation: str = "so3") -> QP:
+    scheme = DoubleIndicator(orientation=orientation).anchored(paper_start())
+    return scheme.build_qp(paper_start(), heart().at(t))
+
+
+def infeasible_qp() -> QP:
+    """Two rows that ask the same combination of variables for different values."""
+    return QP(np.eye(3), np.zeros(3), A=[[1.0, 1.0, 0.0]] * 2, b=[0.0, 1.0])
+
+
+def value(qp: QP, x: np.ndarray) -> float:
+    return 0.5 * x @ qp.P @ x + qp.q @ x
+
+
+def with_options(name: str, **changes: object) -> CrossCheck:
+    """A check whose one solver gets other options than the package's."""
+    return CrossCheck((name,), _options={name: changes})
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
+@pytest.mark.parametrize("active", [0, 2, 5])
+def test_right_answers_are_agreed_with(check: CrossCheck, active: int) -> None:
+    # The answer is known by construction: no solver of this package has a part in it.
+    rng = np.random.default_rng(51)
+    for inequalities in (0, 4):
+        qp, x = known_qp(rng, 7, 3, active, inequalities=inequalities)
+        agreement = check.check(qp, x)
+        assert agreement.solution_gap.max() <= 1e-7
+        assert agreement.reference_residual.max() <= 1e-8
+        assert agreement.objective_gap.max() <= 1e-7
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
+def test_dependent_rows_are_no_obstacle(check: CrossCheck) -> None:
+    qp, x = known_qp(np.random.default_rng(52), 7, 4, 1, dependent=True)
+    assert check.check(qp, x).solution_gap.max() <= 1e-7
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
+@pytest.mark.parametrize("orientation", ["so3", "block", "none"])
+def test_the_network_is_agreed_with_on_the_hearts_programs(
+    check: CrossCheck, orientation: str
+) -> None:
+    qp = heart_qp(orientation=orientation)
+    assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e-2])
+@pytest.mark.parametrize("joint", range(7))
+def test_a_wrong_answer_is_seen_by_each(joint: int, size: float) -> None:
+    qp = heart_qp()
+    wrong = DNNSolver().solve(qp).x + size * np.eye(7)[joint]
+    agreement = BOTH.check(qp, wrong)
+    np.testing.assert_allclose(agreement.solution_gap, size, rtol=1e-2)
+    assert (agreement.solution_gap > BOTH.tolerance).all()
+
+
+def test_gaps_are_those_to_the_known_solution() -> None:
+    rng = np.random.default_rng(53)
+    for active in range(6):
+        qp, best = known_qp(rng, 7, 2, active)
+        x = best + 0.1 * rng.standard_normal(7)
+        agreement = BOTH.check(qp, x)
+        np.testing.assert_allclose(agreement.solution_gap, np.abs(x - best).max(), atol=1e-7)
+        expected = abs(value(qp, x) - value(qp, best))
+        np.testing.assert_allclose(agreement.objective_gap, expected, rtol=0, atol=1e-6)
+
+
+def test_objective_gap_is_evaluated_without_cancellation() -> None:
+    # So near the optimum two objectives of -1e8 differ by less than their last digit, 1e-8.
+    qp = QP(np.eye(2), [-1e4, 1e4], A=[[1.0, 1.0]], b=[0.0])
+    x = np.array([1e4 + 1e-5, -1e4 - 1e-5])
+    exact = 1e-10  # ||x - best||^2 / 2: the gradient is zero at the optimum
+    gap = CrossCheck(reference_tolerance=1e-6).check(qp, x).objective_gap[0, 0]
+    assert gap == pytest.approx(exact, rel=1e-2)
+
+
+def test_references_are_asked_in_order_and_none_may_be_asked() -> None:
+    qp = heart_qp()
+    x = DNNSolver().solve(qp).x
+    both = BOTH.check(qp, x)
+    for i, single in enumerate(EACH):
+        for together, alone in zip(both, single.check(qp, x), strict=True):
+            assert alone.shape == (1, 1)
+            np.testing.assert_allclose(together[0, i], alone[0, 0], rtol=0, atol=1e-12)
+    assert CrossCheck(()).check(qp, x).solution_gap.shape == (1, 0)
+
+
+def test_a_block_of_programs_is_judged_one_by_one() -> None:
+    rng = np.random.default_rng(57)
+    known = [known_qp(rng, 7, 3, active) for active in range(5)]
+    x = np.stack([best for _, best in known])
+    x[3, 2] += 1e-5
+    block = BOTH.check_block(np.stack([qp.data for qp, _ in known]), known[0][0].sizes, x)
+    assert [array.shape for array in block] == [(5, 2)] * 3
+    assert ((block.solution_gap > 1e-6) == (np.arange(5) == 3)[:, np.newaxis]).all()
+    for i, (qp, _) in enumerate(known):
+        for together, alone in zip(block, BOTH.check(qp, x[i]), strict=True):
+            np.testing.assert_allclose(together[i], alone[0], rtol=0, atol=1e-9)
+
+
+def test_the_reference_gets_the_program_and_nothing_of_the_answer() -> None:
+    qp = heart_qp()
+    x = DNNSolver().solve(qp).x
+    right, wrong = BOTH.check(qp, x), BOTH.check(qp, x + 1.0)
+    # ProxQP's own last digits vary from call to call, so not equal to the bit.
+    np.testing.assert_allclose(right.reference_residual, wrong.reference_residual, atol=1e-13)
+    np.testing.assert_allclose(wrong.solution_gap, 1.0, rtol=1e-6)
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
+def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        agreement = check.check(infeasible_qp(), np.zeros(3))
+    assert np.isnan(agreement.solution_gap).all()
+    assert np.isnan(agreement.objective_gap).all()
+    np.testing.assert_array_equal(agreement.reference_residual, [[np.inf]])
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_a_reference_that_gives_up_is_not_believed(name: str) -> None:
+    # Active bounds, so that no solver can be done after one iteration.
+    qp, x = known_qp(np.random.default_rng(54), 7, 3, 4)
+    quitter = with_options(name, max_iter=1, **({"raise_error": False} if name == "osqp" else {}))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        agreement = quitter.check(qp, x)
+    assert np.isnan(agreement.solution_gap).all()
+    assert not (agreement.reference_residual <= 1e-8).any()
+
+
+def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*args: object, **options: object) -> None:
+        raise qpsolvers.exceptions.SolverError("out of order")
+
+    monkeypatch.setattr(qpsolvers, "solve_problem", fail)
+    agreement = BOTH.check(heart_qp(), np.zeros(7))
+    assert np.isnan(agreement.solution_gap).all()
+    np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
+
+
+@pytest.mark.parametrize("field", ["x", "y", "z_box"])
+def test_a_reference_that_is_not_a_number_is_not_believed(
+    field: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve = qpsolvers.solve_problem
+
+    def spoil(*args: object, **options: object) -> qpsolvers.Solution:
+        solution = solve(*args, **options)
+        getattr(solution, field)[0] = np.nan
+        return solution
+
+    monkeypatch.setattr(qpsolvers, "solve_problem", spoil)
+    agreement = EACH[0].check(heart_qp(), np.zeros(7))
+    assert not (agreement.reference_residual <= 1e-8).any()
+    assert np.isnan(agreement.solution_gap).all()
+
+
+def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.MonkeyPatch) -> None:
+    # ProxQP takes minutes over one NaN, OSQP its whole budget of iterations.
+    asked = []
+    monkeypatch.setattr(
+        qpsolvers,
+        "solve_problem",
+        lambda *args, **options: asked.append(args) or qpsolvers.Solution(args[0]),
+    )
+    qp = heart_qp()
+    spoilt = QP(qp.P, qp.q * np.nan, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
+    agreement = BOTH.check(spoilt, np.zeros(7))
+    assert not asked
+    assert np.isnan(agreement.solution_gap).all()
+    np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
+
+
+def test_an_answer_that_is_not_a_number_does_not_agree() -> None:
+    agreement = BOTH.check(heart_qp(), np.full(7, np.nan))
+    assert not (agreement.solution_gap <= BOTH.tolerance).any()
+    assert (agreement.reference_residual <= 1e-8).all()
+
+
+def test_osqp_is_accurate_enough_with_our_options_and_not_with_its_own() -> None:
+    ours, defaults = CrossCheck(("osqp",)), with_options("osqp", raise_error=False)
+    rng = np.random.default_rng(55)
+    programs = [known_qp(rng, 7, 3, active) for active in range(5)]
+    programs += [(qp, DNNSolver().solve(qp).x) for qp in map(heart_qp, (0.5, 2.0, 7.0))]
+    for qp, x in programs:
+        assert ours.check(qp, x).reference_residual.max() <= 1e-8
+        agreement = defaults.check(qp, x)
+        assert agreement.reference_residual.min() > 1e-8
+        assert np.isnan(agreement.solution_gap).all()
+
+
+def test_no_warnings() -> None:
+    qp, x = known_qp(np.random.default_rng(56), 7, 3, 3, inequalities=4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for program, answer in ((qp, x), (heart_qp(), np.zeros(7)), (infeasible_qp(), np.ones(3))):
+            BOTH.check(program, answer)
+
+
+def test_the_worst_of_the_stages_of_each_step() -> None:
+    # Two steps of two stages, two references; NaN and inf where the second gave no answer.
+    gap = np.array([[1.0, 5.0], [3.0, 4.0], [2.0, np.nan], [1.0, 1.0]])
+    residual = np.array([[1e-9, 1e-10], [1e-10, 1e-9], [1e-9, np.inf], [1e-9, 1e-9]])
+    worst = Agreement(gap, 2.0 * gap, residual).worst_of(2)
+    np.testing.assert_array_equal(worst.solution_gap, [[3.0, 5.0], [2.0, np.nan]])
+    np.testing.assert_array_equal(worst.objective_gap, [[6.0, 10.0], [4.0, np.nan]])
+    np.testing.assert_array_equal(worst.reference_residual, [[1e-9, 1e-9], [1e-9, np.inf]])
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [
+        ("solvers", ("gurobi",)),
+        ("solvers", "proxqp"),  # a text is a sequence too
+        *[
+            (name, bad)
+            for name in ("tolerance", "reference_tolerance")
+            for bad in (0.0, -1e-6, np.nan, np.inf, None, "tight")
+        ],
+    ],
+)
+def test_a_bad_argument_is_named(argument: str, value: object) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{argument}\b") as caught:
+        CrossCheck(**{argument: value})
+    assert caught.value.argument == argument
+
+
+class Liar(DNNSolver):
+    """Claims to have solved everything, and has not at one call."""
+
+    def __init__(self, wrong_at: int, size: float = 1e-5) -> None:
+        super().__init__()
+        self.calls, self.wrong_at, self.size = 0, wrong_at, size
+
+    def solve(self, qp: QP) -> Solution:
+        solution = super().solve(qp)
+        self.calls += 1
+        if self.calls - 1 != self.wrong_at:
+            return solution
+        point = solution.point.copy()
+        point[2] += self.size
+        return solution._replace(point=point)
+
+
+@pytest.mark.parametrize("check", [*EACH, BOTH], ids=[*IDS, "both"])
+def test_a_run_with_one_wrong_answer_names_step_and_solver(check: CrossCheck) -> None:
+    record = run(solver=Liar(wrong_at=17), check=check, duration=0.03)
+    assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [17]
+    np.testing.assert_allclose(record.solution_gap[17], 1e-5, rtol=1e-2)
+    crosscheck = compute_metrics(record)["crosscheck"]
+    assert crosscheck["disagreements"] == 1
+    assert crosscheck["steps_checked"] == 30
+    assert crosscheck["reference_failures"] == 0
+    assert crosscheck["max_solution_gap"] == pytest.approx(1e-5, rel=1e-2)
+    assert crosscheck["first_disagreement"]["step"] == 17
+    (reason,) = failures(record)
+    assert "step 17 " in reason
+    assert any(name in reason for name in check.solvers)
+    assert "1e-05" in reason
+
+
+def test_a_run_with_one_wrong_stage_of_rk4() -> None:
+    # Call 42 is the third of the four programs of step 10.
+    record = run(solver=Liar(wrong_at=42), check=EACH[0], duration=0.02, motion="rk4")
+    assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [10]
+
+
+def test_a_wrong_answer_below_the_tolerance_is_let_pass_and_recorded() -> None:
+    record = run(solver=Liar(wrong_at=3, size=5e-7), check=EACH[0], duration=0.01)
+    assert failures(record) == []
+    assert record.crosscheck_gap[3] == pytest.approx(5e-7, rel=1e-1)
+
+
+def test_a_run_whose_reference_fails_is_counted_and_never_averaged() -> None:
+    quitter = with_options("osqp", max_iter=1, raise_error=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        record = run(check=quitter, duration=0.01)
+    # The first program, at rest, has the answer zero, which OSQP starts from.
+    assert np.isnan(record.crosscheck_gap[1:]).all()
+    assert record.crosscheck_gap[0] <= 1e-9
+    crosscheck = compute_metrics(record)["crosscheck"]
+    assert crosscheck["reference_failures"] == 9
+    assert crosscheck["disagreements"] == 0
+    assert crosscheck["max_solution_gap"] == record.crosscheck_gap[0]
+    assert any("9 reference answers" in reason for reason in failures(record))
+
+
+def test_the_check_does_not_touch_the_run() -> None:
+    unchecked, checked = run(duration=0.02), run(duration=0.02, check=BOTH)
+    np.testing.assert_array_equal(unchecked.q, checked.q)
+    np.testing.assert_array_equal(unchecked.dq_solver, checked.dq_solver)
+
+
+def test_near_target_programs_are_really_different() -> None:
+    # The programs above do not all have one answer, which a constant would pass.
+    first = heart_qp(0.5)
+    other = DoubleIndicator(home=PAPER_Q0).build_qp(
+        paper_start(), near_target(PAPER_Q0, seed=1, size=2e-3)
+    )
+    assert BOTH.check(first, DNNSolver().solve(other).x).solution_gap.min() > 1e-3
+
+
+def test_verdicts_keep_their_step_over_the_blocks_of_a_long_run() -> None:
+    record = run(solver=Liar(wrong_at=2 * 730 + 1), check=EACH[0], duration=1.1, motion="midpoint")
+    assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [730]
+    assert (record.reference_residual <= 1e-8).all()

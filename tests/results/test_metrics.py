@@ -1,0 +1,253 @@
+"""Each metric against a value worked out by hand; each reason to fail against its cause."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from helpers_records import heart_record, make_record
+from iiwa_dnn.results.metrics import compute_metrics, failures, orientation_error, position_error
+
+DESIGN_KEYS = [
+    "max_position_error_m",
+    "mse_position_error_m2",
+    "max_orientation_error_rad",
+    "joint_drift_rad",
+    "max_kinetic_index",
+    "steps",
+    "dt_s",
+    "duration_s",
+    "wall_time_s",
+    "realtime_factor",
+    "position_limit_violation_rad",
+    "velocity_limit_violation_rad_s",
+    "max_kkt_residual",
+    "crosscheck",
+    "settings",
+    "versions",
+]
+
+
+def rotation_about(axis, angles):
+    """Rodrigues' formula, (M, 3, 3); 1 − cos is written so that small angles keep their digits."""
+    x, y, z = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angles = np.asarray(angles)[:, None, None]
+    return np.eye(3) + np.sin(angles) * cross + 2.0 * np.sin(angles / 2.0) ** 2 * cross @ cross
+
+
+def sample(record, name, index, value):
+    """Replace one entry of one array of a record."""
+    array = np.array(getattr(record, name))
+    array[index] = value
+    return dataclasses.replace(record, **{name: array})
+
+
+def check_of(tolerance=1e-6, solvers=("proxqp",)):
+    return {"solvers": list(solvers), "tolerance": tolerance, "reference_tolerance": 1e-8}
+
+
+def test_the_keys_are_the_designs_and_the_values_are_json():
+    metrics = compute_metrics(make_record())
+    assert list(metrics) == DESIGN_KEYS
+    assert json.loads(json.dumps(metrics, allow_nan=False)) == metrics
+    assert metrics["versions"]["iiwa_dnn"] == "0.1.0"
+    assert "versions" not in metrics["settings"]
+
+
+def test_position_error_is_a_distance_and_its_mean_square_is_over_axes():
+    # 3-4-12 gives 13 at one of 11 samples.
+    record = sample(make_record(), "position", 4, [3e-3, -4e-3, 12e-3])
+    metrics = compute_metrics(record)
+    assert metrics["max_position_error_m"] == pytest.approx(13e-3, rel=1e-14)
+    assert metrics["mse_position_error_m2"] == pytest.approx(169e-6 / 33.0, rel=1e-14)
+    np.testing.assert_array_equal(position_error(record)[4], [3e-3, -4e-3, 12e-3])
+
+
+def test_the_last_sample_counts():
+    record = sample(make_record(), "position", -1, [0.0, 0.0, 2e-6])
+    assert compute_metrics(record)["max_position_error_m"] == 2e-6
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 3.0, np.pi - 1e-9])
+def test_orientation_error_keeps_its_digits_near_zero_and_near_pi(angle):
+    rng = np.random.default_rng(3)
+    rotation_desired = rotation_about(rng.normal(size=3), rng.uniform(0.0, 3.0, 11))
+    turn = rotation_about(rng.normal(size=3), np.full(11, angle))
+    record = make_record(rotation=turn @ rotation_desired, rotation_desired=rotation_desired)
+    np.testing.assert_allclose(orientation_error(record), angle, rtol=1e-12, atol=5e-16)
+    expected = pytest.approx(angle, rel=1e-12, abs=5e-16)
+    assert compute_metrics(record)["max_orientation_error_rad"] == expected
+
+
+def test_joint_drift_is_from_start_to_end_only():
+    record = sample(make_record(), "q", 0, 0.25)
+    record = sample(record, "q", (-1, 2), -0.5)
+    record = sample(record, "q", 5, 2.0)
+    assert compute_metrics(record)["joint_drift_rad"] == 0.75
+
+
+def test_times_and_kinetic_index():
+    metrics = compute_metrics(sample(make_record(), "kinetic_index", 7, 0.0454))
+    assert metrics["max_kinetic_index"] == 0.0454
+    assert (metrics["steps"], metrics["dt_s"]) == (10, 0.1)
+    assert metrics["duration_s"] == pytest.approx(1.0)
+    assert metrics["wall_time_s"] == 0.5
+    assert metrics["realtime_factor"] == pytest.approx(2.0)
+    unknown = compute_metrics(dataclasses.replace(make_record(), wall_time_s=None))
+    assert unknown["wall_time_s"] is unknown["realtime_factor"] is None
+
+
+def test_limits():
+    inside = sample(make_record(), "q", (2, 3), -2.5)
+    assert compute_metrics(inside)["position_limit_violation_rad"] == 0.0
+    low = sample(inside, "q", (2, 3), -2.75)
+    assert compute_metrics(low)["position_limit_violation_rad"] == 0.25
+    high = sample(low, "q", (10, 6), 3.0)
+    assert compute_metrics(high)["position_limit_violation_rad"] == 0.5
+    fast = sample(make_record(), "dq", (9, 1), -1.75)
+    assert compute_metrics(fast)["velocity_limit_violation_rad_s"] == 0.25
+    unlimited = make_record(q=high.q, settings={"q_lower": [-np.inf] * 7, "q_upper": [np.inf] * 7})
+    assert compute_metrics(unlimited)["position_limit_violation_rad"] == 0.0
+
+
+def test_crosscheck_counts_only_what_is_believed():
+    record = make_record(steps=6, solvers=("proxqp", "osqp"))
+    gap = np.full((6, 2), 1e-9)
+    objective, residual = np.full((6, 2), 1e-11), np.full((6, 2), 1e-10)
+    gap[1, 1] = 2e-6  # disagrees
+    gap[2, 0], residual[2, 0], objective[2, 0] = 5.0, 1e-3, 7.0  # inaccurate: not believed
+    gap[3, 1], residual[3, 1], objective[3, 1] = np.inf, np.inf, np.inf  # no answer
+    gap[4, 0], residual[4, 0], objective[4, 0] = np.nan, np.nan, np.nan  # not asked
+    record = dataclasses.replace(
+        record, solution_gap=gap, objective_gap=objective, reference_residual=residual
+    )
+    assert compute_metrics(record)["crosscheck"] == {
+        "solver": "proxqp+osqp",
+        "steps_checked": 5,
+        "disagreements": 1,
+        "reference_failures": 2,
+        "max_solution_gap": 2e-6,
+        "max_objective_gap": 1e-11,
+        "max_reference_residual": 1e-3,
+        "judged": True,
+        "tolerance": 1e-6,
+        "first_disagreement": {
+            "step": 1,
+            "time_s": pytest.approx(0.1),
+            "solver": "osqp",
+            "gap": 2e-6,
+        },
+    }
+    assert failures(record) == [
+        "step 1 (t = 0.1 s): osqp differs by 2e-06 rad/s, tolerance 1e-06; 1 step disagrees in all",
+        "2 reference answers missing or not accurate enough to judge by (proxqp+osqp)",
+        "only 5 of 6 steps were checked",
+    ]
+    assert failures(compute_metrics(record)) == failures(record)
+
+
+def test_the_solver_that_differs_most_is_named():
+    gap = np.array([[3e-6, 9e-6]])
+    record = make_record(steps=1, solvers=("proxqp", "osqp"), solution_gap=gap)
+    assert compute_metrics(record)["crosscheck"]["first_disagreement"]["solver"] == "osqp"
+    assert compute_metrics(record)["crosscheck"]["disagreements"] == 1
+
+
+def test_in_continuous_mode_the_gap_is_a_lag_and_not_judged():
+    record = make_record(solution_gap=np.full((10, 1), 0.1), settings={"mode": "continuous"})
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["judged"], check["disagreements"], check["first_disagreement"]) == (
+        False,
+        0,
+        None,
+    )
+    assert check["max_solution_gap"] == 0.1
+    assert failures(dataclasses.replace(record, kkt_residual=np.full(10, 0.3))) == []
+
+
+def test_without_a_check():
+    metrics = compute_metrics(make_record(solvers=()))
+    check = metrics["crosscheck"]
+    assert (check["solver"], check["steps_checked"], check["judged"]) == ("none", 0, False)
+    assert check["max_solution_gap"] is check["max_reference_residual"] is None
+    assert failures(metrics) == []
+
+
+def test_a_tolerance_of_1e_18_is_failed_and_said_so():
+    record = heart_record(steps=1000, check=check_of(1e-18), q_upper=[3.0] * 7)
+    gap = np.full((1000, 1), 3.14e-15)
+    gap[:17] = gap[500] = 0.0
+    record = dataclasses.replace(record, solution_gap=gap)
+    assert failures(record) == [
+        "step 17 (t = 0.17 s): proxqp differs by 3.14e-15 rad/s, tolerance 1e-18; "
+        "982 steps disagree in all"
+    ]
+
+
+def test_a_wrong_answer_that_is_not_a_number_is_a_disagreement():
+    record = sample(make_record(), "solution_gap", 3, np.nan)  # its residual is finite
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["steps_checked"], check["disagreements"]) == (10, 1)
+    assert check["first_disagreement"]["step"] == 3
+    assert check["first_disagreement"]["gap"] is None
+    assert failures(record)
+
+
+@pytest.mark.parametrize("value", [2e-9, np.nan, np.inf])
+def test_an_unsolved_step(value):
+    record = sample(make_record(), "kkt_residual", [4, 6], value)
+    shown = {2e-9: "2e-09"}.get(value, str(value))
+    assert failures(record) == [
+        f"step 4 (t = 0.4 s): KKT residual {shown}, tolerance 1e-09; 2 steps unsolved in all"
+    ]
+    assert len(failures(compute_metrics(record))) == 1
+
+
+def test_a_residual_at_its_tolerance_is_solved():
+    assert failures(sample(make_record(), "kkt_residual", 4, 1e-9)) == []
+
+
+def test_a_broken_limit_names_joint_and_time():
+    record = sample(make_record(), "q", (3, 5), 2.6)
+    record = sample(record, "dq", (2, 0), -2.0)
+    assert failures(record) == [
+        "joint position limit broken by 0.1 rad; joint 6 at step 3 (t = 0.3 s)",
+        "joint velocity limit broken by 0.5 rad/s; joint 1 at step 2 (t = 0.2 s)",
+    ]
+    assert failures(compute_metrics(record)) == [
+        "joint position limit broken by 0.1 rad",
+        "joint velocity limit broken by 0.5 rad/s",
+    ]
+
+
+def test_rounding_at_a_limit_is_forgiven():
+    assert failures(sample(make_record(), "q", (3, 5), 2.5 + 1e-12)) == []
+    assert failures(sample(make_record(), "q", (3, 5), 2.5 + 1e-8))
+
+
+@pytest.mark.parametrize("name", ["q", "dq", "position"])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_what_is_not_finite_is_no_success(name, value):
+    record = sample(make_record(settings={"mode": "continuous"}), name, 5, value)
+    metrics = compute_metrics(record)
+    json.dumps(metrics, allow_nan=False)
+    assert failures(record) == failures(metrics) != []
+    assert "not finite" in failures(record)[0]
+
+
+def test_an_early_end():
+    record = make_record(steps=3, settings={"duration": 1.0, "status": "step 3 has no solution"})
+    assert failures(record) == ["ended after 3 of 10 steps: step 3 has no solution"]
+    nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
+    metrics = compute_metrics(nothing)
+    assert metrics["max_kinetic_index"] is metrics["max_kkt_residual"] is None
+    assert metrics["velocity_limit_violation_rad_s"] == 0.0
+    assert failures(metrics) == ["ended after 0 of 10 steps: interrupted"]
+
+
+def test_a_good_run_has_no_reasons():
+    assert failures(make_record()) == failures(compute_metrics(make_record())) == []

@@ -1,0 +1,170 @@
+"""Pictures and video of a run, judged by their pixels."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from helpers_physics import heart_without_physics, needs_opengl, papers_robot
+from iiwa_dnn import FileError
+from iiwa_dnn.errors import MissingDependencyError
+
+pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+pytestmark = needs_opengl
+
+from iiwa_dnn.results import pictures  # noqa: E402 - only where there is something to draw with
+from iiwa_dnn.results.rendering import ArmRenderer, sample_at  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return papers_robot()
+
+
+@pytest.fixture(scope="module")
+def record(robot):
+    return heart_without_physics(robot)
+
+
+def red(image: np.ndarray) -> np.ndarray:
+    """Pixels of the drawn line: far more red than anything else in the picture."""
+    image = image.astype(int)
+    return (image[..., 0] > 150) & (image[..., 1] < 110) & (image[..., 2] < 110)
+
+
+def orange(image: np.ndarray) -> np.ndarray:
+    image = image.astype(int)
+    return (image[..., 0] > image[..., 1] + 60) & (image[..., 1] > image[..., 2] + 40)
+
+
+def test_the_arm_is_there_and_moves(robot, record):
+    with ArmRenderer(robot, record, 320, 240) as renderer:
+        images = [renderer.draw(sample_at(record, t)).copy() for t in (0.0, 2.0, 6.0)]
+    for image in images:
+        assert image.shape == (240, 320, 3)
+        assert image.std() > 20.0
+        assert orange(image).sum() > 200
+    assert (np.abs(images[1].astype(int) - images[2]).max(axis=-1) > 30).sum() > 500
+
+
+def test_the_heart_grows_with_time(robot, record):
+    with ArmRenderer(robot, record, 240, 240, "path") as renderer:
+        counts = [red(renderer.draw(sample_at(record, t))).sum() for t in range(0, 11, 2)]
+    assert counts[0] == 0
+    assert (np.diff(counts) > 40).all(), counts
+    assert counts[-1] > 400
+
+
+def test_the_heart_looks_like_one(robot, record):
+    """Seen from above, x to the right and y up: its outline in pixels is the path's own."""
+    size = 400
+    with ArmRenderer(robot, record, size, size, "path") as renderer:
+        rows, columns = np.nonzero(red(renderer.draw(record.steps)))
+    path = record.position[:, :2]
+    span = np.ptp(path, axis=0)
+    assert np.ptp(columns) / np.ptp(rows) == pytest.approx(span[0] / span[1], rel=0.05)
+    # The notch is at the top in the middle, the point below it.
+    top = rows[np.abs(columns - columns.mean()) < 3].min()
+    assert top > rows.min() + 0.1 * np.ptp(rows)
+    lowest = columns[rows > rows.max() - 4]
+    assert abs(lowest.mean() - columns.mean()) < 0.05 * np.ptp(columns)
+
+
+def test_the_figure_of_five_moments(robot, record, tmp_path):
+    written = pictures.save_moments(robot, record, tmp_path)
+    assert [path.name for path in written] == ["moments.png", "moments.pdf"]
+    assert pictures.moments(record) == pytest.approx([2.0, 4.0, 6.0, 8.0, 10.0])
+    image = np.asarray(Image.open(tmp_path / "moments.png").convert("RGB"))
+    height, width = image.shape[:2]
+    counts = []
+    for part in range(5):
+        column = image[:, width * part // 5 : width * (part + 1) // 5]
+        assert orange(column[: height // 2]).sum() > 300  # the arm
+        counts.append(red(column[height // 2 :]).sum())  # the heart so far
+    assert counts[0] > 100
+    assert (np.diff(counts) > 50).all(), counts
+    assert (tmp_path / "moments.pdf").read_bytes().startswith(b"%PDF")
+
+
+def decoded(path) -> tuple[dict[str, str], list[np.ndarray]]:
+    """A video's own facts, and its pictures, as ffmpeg reads them."""
+    imageio_ffmpeg = pytest.importorskip("imageio_ffmpeg", reason="pip install 'iiwa-dnn[sim]'")
+    reader = imageio_ffmpeg.read_frames(str(path))
+    facts = next(reader)
+    width, height = facts["size"]
+    return facts, [np.frombuffer(raw, np.uint8).reshape(height, width, 3) for raw in reader]
+
+
+# imageio-ffmpeg leaves the pipes of its reader to the garbage collector.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_the_video(robot, record, tmp_path):
+    pytest.importorskip("imageio_ffmpeg", reason="pip install 'iiwa-dnn[sim]'")
+    short = cut(record, 100)  # 2 s
+    seen: list[int] = []
+    path = pictures.save_video(robot, short, tmp_path / "video.mp4", seen.append)
+    facts, images = decoded(path)
+    assert facts["codec"] == "h264"
+    assert facts["fps"] == pictures.FRAME_RATE
+    assert facts["duration"] == pytest.approx(2.0, abs=0.1)
+    assert len(images) == len(seen) == len(pictures.frame_times(short)) == 51
+    counts = [red(image[:220, -220:]).sum() for image in images]
+    assert all(image.std() > 20.0 and orange(image).sum() > 1000 for image in images)
+    assert counts[0] == 0
+    assert counts[-1] > 60
+    assert counts[-1] > counts[25]
+    assert list(tmp_path.iterdir()) == [path]  # no temporary file is left
+
+
+def cut(record, steps: int):
+    """The first steps of a record."""
+    import dataclasses
+
+    per_sample = ("t", "q", "position", "rotation", "position_desired", "rotation_desired")
+    arrays = {
+        field.name: getattr(record, field.name)
+        for field in dataclasses.fields(record)
+        if field.init and isinstance(getattr(record, field.name), np.ndarray)
+    }
+    shorter = {k: v[: steps + 1] if k in per_sample else v[:steps] for k, v in arrays.items()}
+    return dataclasses.replace(record, **shorter)
+
+
+def test_a_video_that_cannot_be_written(robot, record, tmp_path):
+    with pytest.raises(FileError, match="cannot be written"):
+        pictures.save_video(robot, cut(record, 2), tmp_path / "missing" / "video.mp4")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_video_leaves_the_old_one(robot, record, tmp_path):
+    path = tmp_path / "video.mp4"
+    path.write_bytes(b"old")
+
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        pictures.save_video(robot, cut(record, 10), path, interrupt)
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_without_the_encoder_one_line_says_what_to_install(monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
+    with pytest.raises(MissingDependencyError, match=re.escape("pip install 'iiwa-dnn[sim]'")):
+        pictures.import_encoder()
+
+
+def test_a_path_in_space_is_drawn_too(robot):
+    from helpers_physics import START
+    from iiwa_dnn import Configuration, DoubleIndicator, Line, simulate
+
+    line = Line(offset=(0.0, 0.05, 0.08), period=2.0).anchored(Configuration(robot, START))
+    record = simulate(robot, DoubleIndicator(), line, START, dt=0.02, duration=1.0)
+    for view in ("arm", "path"):
+        with ArmRenderer(robot, record, 200, 150, view) as renderer:
+            assert red(renderer.draw(record.steps)).sum() > 20

@@ -1,0 +1,202 @@
+"""The figures: all there, not blank, the same bytes each time, and fit for print."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib import image
+
+from helpers_records import heart_record, make_record
+from iiwa_dnn.errors import FileError
+from iiwa_dnn.results.plots import (
+    FIGURES,
+    convergence_figure,
+    overview_figure,
+    path_figure,
+    save_figures,
+)
+
+NAMES = ["overview", "path", "joint_angles", "joint_velocities", "position_error", "convergence"]
+
+
+@pytest.fixture(scope="module")
+def heart():
+    return heart_record(steps=20_000, noise=0.01, solvers=("proxqp", "osqp"))
+
+
+@pytest.fixture(scope="module")
+def drawn(heart, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    return folder, save_figures(heart, folder)
+
+
+def test_every_figure_is_there_twice_and_nothing_else(drawn):
+    folder, written = drawn
+    assert written == [folder / f"{name}.{kind}" for name in NAMES for kind in ("png", "pdf")]
+    assert sorted(written) == sorted(folder.iterdir())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_png_is_not_blank_and_of_its_printed_size(drawn, name):
+    pixels = image.imread(drawn[0] / f"{name}.png")[..., :3]
+    assert pixels.shape[1] == (1400 if name == "overview" else 700)
+    ink = (pixels < 0.95).any(axis=2).mean()
+    assert 0.02 < ink < 0.6
+    colours = (255 * pixels).astype(int) @ [65536, 256, 1]
+    assert len(np.unique(colours)) > 50
+    # Neither does ink touch the edge, where it would be cut off.
+    edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+    assert (edge == 1.0).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_pdf_is_small_and_embeds_truetype(drawn, name):
+    content = (drawn[0] / f"{name}.pdf").read_bytes()
+    assert content.startswith(b"%PDF")
+    assert len(content) < 600_000
+    assert b"CreationDate" not in content
+    assert b"/Type3" not in content
+    assert b"/FontFile2" in content
+
+
+def test_same_bytes_elsewhere_whatever_the_users_style_and_without_pyplot(heart, drawn, tmp_path):
+    heart.save(tmp_path / "record.npz")
+    (tmp_path / "matplotlibrc").write_text("font.size: 30\nfigure.dpi: 37\naxes.facecolor: red\n")
+    code = (
+        "import sys, iiwa_dnn.results.plots, iiwa_dnn.results.report\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        "record = iiwa_dnn.results.record.Record.load('record.npz')\n"
+        "iiwa_dnn.results.plots.save_figures(record, 'out')\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
+        "assert sys.modules['matplotlib'].rcParams['font.size'] == 30\n"
+    )
+    # The current folder is where Matplotlib looks for a matplotlibrc first.
+    paths = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"PYTHONPATH": paths, "PYTHONHASHSEED": "7"}
+    command = [sys.executable, "-c", code]
+    subprocess.run(command, check=True, cwd=tmp_path, env=environment)
+    for path in drawn[1]:
+        assert path.read_bytes() == (tmp_path / "out" / path.name).read_bytes(), path.name
+
+
+def test_the_callers_settings_are_left_alone(monkeypatch, tmp_path):
+    monkeypatch.setattr("iiwa_dnn.results.plots.FIGURES", {"path": path_figure})
+    with mpl.rc_context({"font.size": 30}):
+        before = dict(mpl.rcParams)
+        save_figures(make_record(), tmp_path)
+        assert dict(mpl.rcParams) == before
+
+
+def test_axes_say_quantity_and_unit(heart):
+    labels = [axes.get_ylabel() for axes in overview_figure(heart).axes]
+    assert labels == [
+        "$y$ [m]",
+        "Joint angle [rad]",
+        "Joint velocity [rad/s]",
+        "Position error [nm]",
+    ]
+    bottom = [axes.get_xlabel() for axes in overview_figure(heart).axes]
+    assert bottom == ["$x$ [m]\n(a)", *(f"Time [s]\n({letter})" for letter in "bcd")]
+
+
+def test_curves_are_told_apart_without_colour(heart):
+    axes = overview_figure(heart).axes[1]
+    joints = [line for line in axes.lines if line.get_label().startswith("$q")]
+    assert len(joints) == 7
+    luminance = [np.dot(line.get_color()[:3], [0.2126, 0.7152, 0.0722]) for line in joints]
+    assert (np.diff(luminance) > 0.03).all()
+    assert len({(line.get_linestyle(), line.get_marker()) for line in joints}) == 7
+
+
+def test_a_spike_of_one_sample_is_drawn(heart):
+    position = np.array(heart.position)
+    position[12_345, 0] += 2e-3
+    axes = overview_figure(dataclasses.replace(heart, position=position)).axes[3]
+    assert axes.get_ylabel() == "Position error [mm]"
+    assert axes.dataLim.y1 == pytest.approx(2.0, rel=1e-3)
+
+
+def test_limits_are_drawn_where_they_are_near(heart):
+    def limits(record):
+        lines = overview_figure(record).axes[1].lines
+        return [line.get_ydata()[0] for line in lines if len(line.get_xdata()) == 2]
+
+    far = heart.settings | {"q_lower": [-9.0] * 7, "q_upper": [9.0] * 7}
+    none = heart.settings | {"q_lower": [None] * 7, "q_upper": [None] * 7}
+    assert limits(heart) == [-2.5, 2.5]
+    assert limits(dataclasses.replace(heart, settings=far)) == []
+    assert limits(dataclasses.replace(heart, settings=none)) == []
+
+
+def test_path_is_flat_or_in_space(heart):
+    desired = np.array(heart.position_desired)
+    assert path_figure(heart).axes[0].name == "rectilinear"
+    desired[:, 2] += 0.02 * np.sin(heart.t)
+    figure = path_figure(dataclasses.replace(heart, position_desired=desired))
+    assert figure.axes[0].name == "3d"
+    assert figure.axes[0].get_zlabel() == "$z$ [m]"
+
+
+def test_convergence_shows_tolerances_only_where_they_judge(heart):
+    def labels(record):
+        return [axes.get_legend_handles_labels()[1] for axes in convergence_figure(record).axes]
+
+    assert labels(heart) == [["network", "tolerance"], ["proxqp", "osqp", "tolerance"]]
+    lag = dataclasses.replace(heart, settings=heart.settings | {"mode": "continuous"})
+    assert labels(lag) == [["network"], ["proxqp", "osqp"]]
+    assert labels(make_record(solvers=())) == [["network", "tolerance"]]
+
+
+def test_convergence_marks_answers_that_never_came(heart):
+    gap = np.array(heart.solution_gap)
+    gap[50:60, 1] = np.inf
+    figure = convergence_figure(dataclasses.replace(heart, solution_gap=gap))
+    marks = {line.get_label(): line for line in figure.axes[1].lines}["osqp failed"]
+    np.testing.assert_allclose(marks.get_xdata(), heart.t[50:60])
+
+
+def odd_records():
+    yield "no steps", make_record(steps=0)
+    yield "one step", make_record(steps=1)
+    yield (
+        "nothing positive",
+        make_record(kkt_residual=np.zeros(10), solution_gap=np.full((10, 1), np.nan)),
+    )
+    yield (
+        "a single value",
+        make_record(kkt_residual=np.full(10, 1e-4), settings={"mode": "continuous"}),
+    )
+    broken = heart_record(steps=3000)
+    position, dq = np.array(broken.position), np.array(broken.dq)
+    position[1000:], dq[1000:] = np.nan, np.inf
+    yield "not finite", dataclasses.replace(broken, position=position, dq=dq)
+    position[1000:] = np.inf
+    yield "infinite", dataclasses.replace(broken, position=position)
+    yield "many solvers", make_record(solvers=("a", "b", "c", "d"))
+
+
+@pytest.mark.parametrize("name", ["overview", "convergence"])  # together they hold every panel
+@pytest.mark.parametrize("record", [pytest.param(r, id=i) for i, r in odd_records()])
+@pytest.mark.filterwarnings("error::UserWarning", "error::RuntimeWarning")
+def test_odd_records_are_drawn_too(record, name, tmp_path):
+    FIGURES[name](record).savefig(tmp_path / "x.png")
+
+
+def test_a_folder_that_cannot_be_written(tmp_path):
+    (tmp_path / "file").touch()
+    with pytest.raises(FileError):
+        save_figures(make_record(), tmp_path / "file")
+
+
+def test_pdf_streams_are_whole(drawn):
+    content = (drawn[0] / "path.pdf").read_bytes()
+    start = content.index(b"stream\n") + len(b"stream\n")
+    assert zlib.decompressobj().decompress(content[start:])

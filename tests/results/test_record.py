@@ -1,0 +1,291 @@
+"""The record: shapes, immutability, and a file that comes back bit for bit or not at all."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import time
+import zipfile
+
+import numpy as np
+import pytest
+
+from helpers_records import heart_record, make_record, make_settings
+from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.results.record import Record
+
+ARRAYS = [
+    field.name
+    for field in dataclasses.fields(Record)
+    if field.name not in ("settings", "wall_time_s") and field.default is not None
+]
+OPTIONAL = {"torque", "bound_multiplier", "clipped", "action", "fraction", "blocking"}
+
+
+@pytest.fixture
+def heart() -> Record:
+    gap = np.full((40, 2), 1e-9)
+    gap[3, 0], gap[4, 1], gap[5] = np.nan, np.inf, np.nan
+    record = heart_record(steps=40, solvers=("proxqp", "osqp"), noise=0.01)
+    return dataclasses.replace(record, solution_gap=gap)
+
+
+@pytest.mark.parametrize("solvers", [(), ("proxqp",), ("proxqp", "osqp")])
+@pytest.mark.parametrize("steps", [0, 1, 40])
+def test_round_trip(tmp_path, steps, solvers):
+    record = make_record(steps=steps, solvers=solvers)
+    record.save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    for name in ARRAYS:
+        before, after = getattr(record, name), getattr(loaded, name)
+        assert before.dtype == after.dtype
+        np.testing.assert_array_equal(before, after, strict=True)
+    assert loaded.settings == record.settings
+    assert loaded.wall_time_s is None
+    assert (loaded.steps, loaded.dof, loaded.references) == (steps, 7, len(solvers))
+
+
+def test_torques_are_in_the_file_where_there_are_any(tmp_path):
+    torque = np.arange(70.0).reshape(10, 7)
+    record = make_record(torque=torque, settings={"torque_max": [176.0, *[np.inf] * 6]})
+    record.save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    np.testing.assert_array_equal(loaded.torque, torque, strict=True)
+    assert loaded.settings["torque_max"] == [176.0, *[None] * 6]
+    with pytest.raises(ValueError, match="read-only"):
+        loaded.torque[0] = 0.0
+    make_record().save(tmp_path / "without.npz")
+    assert Record.load(tmp_path / "without.npz").torque is None
+    with np.load(tmp_path / "without.npz") as stored:
+        assert "torque" not in stored.files
+
+
+@pytest.mark.parametrize(
+    ("torque", "settings", "words"),
+    [
+        (np.zeros((11, 7)), {"torque_max": [1.0] * 7}, r"torque: shape \(11, 7\)"),
+        (np.zeros((10, 7)), {}, "'torque_max' is missing"),
+        (np.zeros((10, 7)), {"torque_max": [1.0] * 6}, "7 limits"),
+    ],
+)
+def test_wrong_torques(torque, settings, words):
+    with pytest.raises(InvalidInputError, match=words):
+        make_record(torque=torque, settings=settings)
+
+
+def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
+    optional = {field.name for field in dataclasses.fields(Record) if field.default is None}
+    assert optional == OPTIONAL | {"wall_time_s"}
+    happened = {
+        "bound_multiplier": np.linspace(-1.0, 1.0, 70).reshape(10, 7),
+        "clipped": np.eye(10, 7, dtype=np.int8),
+        "action": np.arange(10, dtype=np.int8) % 5,
+        "fraction": np.linspace(0.0, 1.0, 10),
+        "blocking": -2 * np.eye(10, 7, dtype=np.int8),
+    }
+    make_record(**happened).save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    for name, array in happened.items():
+        np.testing.assert_array_equal(getattr(loaded, name), array, strict=True)
+    make_record().save(tmp_path / "without.npz")
+    with np.load(tmp_path / "without.npz") as stored:
+        assert not OPTIONAL & set(stored.files)
+    for name, array in happened.items():
+        with pytest.raises(InvalidInputError, match=rf"^{name}: shape"):
+            make_record(**{name: array[:-1]})
+
+
+def test_the_gap_is_the_largest_over_the_solvers(heart):
+    # NaN of one solver does not hide the other's answer; inf (no answer) shows.
+    np.testing.assert_array_equal(heart.crosscheck_gap[2:6], [1e-9, 1e-9, np.inf, np.nan])
+    assert np.isnan(make_record(solvers=()).crosscheck_gap).all()
+
+
+def test_the_file_is_what_the_design_says(heart, tmp_path):
+    heart.save(tmp_path / "record.npz")
+    with np.load(tmp_path / "record.npz", allow_pickle=False) as stored:
+        assert set(stored.files) == {*ARRAYS, "settings"}
+        assert json.loads(str(stored["settings"])) == heart.settings
+        np.testing.assert_array_equal(stored["crosscheck_gap"], heart.crosscheck_gap)
+
+
+def test_the_same_record_gives_the_same_bytes(heart, tmp_path, monkeypatch):
+    heart.save(tmp_path / "a.npz")
+    monkeypatch.setattr(time, "time", lambda: 2e9)
+    shuffled = dict(reversed(heart.settings.items()))
+    dataclasses.replace(heart, settings=shuffled, wall_time_s=1e3).save(tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+    with zipfile.ZipFile(tmp_path / "a.npz") as archive:
+        assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        assert {info.compress_type for info in archive.infolist()} == {zipfile.ZIP_STORED}
+
+
+def test_a_record_does_not_change_with_what_it_was_made_of():
+    q, settings = np.zeros((11, 7)), {"dt": 0.1, "scheme": {"weight": 0.2}}
+    record = make_record(q=q, settings=settings)
+    q[:] = 1.0
+    settings["scheme"]["weight"] = 1.0
+    assert not record.q.any()
+    assert record.settings["scheme"] == {"weight": 0.2}
+    with pytest.raises(ValueError, match="read-only"):
+        record.q[0] = 1.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        record.q = q
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("dq", np.zeros((9, 7)), r"shape \(9, 7\), expected \(N, n\) = \(10, 7\)"),
+        ("q", np.zeros((11, 6)), r"dq: shape \(10, 7\), expected \(N, n\) = \(10, 6\)"),
+        ("rotation", np.zeros((11, 9)), "2 dimensions, expected 3"),
+        ("rotation_desired", np.zeros((11, 3, 2)), r"\(N\+1, 3, 3\)"),
+        ("kkt_residual", np.zeros(11), "kkt_residual"),
+        ("t", np.zeros(11), "increasing"),
+        ("t", np.full(11, np.nan), "increasing"),
+        ("t", np.zeros(0), "t"),
+        ("position", np.full((11, 3), "x"), "numbers"),
+        ("iterations", np.full(10, 0.5), "iterations"),
+        ("solution_gap", np.zeros((10, 2)), "objective_gap"),
+    ],
+)
+def test_wrong_arrays(name, value, words):
+    with pytest.raises(InvalidInputError, match=words):
+        make_record(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"q_lower": [0.0] * 6}, "7 limits"),
+        ({"mode": "fast"}, "mode"),
+        ({"dt": 0.0}, "positive"),
+        ({"tol": float("nan")}, "settings"),
+        ({"seed": {1}}, "JSON"),
+        ({"check": {"solvers": [], "tolerance": 1e-6, "reference_tolerance": 1e-8}}, "1 solver"),
+        ({"check": {"solvers": ["proxqp"]}}, "'tolerance' is missing"),
+    ],
+)
+def test_wrong_settings(change, words):
+    with pytest.raises(InvalidInputError, match=words):
+        make_record(settings=change)
+
+
+def test_missing_settings():
+    settings = make_settings()
+    del settings["status"]
+    with pytest.raises(InvalidInputError, match="'status' is missing"):
+        dataclasses.replace(make_record(), settings=settings)
+
+
+def test_an_infinite_limit_is_none_and_survives(tmp_path):
+    record = make_record(settings={"q_upper": [np.inf] * 7, "dq_max": np.full(7, 1.5)})
+    assert record.settings["q_upper"] == [None] * 7
+    record.save(tmp_path / "x")
+    assert Record.load(tmp_path / "x").settings == record.settings
+
+
+def rewritten(path, **changes):
+    """Write the record at `path` again with arrays changed, or left out where None."""
+    with np.load(path) as stored:
+        arrays = dict(stored) | changes
+    np.savez(path.with_suffix(""), **{k: v for k, v in arrays.items() if v is not None})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"dq": None},
+        {"settings": None},
+        {"crosscheck_gap": None},
+        {"dq": np.zeros((3, 7))},
+        {"settings": np.array("not json")},
+        {"settings": np.array("[1]")},
+        {"settings": np.array("{}")},
+        {"crosscheck_gap": np.full(40, 1e-12)},
+        {"q": np.full((41, 7), "x")},
+    ],
+)
+def test_a_file_that_is_not_a_record(heart, tmp_path, change):
+    path = tmp_path / "record.npz"
+    heart.save(path)
+    rewritten(path, **change)
+    with pytest.raises(FileError) as caught:
+        Record.load(path)
+    assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+def test_every_truncation_and_any_flipped_byte_is_noticed(heart, tmp_path):
+    path = tmp_path / "record.npz"
+    heart.save(path)
+    whole = path.read_bytes()
+    rng = np.random.default_rng(0)
+    for length in (0, 1, 10, *rng.integers(0, len(whole), 60)):
+        path.write_bytes(whole[:length])
+        with pytest.raises(FileError):
+            Record.load(path)
+    for place in rng.integers(0, len(whole), 200):
+        damaged = bytearray(whole)
+        damaged[place] ^= 0xFF
+        path.write_bytes(damaged)
+        try:
+            loaded = Record.load(path)
+        except FileError as error:
+            assert "\n" not in str(error)  # noqa: PT017 - not every byte of a zip file matters
+        else:
+            for name in ARRAYS:
+                np.testing.assert_array_equal(getattr(loaded, name), getattr(heart, name))
+
+
+def test_pickles_and_other_files_are_refused(heart, tmp_path):
+    path = tmp_path / "record.npz"
+    heart.save(path)
+    rewritten(path, q=np.array([object()], dtype=object))
+    with pytest.raises(FileError, match=r"pickle|allow"):
+        Record.load(path)
+    np.save(tmp_path / "one.npy", np.zeros(3))
+    with pytest.raises(FileError, match="archive"):
+        Record.load(tmp_path / "one.npy")
+    (tmp_path / "text").write_text("hello")
+    with pytest.raises(FileError):
+        Record.load(tmp_path / "text")
+    with pytest.raises(FileError, match="No such file"):
+        Record.load(tmp_path / "missing")
+    with pytest.raises(FileError):
+        Record.load(tmp_path)
+
+
+def test_a_save_that_fails_leaves_the_old_record(heart, tmp_path, monkeypatch):
+    path = tmp_path / "record.npz"
+    heart.save(path)
+    old = path.read_bytes()
+
+    def full(file: io.BufferedWriter, **arrays: np.ndarray) -> None:
+        file.write(b"PK")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savez", full)
+    with pytest.raises(FileError, match="No space left"):
+        make_record().save(path)
+    assert path.read_bytes() == old
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_save_into_no_folder(tmp_path):
+    with pytest.raises(FileError, match="cannot be written"):
+        make_record().save(tmp_path / "missing" / "record.npz")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_protected_array_is_taken_as_it_is_and_an_open_one_is_copied() -> None:
+    record = make_record()
+    again = dataclasses.replace(record)
+    assert again.q is record.q
+    whole = np.array(record.q)
+    view = whole[:]
+    view.setflags(write=False)  # but `whole` can still be written into
+    copied = dataclasses.replace(record, q=view)
+    whole[:] = 0.0
+    np.testing.assert_array_equal(copied.q, record.q)

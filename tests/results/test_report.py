@@ -1,0 +1,171 @@
+"""The report and the summary say what the metrics say, and no more than was checked."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from helpers_records import heart_record, make_record
+from iiwa_dnn.errors import FileError
+from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.report import save_run, summary, write_report
+
+
+@pytest.fixture(scope="module")
+def record():
+    return heart_record(steps=500, solvers=("proxqp", "osqp"), q_upper=[3.0] * 7)
+
+
+@pytest.fixture(scope="module")
+def run(record, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    return folder, save_run(record, folder)
+
+
+def rows(text):
+    """Cells of all tables of a report, by the first of each row."""
+    lines = [line for line in text.splitlines() if line.startswith("| ")]
+    cells = [re.split(r" (?<!\\)\| ", line.strip("| ")) for line in lines]
+    return {cell[0]: cell[1:] for cell in cells}
+
+
+def test_a_run_leaves_its_files_and_nothing_else(run, record):
+    folder, metrics = run
+    assert {"record.npz", "metrics.json", "report.md"} < {path.name for path in folder.iterdir()}
+    assert len(list(folder.iterdir())) == 3 + 12
+    assert json.loads((folder / "metrics.json").read_text()) == metrics
+    np.testing.assert_array_equal(Record.load(folder / "record.npz").q, record.q)
+
+
+def test_metrics_follow_from_the_file(run):
+    folder, metrics = run
+    again = compute_metrics(Record.load(folder / "record.npz"))
+    wall = {"wall_time_s": metrics["wall_time_s"], "realtime_factor": metrics["realtime_factor"]}
+    assert again | wall == metrics
+
+
+def test_without_figures(record, tmp_path):
+    save_run(record, tmp_path / "new" / "folder", plots=False)
+    names = {path.name for path in (tmp_path / "new" / "folder").iterdir()}
+    assert names == {"record.npz", "metrics.json", "report.md"}
+    assert "Figures" not in (tmp_path / "new" / "folder" / "report.md").read_text(encoding="utf-8")
+
+
+def test_the_reports_numbers_are_the_metrics(run):
+    folder, metrics = run
+    table = rows((folder / "report.md").read_text(encoding="utf-8"))
+    check = metrics["crosscheck"]
+    for row, value, unit in [
+        ("largest position error", metrics["max_position_error_m"], "m"),
+        (
+            "mean squared position error, over samples and axes",
+            metrics["mse_position_error_m2"],
+            "m²",
+        ),
+        ("largest orientation error", metrics["max_orientation_error_rad"], "rad"),
+        ("joint drift, start to end", metrics["joint_drift_rad"], "rad"),
+        ("largest kinetic index", metrics["max_kinetic_index"], "rad²/s²"),
+        ("largest KKT residual", metrics["max_kkt_residual"], ""),
+        ("steps", metrics["steps"], ""),
+        ("time simulated", metrics["duration_s"], "s"),
+        ("wall time", metrics["wall_time_s"], "s"),
+        ("steps checked", check["steps_checked"], ""),
+        ("steps that disagree", check["disagreements"], ""),
+        ("largest gap in the solution", check["max_solution_gap"], "rad/s"),
+        ("largest gap in the objective", check["max_objective_gap"], ""),
+        ("largest residual of a reference", check["max_reference_residual"], ""),
+    ]:
+        assert float(table[row][0].replace(",", "")) == pytest.approx(value, rel=1e-5), row
+        assert (table[row][1:] or [""])[0] == unit, row
+    assert table["reference solver"][0] == "proxqp+osqp"
+    assert table["upper joint limits [rad]"] == ["3 (all 7)"]
+    assert table["scheme"] == ["name = DoubleIndicator, weight = 0.2, kinetic = identity"]
+    assert table["numpy"] == [np.__version__]
+
+
+def test_the_report_shows_the_figures_that_exist(run):
+    folder, _ = run
+    links = re.findall(
+        r"!\[[^\]]+\]\(([^)]+)\)", (folder / "report.md").read_text(encoding="utf-8")
+    )
+    assert len(links) == 6
+    assert all((folder / link).is_file() for link in links)
+
+
+def verdict(record, folder):
+    write_report(record, compute_metrics(record), folder)
+    text = (folder / "report.md").read_text(encoding="utf-8")
+    return text.split("## Verdict\n\n")[1].split("\n\n")[0]
+
+
+def test_verdicts_claim_no_more_than_was_checked(tmp_path):
+    assert verdict(make_record(), tmp_path) == (
+        "- all 10 steps solved, within all limits and in agreement with proxqp"
+    )
+    assert "no reference solver was asked" in verdict(make_record(solvers=()), tmp_path)
+    lag = make_record(settings={"mode": "continuous"})
+    assert "lag, not judged" in verdict(lag, tmp_path)
+    unsure = make_record(reference_residual=np.full((10, 1), 1e-3), settings=lag.settings)
+    assert verdict(unsure, tmp_path).endswith("; 10 reference answers not to be believed")
+    assert "reported and not judged" in (tmp_path / "report.md").read_text(encoding="utf-8")
+
+
+def test_a_failed_run_lists_every_reason(tmp_path):
+    record = make_record(q=np.full((11, 7), 2.6), solution_gap=np.full((10, 1), 1e-3))
+    reasons = failures(record)
+    assert len(reasons) == 2
+    assert verdict(record, tmp_path) == "\n".join(f"- {reason}" for reason in reasons)
+
+
+def test_cells_do_not_break_the_table(tmp_path):
+    record = make_record(settings={"status": "a | b\nc", "motion": "x|y", "status_code": None})
+    write_report(record, compute_metrics(record), tmp_path)
+    table = rows((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert table["status"] == ["a \\| b c"]
+    assert table["status code"] == ["none"]
+
+
+def test_summary_is_short_aligned_and_true(run):
+    _, metrics = run
+    lines = summary(metrics).splitlines()
+    assert 9 <= len(lines) <= 12
+    assert summary(metrics).isascii()
+    assert all(len(line) <= 100 for line in lines)
+    names = [line[:19].strip() for line in lines]
+    assert names[0] == "run"
+    assert names[-1] == "verdict"
+    assert all(line[19] != " " and line[18] == " " for line in lines)
+    text = summary(metrics)
+    assert f"max {metrics['max_position_error_m']:.4g} m," in text
+    assert "500 steps checked, 0 disagreements, 0 failures" in text
+    assert lines[-1].endswith("in agreement with proxqp+osqp")
+
+
+def test_summary_of_odd_runs():
+    nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
+    text = summary(compute_metrics(nothing))
+    assert "unknown" in text
+    assert text.endswith("ended after 0 of 10 steps: interrupted")
+    assert "not asked for" in summary(compute_metrics(make_record(solvers=())))
+    broken = make_record(q=np.full((11, 7), 2.6))
+    text = summary(compute_metrics(broken), failures(broken))
+    assert text.endswith("joint 1 at step 0 (t = 0 s)")
+    inertia = make_record(settings={"scheme": {"kinetic": "inertia"}})
+    assert re.search(r"kinetic index +max 0 J\n", summary(compute_metrics(inertia)))
+    assert re.search(
+        r"kinetic index +max 0 *\n", summary(compute_metrics(make_record(settings={"scheme": "x"})))
+    )
+
+
+def test_nothing_is_written_where_nothing_can_be(record, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(FileError, match="cannot be written"):
+        save_run(record, tmp_path / "file")
+    with pytest.raises(FileError, match="cannot be written"):
+        write_report(record, compute_metrics(record), tmp_path / "missing")
+    assert (tmp_path / "file").read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]

@@ -1,0 +1,104 @@
+"""Which OpenGL library is taken, and what is said where there is none."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from helpers_physics import needs_opengl, run_python
+from iiwa_dnn.errors import MissingDependencyError
+from iiwa_dnn.robot import offscreen
+
+linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a matter of Linux")
+
+
+@linux
+@pytest.mark.parametrize(
+    ("egl", "osmesa", "wanted", "chosen"),
+    [
+        (True, True, "", "egl"),
+        (True, False, "", "egl"),
+        (False, True, "", "osmesa"),
+        (True, True, "osmesa", "osmesa"),
+        (True, True, "EGL", "egl"),
+        (False, True, "glfw", "osmesa"),
+        (False, False, "", None),
+        (True, False, "osmesa", None),
+    ],
+)
+def test_the_choice(monkeypatch, egl, osmesa, wanted, chosen):
+    monkeypatch.delenv("PYOPENGL_PLATFORM", raising=False)
+    monkeypatch.setenv("MUJOCO_GL", wanted)
+    monkeypatch.setattr(offscreen, "egl_works", lambda: egl)
+    monkeypatch.setattr(offscreen, "osmesa_works", lambda: osmesa)
+    if chosen is not None:
+        assert offscreen.opengl_library() == chosen
+        return
+    with pytest.raises(MissingDependencyError, match="apt-get install libosmesa6") as caught:
+        offscreen.opengl_library()
+    assert "libegl1" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_elsewhere_mujoco_chooses(monkeypatch):
+    monkeypatch.setattr(sys, "platform", "darwin")
+    assert offscreen.opengl_library() == "gl_context"
+
+
+@linux
+def test_a_library_that_is_not_there_does_not_work(monkeypatch):
+    def nothing(name, *_):
+        raise OSError(f"{name}: cannot open shared object file")
+
+    monkeypatch.setattr(offscreen.ctypes, "CDLL", nothing)
+    assert not offscreen.egl_works()
+    assert not offscreen.osmesa_works()
+
+
+def test_without_mujoco_one_line_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[sim\]'") as caught:
+        offscreen.import_mujoco()
+    assert isinstance(caught.value, ImportError)
+
+
+@needs_opengl
+@linux
+@pytest.mark.parametrize("library", ["egl", "osmesa"])
+def test_each_library_that_is_there_draws(library):
+    if not getattr(offscreen, f"{library}_works")():
+        pytest.skip(f"no {library}: on Debian, apt-get install libosmesa6 libegl1 libgl1")
+    result = run_python(
+        "import sys; sys.path.insert(0, 'tests')\n"
+        "from helpers_physics import papers_robot, heart_without_physics\n"
+        "from iiwa_dnn.results.rendering import ArmRenderer\n"
+        "robot = papers_robot(); record = heart_without_physics(robot, 500)\n"
+        "with ArmRenderer(robot, record, 80, 60) as renderer: image = renderer.draw(9)\n"
+        "print('spread', image.std())",
+        MUJOCO_GL=library,
+        PYOPENGL_PLATFORM="",
+        DISPLAY="",
+    )
+    assert result.returncode == 0, result.stderr
+    assert float(result.stdout.split()[-1]) > 5.0
+
+
+def test_the_package_needs_no_extra():
+    blocked = "import sys; sys.modules.update(mujoco=None, viser=None, imageio_ffmpeg=None)"
+    result = run_python(f"{blocked}; import iiwa_dnn; print(iiwa_dnn.__version__)")
+    assert result.returncode == 0, result.stderr
+
+
+@linux
+def test_an_opengl_library_that_is_asked_for_and_not_there(monkeypatch):
+    def broken(name):
+        raise AttributeError("'NoneType' object has no attribute 'glGetError'")
+
+    monkeypatch.setattr(offscreen.importlib, "import_module", broken)
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    with pytest.raises(MissingDependencyError, match="MUJOCO_GL=egl asks for"):
+        offscreen.import_mujoco()
+    monkeypatch.delenv("MUJOCO_GL")
+    with pytest.raises(AttributeError):
+        offscreen.import_mujoco()

@@ -1,0 +1,255 @@
+"""Loading robots, their limits, and what is said when it fails."""
+
+from __future__ import annotations
+
+import dataclasses
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import iiwa_dnn.robot.robot
+from helpers_kinematics import example_urdf
+from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
+
+FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
+LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
+
+
+def one_joint(limit: str = LIMIT, kind: str = "revolute", origin: str = "0 0 1") -> str:
+    return (
+        f'<robot name="one"><link name="a"/><link name="b"/><joint name="j" type="{kind}">'
+        f'<parent link="a"/><child link="b"/><origin xyz="{origin}"/><axis xyz="0 1 0"/>{limit}'
+        "</joint></robot>"
+    )
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return load_robot("iiwa7")
+
+
+@pytest.fixture
+def written(tmp_path: Path):
+    def write(content: str | bytes) -> Path:
+        path = tmp_path / "some.urdf"
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    return write
+
+
+def test_by_name(robot: Robot) -> None:
+    assert "iiwa7" in available_robots()
+    assert (robot.name, robot.tip, robot.dof) == ("iiwa7", "iiwa7_flange", 7)
+    assert robot.model.frames[robot.tip_id].name == "iiwa7_flange"
+    assert robot.joint_names == tuple(f"iiwa7_joint_{i}" for i in range(1, 8))
+    assert repr(robot) == "<Robot iiwa7: 7 joints, tip iiwa7_flange>"
+
+
+@pytest.mark.parametrize("kind", [Path, str])
+def test_by_path(written, kind: type) -> None:
+    robot = load_robot(kind(written(one_joint())))
+    assert (robot.name, robot.tip, robot.dof) == ("one", "b", 1)
+    assert [robot.q_lower, robot.q_upper, robot.dq_max] == [-1, 2, 4]
+
+
+def test_by_relative_path_without_a_separator(written, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(written(one_joint()).parent)
+    assert load_robot("some.urdf").name == "one"
+
+
+def test_robots_beside_the_module_come_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        iiwa_dnn.robot.robot, "__file__", str(tmp_path / "iiwa_dnn" / "robot" / "robot.py")
+    )
+    for folder, name in (("robots", "above"), ("iiwa_dnn/robots", "inside")):
+        (tmp_path / folder / name).mkdir(parents=True)
+        (tmp_path / folder / name / f"{name}.urdf").write_text(one_joint())
+        assert available_robots() == (name,)
+
+
+def test_unknown_robot_names_those_that_exist() -> None:
+    with pytest.raises(NotFoundError, match="no robot 'iiwa14'; did you mean: iiwa7") as caught:
+        load_robot("iiwa14")
+    assert caught.value.available == (*available_robots(), *ARMS)
+
+
+@pytest.mark.parametrize("bad", [None, 7])
+def test_neither_name_nor_path(bad: object) -> None:
+    with pytest.raises(InvalidInputError, match="name_or_path"):
+        load_robot(bad)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("not xml", "not XML"),
+        ("", "not XML"),
+        (b"\x00\xff\xfe", "not XML"),
+        ("<robot name='x'>", "not XML"),
+        ("<robot>" + "<a>" * 100_000 + "</a>" * 100_000 + "</robot>", "not XML"),
+        ('<!DOCTYPE r [<!ENTITY e "one">]><robot name="&e;"/>', "DOCTYPE"),
+        ('<!DOCTYPE r SYSTEM "other.dtd">' + one_joint(), "DOCTYPE"),
+        ("<sdf/>", "first element is <sdf>"),
+        ('<robot name="x"><link name="a"/></robot>', "no joints"),
+        (one_joint("", "fixed"), "no joint of the robot moves"),
+        (
+            one_joint().replace('child link="b"', 'child link="c"'),
+            r"child link \[c\] of joint \[j\]",
+        ),
+        (one_joint().replace(' name="one"', ""), "No name given"),
+        (one_joint(""), "does not specify limits"),
+        (one_joint(kind="bendy"), "no known type"),
+        (one_joint(origin="nan 0 0"), r"component \[nan\]"),
+        (one_joint(LIMIT.replace("-1", "nan")), r"lower value \(nan\)"),
+        (one_joint(LIMIT.replace("-1", "2")), "joint 'j': lower limit 2.0 is not below 2.0"),
+        (one_joint(LIMIT.replace("-1", "3")), "min_configuration|not below"),
+    ],
+)
+def test_bad_files(written, content: str | bytes, reason: str, capfd) -> None:
+    path = written(content)
+    with pytest.raises(FileError, match=reason) as caught:
+        load_robot(path)
+    assert caught.value.path == str(path)
+    assert "\n" not in str(caught.value)
+    assert capfd.readouterr() == ("", "")  # not a word from Pinocchio
+
+
+def test_entities_are_never_read(written, tmp_path: Path) -> None:
+    (tmp_path / "secret").write_text("secret")
+    entity = f'<!DOCTYPE r [<!ENTITY e SYSTEM "{(tmp_path / "secret").as_uri()}">]>'
+    with pytest.raises(FileError, match="DOCTYPE") as caught:
+        load_robot(written(entity + '<robot name="&e;"/>'))
+    assert "secret" not in caught.value.reason
+
+
+def test_missing_file_and_folder(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="No such file"):
+        load_robot(tmp_path / "none.urdf")
+    with pytest.raises(FileError, match="directory"):
+        load_robot(tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["continuous", "floating", "planar"])
+def test_joints_of_other_kinds_are_named(written, kind: str) -> None:
+    with pytest.raises(InvalidInputError, match=f"joint 'j' is {kind}"):
+        load_robot(written(one_joint("", kind)))
+
+
+def test_limits_that_are_not_given(written) -> None:
+    robot = load_robot(written(one_joint('<limit effort="1" velocity="0"/>')))
+    assert [robot.q_lower, robot.q_upper, robot.dq_max] == [-np.inf, np.inf, np.inf]
+
+
+def test_tips(robot: Robot) -> None:
+    other = load_robot("iiwa7", tip="iiwa7_link_5")
+    assert other.model.frames[other.tip_id].name == other.tip == "iiwa7_link_5"
+    with pytest.raises(NotFoundError, match="no frame 'flange'") as caught:
+        load_robot("iiwa7", tip="flange")
+    assert "iiwa7_flange" in caught.value.available
+    with pytest.raises(InvalidInputError, match="no joint moves frame 'iiwa7_link_0'"):
+        load_robot("iiwa7", tip="iiwa7_link_0")
+
+
+def test_locked_joints_stay_at_zero(robot: Robot) -> None:
+    locked = load_robot("iiwa7", locked=["iiwa7_joint_3", "iiwa7_joint_7"])
+    assert (locked.dof, locked.tip) == (5, "iiwa7_flange")
+    assert "locked: iiwa7_joint_3, iiwa7_joint_7" in repr(locked)
+    np.testing.assert_array_equal(locked.q_upper, np.delete(robot.q_upper, [2, 6]))
+    q = np.random.default_rng(3).uniform(-1, 1, 7) * [1, 1, 0, 1, 1, 1, 0]
+    whole, part = Configuration(robot, q), Configuration(locked, np.delete(q, [2, 6]))
+    np.testing.assert_allclose(part.position, whole.position, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(part.jacobian, np.delete(whole.jacobian, [2, 6], 1), atol=1e-14)
+
+
+def test_a_joint_is_locked_within_its_limits(written) -> None:
+    two = one_joint(LIMIT.replace("-1", "0.5")).replace(
+        "</robot>",
+        '<link name="c"/><joint name="k" type="revolute"><parent link="b"/><child link="c"/>'
+        f'<origin xyz="0 0 1"/><axis xyz="0 1 0"/>{LIMIT}</joint></robot>',
+    )
+    conf = Configuration(load_robot(written(two), locked="j"), [0.0])
+    np.testing.assert_allclose(conf.position, [np.sin(0.5), 0, 1 + np.cos(0.5)], atol=1e-15)
+
+
+def test_locking_what_cannot_be_locked(robot: Robot) -> None:
+    with pytest.raises(NotFoundError, match="no joint 'iiwa7_joint_9'"):
+        load_robot("iiwa7", locked=["iiwa7_joint_9"])
+    with pytest.raises(InvalidInputError, match="no joint is left"):
+        load_robot("iiwa7", locked=robot.joint_names)
+
+
+def test_panda() -> None:
+    path = example_urdf("panda_description/urdf/panda.urdf")
+    robot = load_robot(path, tip="panda_hand_tcp", locked=FINGERS)
+    assert (robot.name, robot.dof, robot.locked) == ("panda", 7, FINGERS)
+    with pytest.raises(InvalidInputError, match=r"several ends: .*panda_hand_tcp") as caught:
+        load_robot(path, locked=FINGERS)
+    assert caught.value.argument == "tip"
+    with pytest.raises(InvalidInputError, match="'panda_finger_joint2' follows"):
+        load_robot(path, tip="panda_rightfinger")
+
+
+def test_kinova_needs_its_continuous_joints_locked() -> None:
+    path = example_urdf("kinova_description/robots/kinova.urdf")
+    with pytest.raises(InvalidInputError, match="'j2s6s200_joint_1' is continuous"):
+        load_robot(path, tip="j2s6s200_end_effector")
+    locked = [f"j2s6s200_joint_{i}" for i in (1, 4, 6)]
+    assert load_robot(path, "j2s6s200_end_effector", locked).dof == 3
+
+
+def test_with_limits(robot: Robot) -> None:
+    velocity = np.arange(1.0, 8.0)
+    other = robot.with_limits(lower=-2.5, upper=[np.inf] * 7, velocity=velocity)
+    velocity[:] = 0.0  # a copy was taken
+    np.testing.assert_array_equal(other.q_lower, np.full(7, -2.5))
+    np.testing.assert_array_equal(other.q_upper, np.full(7, np.inf))
+    np.testing.assert_array_equal(other.dq_max, np.arange(1.0, 8.0))
+    assert (other.name, other.tip, other.tip_id) == (robot.name, robot.tip, robot.tip_id)
+    assert robot.q_upper[0] == np.radians(170)
+    np.testing.assert_array_equal(robot.with_limits(velocity=2).q_lower, robot.q_lower)
+
+
+@pytest.mark.parametrize(
+    ("limits", "argument"),
+    [
+        ({"lower": 3.0}, "lower"),
+        ({"lower": np.inf}, "lower"),
+        ({"upper": -3.0}, "upper"),
+        ({"lower": 1.0, "upper": 1.0}, "lower"),
+        ({"lower": np.nan}, "lower"),
+        ({"upper": [1.0, 2.0]}, "upper"),
+        ({"upper": "wide"}, "upper"),
+        ({"velocity": 0.0}, "velocity"),
+        ({"velocity": [1, 1, 1, -1, 1, 1, 1]}, "velocity"),
+        ({"velocity": np.nan}, "velocity"),
+    ],
+)
+def test_with_bad_limits(robot: Robot, limits: dict[str, object], argument: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        robot.with_limits(**limits)
+    assert caught.value.argument == argument
+
+
+def test_immutable_even_after_pickling(robot: Robot) -> None:
+    for r in (robot, pickle.loads(pickle.dumps(robot)), robot.with_limits(upper=3)):
+        for name in ("q_lower", "q_upper", "dq_max"):
+            with pytest.raises(ValueError, match="read-only"):
+                getattr(r, name)[0] = 0.0
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            r.tip = "iiwa7_link_5"
+
+
+def test_pickling_keeps_everything() -> None:
+    robot = load_robot("iiwa7", tip="iiwa7_link_6", locked="iiwa7_joint_2").with_limits(upper=2.75)
+    copy = pickle.loads(pickle.dumps(robot))
+    assert repr(copy) == repr(robot)
+    assert (copy.path, copy.tip_id, copy.model) == (robot.path, robot.tip_id, robot.model)
+    np.testing.assert_array_equal(copy.q_upper, robot.q_upper)

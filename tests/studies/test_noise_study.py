@@ -1,0 +1,89 @@
+"""The study of means against noise, in small, and the two claims that it is for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_simulation import heart, paper_start, run
+from iiwa_dnn.app.noise import study_noise
+from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.simulation import VelocityDisturbance
+from iiwa_dnn.studies import noise_study
+
+
+def values(kind: str, means: str, seed: int = 0, duration: float = 1.3) -> dict[str, float]:
+    cell = {"disturbance": kind, "countermeasure": means, "seed": seed, "duration": duration}
+    return noise_study.measure(cell).values
+
+
+def test_the_chosen_gain_cuts_the_papers_noise_at_little_roughness() -> None:
+    kind = "white, the paper's"
+    plain = [values(kind, "none", seed) for seed in range(4)]
+    helped = [values(kind, "gain", seed) for seed in range(4)]
+    mse = [np.mean([run["mse_m2"] for run in runs]) for runs in (plain, helped)]
+    assert mse[1] < 0.1 * mse[0]
+    for run_ in helped:  # beside the noise's own roughness: sigma sqrt(4 / pi) / dt
+        assert run_["command_roughness"] < 0.02 * 0.01 * np.sqrt(4.0 / np.pi) / 1e-4
+
+
+@pytest.mark.parametrize("means", ["gain and integral", "Kalman with bias"])
+def test_a_constant_bias_is_gone_after_two_seconds(means: str) -> None:
+    assert values("constant", "none", duration=2.0)["last_error_m"] > 1e-3
+    assert values("constant", means, duration=2.0)["last_error_m"] < 1e-6
+
+
+def test_the_integral_leaves_of_a_constant_what_its_equation_says() -> None:
+    # At rest: e'' + gain e' + k e = 0 from e = 0 with e' = J d, poles together at -gain / 2.
+    gain, bias, t = 10.0, 0.01, 0.5
+    scheme = DoubleIndicator(position_gain=gain, orientation_gain=gain, weight=1.0)
+    still = heart(period=1e6)
+    record = run(
+        scheme,
+        still,
+        dt=1e-4,
+        duration=t,
+        integral_gain=gain**2 / 4.0,
+        disturbance=VelocityDisturbance(bias=bias),
+    )
+    drift = paper_start().jacobian[:3] @ np.full(7, bias)
+    expected = np.outer(record.t * np.exp(-0.5 * gain * record.t), drift)
+    # The joints move by a hundredth meanwhile, and the Jacobian with them.
+    error = record.position - record.position_desired
+    np.testing.assert_allclose(error, expected, rtol=0, atol=0.05 * np.abs(expected).max())
+
+
+def test_the_script_writes_a_report_and_goes_on_where_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    few = ("none", "gain")
+    monkeypatch.setattr(
+        noise_study,
+        "COUNTERMEASURES",
+        {name: noise_study.COUNTERMEASURES[name] for name in few},
+    )
+    arguments = ["--seeds", "2", "--duration", "1.1", "--workers", "1", "--out", str(tmp_path)]
+    assert study_noise(arguments) == 0
+    first = capsys.readouterr().out
+    assert first.count("| gain |") == len(noise_study.DISTURBANCES)
+    assert (tmp_path / "report.md").read_text() == first
+    cells = len(list((tmp_path / "cells").glob("*.json")))
+    assert cells == 2 * (4 + 2 * 2)
+    before = {path: path.stat().st_mtime_ns for path in (tmp_path / "cells").iterdir()}
+    assert study_noise(arguments) == 0
+    assert capsys.readouterr().out == first
+    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "cells").iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    "bad", [["--seeds", "1"], ["--duration", "0.5"], ["--duration", "nan"], ["--workers", "0"]]
+)
+def test_bad_input_is_one_line(
+    bad: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert study_noise([*bad, "--out", str(tmp_path / "run")]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert captured.err.startswith("noise_study: error: ")
