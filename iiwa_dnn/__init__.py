@@ -15,8 +15,8 @@ from iiwa_dnn.networks import DualNetwork, PrimalDualNetwork, ProjectionNetwork
 from iiwa_dnn.networks.batch import BatchSolution, solve_batch
 from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.qp.program import QP, Residuals, Solution, Status
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record

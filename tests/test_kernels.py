@@ -6,7 +6,8 @@ import pytest
 import scipy.linalg
 
 from iiwa_dnn import kernels
-from iiwa_dnn.kernels import dense as kernels_dense
+from iiwa_dnn.qp import dense
+from iiwa_dnn.qp.layout import larger
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-14, 1e-8, 1e-3, 1.0, 2.5, np.pi - 1e-3, np.pi - 1e-7])
@@ -47,18 +48,18 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
         root = rng.standard_normal((n, n))
         matrix, rhs, out = root @ root.T + np.eye(n), rng.standard_normal(n), np.empty(n)
         factor = matrix.ravel().copy()
-        assert kernels.cholesky_factor(factor, n)
-        kernels.factor_solve(factor, n, rhs, out)
+        assert dense.cholesky_factor(factor, n)
+        dense.factor_solve(factor, n, rhs, out)
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-9, atol=1e-12)
         matrix[-1, -1] = -1.0
-        assert not kernels.cholesky_factor(matrix.ravel().copy(), n)
+        assert not dense.cholesky_factor(matrix.ravel().copy(), n)
 
 
 def test_the_larger_of_two_keeps_a_nan() -> None:
-    assert kernels.larger(1.0, 2.0) == 2.0
-    assert kernels.larger(2.0, 1.0) == 2.0
-    assert np.isnan(kernels.larger(np.nan, 1.0))
-    assert np.isnan(kernels.larger(1.0, np.nan))
+    assert larger(1.0, 2.0) == 2.0
+    assert larger(2.0, 1.0) == 2.0
+    assert np.isnan(larger(np.nan, 1.0))
+    assert np.isnan(larger(1.0, np.nan))
 
 
 def test_vector_code_is_numpys() -> None:
@@ -67,18 +68,18 @@ def test_vector_code_is_numpys() -> None:
         root = rng.standard_normal((n, n))
         matrix, vector, out = root @ root.T + np.eye(n), rng.standard_normal(n), np.empty(n)
         upper = np.triu(matrix).ravel()
-        assert kernels_dense.solve_upper(upper.copy(), n, vector, out)
+        assert dense.solve_upper(upper.copy(), n, vector, out)
         np.testing.assert_allclose(out, np.linalg.solve(matrix, vector), rtol=1e-8, atol=1e-11)
         spoilt = upper.copy()
         spoilt[-1] = -1.0
-        assert not kernels_dense.solve_upper(spoilt, n, vector, out)
-        assert kernels_dense.dot(upper, n - 1, vector, 0, 1) == upper[n - 1] * vector[0]
-        assert kernels_dense.dot(vector, 0, vector, 0, n) == pytest.approx(vector @ vector)
+        assert not dense.solve_upper(spoilt, n, vector, out)
+        assert dense.dot(upper, n - 1, vector, 0, 1) == upper[n - 1] * vector[0]
+        assert dense.dot(vector, 0, vector, 0, n) == pytest.approx(vector @ vector)
         with_outer = upper.copy()
-        kernels_dense.add_outer(with_outer, -2.0, np.concatenate([[9.0], vector]), 1, n)
+        dense.add_outer(with_outer, -2.0, np.concatenate([[9.0], vector]), 1, n)
         expected = np.triu(matrix - 2.0 * np.outer(vector, vector))
         np.testing.assert_allclose(with_outer.reshape(n, n), expected, rtol=1e-12, atol=1e-13)
         total = np.zeros(n * n)
-        kernels_dense.add_multiple(total, upper, 0.5, with_outer, n)
+        dense.add_multiple(total, upper, 0.5, with_outer, n)
         expected = np.triu(matrix) + 0.5 * expected
         np.testing.assert_allclose(total.reshape(n, n), expected, rtol=1e-12, atol=1e-13)

@@ -6,7 +6,7 @@ import numpy as np
 
 from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.program import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 
 FIGURES = 5 + 16
 """Numbers in a row beside program and answer."""

@@ -12,7 +12,7 @@ from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.policies import POLICIES, Policy, Resolution, resolve, stopped
 from iiwa_dnn.kernels import control_step
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.program import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot

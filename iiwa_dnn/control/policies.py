@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.program import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 
 Policy = Literal["slow", "relax", "stop", "raise"]
 POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop", "raise")

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.kernels.implicit import settle_implicit
-from iiwa_dnn.kernels.network import explicit_euler, field, stable_step
 from iiwa_dnn.kernels.program import velocity_program
-from iiwa_dnn.kernels.residuals import kkt_point
+from iiwa_dnn.networks.integrators.explicit import explicit_euler
+from iiwa_dnn.networks.integrators.implicit import settle_implicit
+from iiwa_dnn.networks.projection import field, stable_step
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.kernels.layout import offsets
+from iiwa_dnn.qp.layout import offsets
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

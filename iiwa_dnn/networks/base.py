@@ -10,7 +10,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
 
 
 class Flow(NamedTuple):

@@ -26,10 +26,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from iiwa_dnn import kernels
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ class DualNetwork(Network):
         rows, _, _ = _two_sided(qp)
         x = _solved(qp, rows.T @ state - qp.q)
         known = np.concatenate([x, -state[: p + m]])
-        primal, dual, gap = kernels.kkt_point(qp.data, n, m, p, known, point)
+        primal, dual, gap = kkt_point(qp.data, n, m, p, known, point)
         return primal, dual, gap
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:

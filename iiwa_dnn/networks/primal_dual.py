@@ -26,9 +26,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn import kernels
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class PrimalDualNetwork(Network):
 
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
         """Write the point that the state stands for; returns its residuals."""
-        primal, dual, gap = kernels.kkt_point(qp.data, *qp.sizes, state, point)
+        primal, dual, gap = kkt_point(qp.data, *qp.sizes, state, point)
         return primal, dual, gap
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:

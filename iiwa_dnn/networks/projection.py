@@ -25,9 +25,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn import kernels
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn.qp.dense import extreme_eigenvalues
+from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger, offsets
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class ProjectionNetwork(Network):
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
         """Write the point that the state stands for; returns its residuals."""
         n, m, p = qp.sizes
-        residuals: tuple[float, float, float] = kernels.kkt_point(qp.data, n, m, p, state, point)
+        residuals: tuple[float, float, float] = kkt_point(qp.data, n, m, p, state, point)
         return residuals
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
@@ -87,7 +89,7 @@ class ProjectionNetwork(Network):
             active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
         else:
             active = self._field(qp, state, np.empty(state.size))
-        return float(kernels.stable_step(qp.data, n, m, p, active))
+        return float(stable_step(qp.data, n, m, p, active))
 
     def _jacobian(self, qp: QP, state: Vector) -> Matrix:
         """The derivative of the rates, (state_size, state_size)."""
@@ -110,5 +112,81 @@ class ProjectionNetwork(Network):
         """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""
         n, m, p = qp.sizes
         active = np.empty(m + 2 * n)
-        kernels.field(qp.data, n, m, p, self.primal_projection, state, rates, active)
+        field(qp.data, n, m, p, self.primal_projection, state, rates, active)
         return active
+
+
+@compiled
+def field(
+    data: Vector, n: int, m: int, p: int, project: bool, s: Vector, rates: Vector,
+    active: Vector,
+) -> float:  # fmt: skip
+    """Write the network's rates rho ds/dt; with `project`, x goes through its bounds.
+
+    `active` (m + 2n,) becomes 1 for the multipliers with mu + Omega x - chi > 0, else 0.
+
+    Returns:
+        The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
+    """
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    at_z, at_u = n + p, n + p + m
+    largest = 0.0
+    for i in range(n):
+        gradient = data[at_q + i] + s[at_u + i] - s[at_u + n + i]
+        for k in range(n):
+            gradient += data[i * n + k] * s[k]
+        for j in range(p):
+            gradient += data[at_A + j * n + i] * s[n + j]
+        for j in range(m):
+            gradient += data[at_G + j * n + i] * s[at_z + j]
+        rate = -gradient
+        if project:
+            rate = min(max(s[i] + rate, data[at_lb + i]), data[at_ub + i]) - s[i]
+        rates[i] = rate
+        largest = larger(largest, abs(rate))
+        for side in range(2):
+            slack = s[i] - data[at_ub + i] if side == 0 else data[at_lb + i] - s[i]
+            multiplier = s[at_u + side * n + i]
+            is_active = multiplier + slack > 0.0
+            rate = slack if is_active else -multiplier
+            active[m + side * n + i] = is_active
+            rates[at_u + side * n + i] = rate
+            largest = larger(largest, abs(rate))
+    for j in range(p):
+        rate = -data[at_b + j]
+        for i in range(n):
+            rate += data[at_A + j * n + i] * s[i]
+        rates[n + j] = rate
+        largest = larger(largest, abs(rate))
+    for j in range(m):
+        slack = -data[at_h + j]
+        for i in range(n):
+            slack += data[at_G + j * n + i] * s[i]
+        is_active = s[at_z + j] + slack > 0.0
+        rate = slack if is_active else -s[at_z + j]
+        active[j] = is_active
+        rates[at_z + j] = rate
+        largest = larger(largest, abs(rate))
+    return largest
+
+
+@compiled
+def stable_step(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
+    """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
+    _, at_G, at_A, _ = offsets(n, m, p)
+    K = np.zeros(n * n)
+    for j in range(p + m):
+        row = at_A + j * n if j < p else at_G + (j - p) * n
+        if j < p or active[j - p] != 0.0:
+            for i in range(n):
+                for k in range(n):
+                    K[i * n + k] += data[row + i] * data[row + k]
+    for i in range(n):
+        K[i * n + i] += active[m + i] + active[m + n + i]
+    _, coupling = extreme_eigenvalues(K, n)
+    K[:] = data[: n * n]
+    smallest, largest = extreme_eigenvalues(K, n)
+    # Passive multipliers and clipped variables decay at rate one: never more than 2.
+    bound = 2.0 / max(largest, 1.0)
+    return min(bound, max(smallest, 0.0) / coupling) if coupling > 0.0 else bound

@@ -10,9 +10,11 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import Network, ProjectionNetwork
-from iiwa_dnn.networks.certificates import find_certificate
 from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.qp.program import QP, Refutation, Solution, Status, Vector
+from iiwa_dnn.networks.refutation import find_certificate
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import Refutation, Solution, Status
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -80,7 +82,7 @@ class DNNSolver:
         return self._state if sizes == self._sizes else None
 
     def numbers(self, duration: float = 0.0) -> Vector | None:
-        """What `kernels.control_step` needs to stand in for `solve` or `advance`.
+        """What `control_step` needs to stand in for `solve` or `advance`.
 
         Args:
             duration: Time to advance [s]; 0 stands for `solve`.

@@ -1,5 +1,7 @@
 """Quadratic programs, their solutions, and the check of an answer by other solvers."""
 
-from iiwa_dnn.qp.program import QP, Matrix, Refutation, Residuals, Solution, Status, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import Refutation, Residuals, Solution, Status
 
 __all__ = ["QP", "Matrix", "Refutation", "Residuals", "Solution", "Status", "Vector"]

@@ -11,7 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.qp.program import Matrix
+from iiwa_dnn.qp.layout import Matrix
 
 _WORTH_A_PROCESS = 10_000
 """Programs from which on a worker's start, about a second, is repaid."""

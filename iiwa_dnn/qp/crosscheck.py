@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn import checks, kernels
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn import checks
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import largest_residuals
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -127,7 +129,7 @@ class CrossCheck:
                 if reference is not None and reference.x is not None:
                     _copy_point(reference, sizes, points[i, j])
         residuals = np.empty((count, k))
-        kernels.largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
+        largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
         references = np.where(
             residuals[..., np.newaxis] <= self.reference_tolerance, points, np.nan
         )

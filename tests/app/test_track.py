@@ -21,7 +21,7 @@ from iiwa_dnn.app import track as cli
 from iiwa_dnn.app.track import track_heart
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.program import QP, Solution
+from iiwa_dnn.qp import QP, Solution
 from iiwa_dnn.simulation import runner as loop
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "track_heart.py"

@@ -15,7 +15,7 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.program import QP, Solution, Status
+from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 

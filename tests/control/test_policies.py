@@ -12,7 +12,7 @@ from iiwa_dnn.control import policies
 from iiwa_dnn.control.policies import Action, largest_fraction, least_violation, resolve
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.program import QP, Solution, Status
+from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 

@@ -8,7 +8,7 @@ import iiwa_dnn
 from benchmarks import programs
 from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, Status
-from iiwa_dnn.networks import certificates
+from iiwa_dnn.qp import certificates
 
 
 def finite_rows(qp: QP) -> tuple[np.ndarray, np.ndarray]:

@@ -13,8 +13,8 @@ from helpers_qp import known_qp
 from helpers_simulation import heart, near_target, paper_start, run
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Solution
 from iiwa_dnn.qp.crosscheck import SOLVERS, Agreement, CrossCheck
-from iiwa_dnn.qp.program import QP, Solution
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.schemes import DoubleIndicator
 

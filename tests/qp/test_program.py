@@ -6,7 +6,8 @@ import qpsolvers
 import scipy.sparse as spa
 
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, kernels
+from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
@@ -101,7 +102,7 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         n, p, m = 6, 2, 4
         state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
         point = np.empty(n + p + m + n)
-        ours = kernels.kkt_point(qp.data, *qp.sizes, state, point)
+        ours = kkt_point(qp.data, *qp.sizes, state, point)
         judged = qpsolvers.Solution(
             qp.to_qpsolvers(),
             found=True,

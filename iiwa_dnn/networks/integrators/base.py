@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import ClassVar, Protocol
 
 from iiwa_dnn.networks import Network
-from iiwa_dnn.qp.program import QP, Vector
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
 """How far a network was advanced, and the residuals of the point it stands for.

@@ -8,11 +8,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from iiwa_dnn import checks, kernels
+from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import Network, ProjectionNetwork
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.qp.program import QP, Residuals, Vector
+from iiwa_dnn.networks.projection import field
+from iiwa_dnn.qp.layout import Vector, compiled
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import Residuals
 
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""
@@ -86,7 +89,7 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
     """Take up to `count` steps, until the largest rate is at most `tol`; returns how many."""
     if isinstance(network, ProjectionNetwork):
         n, m, p = qp.sizes
-        taken, _ = kernels.explicit_euler(
+        taken, _ = explicit_euler(
             qp.data, n, m, p, network.primal_projection, state, step, count, tol
         )
         return int(taken)
@@ -97,3 +100,26 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
             return done
         state += step * rates
     return count
+
+
+@compiled
+def explicit_euler(
+    data: Vector, n: int, m: int, p: int, project: bool, s: Vector, step: float, count: int,
+    tol: float,
+) -> tuple[int, float]:  # fmt: skip
+    """Advance `s` in place by up to `count` explicit Euler steps.
+
+    Stops early once the largest rate is at most `tol`.
+
+    Returns:
+        ``(steps, rate)``: steps taken, and the largest rate at the last point evaluated.
+    """
+    rates, active = np.empty(s.size), np.empty(m + 2 * n)
+    rate = np.inf
+    for done in range(count):
+        rate = field(data, n, m, p, project, s, rates, active)
+        if not rate > tol:
+            return done, rate
+        for i in range(s.size):
+            s[i] += step * rates[i]
+    return count, rate

@@ -13,7 +13,8 @@ import numpy as np
 
 from iiwa_dnn.networks import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.qp.program import QP, Vector
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
 
 MAX_NEWTON = 15
 FIRST_STEP, LAST_STEP, GROWTH = 1.0, 1e6, 4.0

@@ -20,7 +20,8 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.qp.program import QP, Vector
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
 
 
 @dataclass(frozen=True)

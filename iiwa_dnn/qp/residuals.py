@@ -1,15 +1,17 @@
-"""A primal-dual point and what it lacks to be a KKT point."""
+"""The residuals that say how far a primal-dual point is from a KKT point."""
 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+from numpy.typing import NDArray
 
-from iiwa_dnn.kernels.layout import larger, offsets
+from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger, offsets
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def point_residuals(data, n, m, p, point):
+@compiled
+def point_residuals(
+    data: Vector, n: int, m: int, p: int, point: Vector,
+) -> tuple[float, float, float]:  # fmt: skip
     """``(primal, dual, gap)`` of a point [x | y | z | z_box], as qpsolvers defines them."""
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
@@ -49,8 +51,10 @@ def point_residuals(data, n, m, p, point):
     return primal, dual, abs(gap)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def largest_residuals(programs, n, m, p, points, out):
+@compiled
+def largest_residuals(
+    programs: Matrix, n: int, m: int, p: int, points: NDArray[np.float64], out: Matrix,
+) -> None:  # fmt: skip
     """Write the largest residual of each point (N, k, size) into `out` (N, k).
 
     Infinity where a point is not a number from its first entry on: there is none.
@@ -64,8 +68,10 @@ def largest_residuals(programs, n, m, p, points, out):
                 out[i, j] = larger(larger(primal, dual), gap)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def kkt_point(data, n, m, p, s, point):
+@compiled
+def kkt_point(
+    data: Vector, n: int, m: int, p: int, s: Vector, point: Vector,
+) -> tuple[float, float, float]:  # fmt: skip
     """The primal-dual point that a state stands for, and its residuals ``(primal, dual, gap)``.
 
     x is put inside its bounds and z made nonnegative. z_box is what the projection of

@@ -1,26 +1,6 @@
-r"""Proofs that a program has no solution: found along the way a network runs off, then verified.
+r"""Search for a certificate that a program has no solution, along the way the network diverges.
 
-**Infeasible.** Multipliers :math:`(y, z, z_{box})` with :math:`z \ge 0`, and :math:`z_{box}`
-positive only at a finite ub and negative only at a finite lb, prove it by Farkas' lemma where
-
-.. math::
-
-    r := A^T y + G^T z + z_{box} = 0, \qquad
-    v := b^T y + h^T z + ub^T [z_{box}]_+ - lb^T [-z_{box}]_+ < 0 ,
-
-since a feasible x would have :math:`0 = r^T x \le v < 0`.
-
-**Unbounded.** A direction d with :math:`Pd = 0`, :math:`Ad = 0`, :math:`Gd \le 0`, d not towards a
-finite bound, and :math:`q^T d < 0`: from any feasible point the cost falls along it for ever.
-
-**In floating point** no residual is exactly zero, so what is computed, and what "verified" means
-here, is a radius. With r as it is, every feasible x has :math:`\|x\|_\infty \ge -v/\|r\|_1`. With
-the direction's residuals as they are, every KKT point has an entry of at least :math:`-q^T d` over
-the sum of their absolute values. Rounding is counted against the certificate. One is claimed only
-where the radius is at least `RADIUS`: then no solution with entries below it exists, whatever the
-tolerance of the solver.
-
-**Where they come from.** On an infeasible program the multipliers of the projection network grow
+On an infeasible program the multipliers of the projection network grow
 for ever, on an unbounded one x does, and the difference of two long implicit steps tends to the
 direction of that growth: for the plain saddle-point flow this is the minimal displacement of a
 nonexpansive map, as in G. Banjac, P. Goulart, B. Stellato, S. Boyd, "Infeasibility detection in the
@@ -30,87 +10,27 @@ alternating direction method of multipliers for convex optimization", J. Optim. 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from iiwa_dnn import kernels
-from iiwa_dnn.qp.program import QP, Matrix, Status, Vector
-
-RADIUS = 1e8
-"""A certificate is claimed only if no solution has all entries below this."""
+from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_implicit
+from iiwa_dnn.qp.certificates import (
+    RADIUS,
+    Certificate,
+    infeasibility_radius,
+    unboundedness_radius,
+)
+from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.solution import Status
 
 ROUNDS = 3
-"""How often the growth is looked at before it is given up."""
+"""Implicit steps whose growth is looked at before the search is given up."""
 
-_EPS = float(np.finfo(float).eps)
 _LONG = 1e6
 # Shares of the largest entry below which a row takes no part: how well a growth is known depends
 # on how fast it is beside what has grown before.
 _SHARES = (1e-8, 1e-6, 1e-4, 1e-2)
-
-
-class Certificate(NamedTuple):
-    """A verified proof that a program has no solution.
-
-    Attributes:
-        status: ``PRIMAL_INFEASIBLE`` or ``UNBOUNDED``.
-        vector: ``[y | z | z_box]`` of size p + m + n, or the direction, (n,).
-    """
-
-    status: Status
-    vector: Vector
-
-
-def infeasibility_radius(qp: QP, vector: Vector) -> float:
-    """The radius below which no x is feasible, as the multipliers ``[y | z | z_box]`` prove.
-
-    Args:
-        qp: The program.
-        vector: Multipliers, of size p + m + n.
-
-    Returns:
-        A bound on the largest entry of any feasible x; inf where the residual is exactly zero, and
-        0 where nothing is proven.
-    """
-    _, m, p = qp.sizes
-    y, z, z_box = vector[:p], vector[p : p + m], vector[p + m :]
-    upper, lower = np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)
-    inside = np.concatenate([z, upper, lower])
-    limits = np.concatenate([qp.h, qp.ub, -qp.lb])
-    used = inside != 0.0
-    if not np.isfinite(vector).all() or (z < 0.0).any() or not np.isfinite(limits[used]).all():
-        return 0.0
-    residual = qp.A.T @ y + qp.G.T @ z + z_box
-    size = np.abs(qp.A.T) @ np.abs(y) + np.abs(qp.G.T) @ z + np.abs(z_box)
-    terms = np.concatenate([qp.b * y, limits[used] * inside[used]])
-    return _radius(terms, float((np.abs(residual) + _rounding(m + p + 1) * size).sum()))
-
-
-def unboundedness_radius(qp: QP, direction: Vector) -> float:
-    """The radius within which there is no KKT point, as the direction proves.
-
-    Args:
-        qp: The program.
-        direction: Direction of recession, (n,).
-
-    Returns:
-        A bound on the largest entry of x and of the multipliers of any KKT point; inf where the
-        residuals are exactly zero, and 0 where nothing is proven.
-    """
-    n = qp.sizes[0]
-    if not np.isfinite(direction).all():
-        return 0.0
-    limited = np.isfinite(qp.h)
-    rows = np.vstack([qp.P, qp.A, qp.G[limited]])
-    values = rows @ direction
-    falling = n + qp.b.size  # below zero, an inequality's row is no residual
-    error = _rounding(n) * (np.abs(rows) @ np.abs(direction))
-    wrong = np.abs(values)
-    wrong[falling:] = values[falling:]
-    outside = direction[(qp.ub < np.inf) & (direction > 0.0)].sum()
-    outside -= direction[(qp.lb > -np.inf) & (direction < 0.0)].sum()
-    return _radius(qp.q * direction, float(np.maximum(wrong + error, 0.0).sum() + outside))
 
 
 def find_certificate(qp: QP, point: Vector) -> Certificate | None:
@@ -131,10 +51,10 @@ def find_certificate(qp: QP, point: Vector) -> Certificate | None:
     state = np.concatenate([point[:-n], np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
     before, after = np.empty(point.size), np.empty(point.size)
     for count in range(ROUNDS + 1):
-        if kernels.advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
+        if advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
             break
         before, after = after, before
-        kernels.kkt_point(qp.data, n, m, p, state, after)
+        kkt_point(qp.data, n, m, p, state, after)
         if not np.isfinite(after).all():
             break
         if count:
@@ -190,7 +110,7 @@ def _settled(qp: QP) -> Vector:
     """X of a program that has a solution, with the default integrator's settings."""
     n, m, p = qp.sizes
     state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-    kernels.settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
+    settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
     return point[:n]
 
 
@@ -238,16 +158,3 @@ def _unit_rows(rows: Matrix) -> Matrix:
     sizes = np.abs(rows).max(axis=1, initial=0.0)
     scaled: Matrix = rows[sizes > 0.0] / sizes[sizes > 0.0, None]
     return scaled
-
-
-def _rounding(terms: int) -> float:
-    """Relative error of a sum of that many products."""
-    return (terms + 2) * _EPS
-
-
-def _radius(terms: Vector, residual: float) -> float:
-    """How far the certificate reaches: its value, against its residual; 0 if it has none."""
-    value = -float(terms.sum() + _rounding(terms.size) * np.abs(terms).sum())
-    if not value > 0.0:
-        return 0.0
-    return value / residual if residual > 0.0 else np.inf

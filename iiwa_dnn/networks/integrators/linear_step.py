@@ -3,51 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from iiwa_dnn.kernels.layout import ONE, offsets
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def cholesky_factor(K, n):
-    """Overwrite K's lower half (row stride n) by its Cholesky factor, with inverted diagonal.
-
-    Returns:
-        False if K is not positive definite to working precision; its content is then meaningless.
-    """
-    for i in range(n):
-        for j in range(i):
-            value = K[i * n + j]
-            for k in range(j):
-                value -= K[i * n + k] * K[j * n + k]
-            K[i * n + j] = value * K[j * n + j]
-        value = K[i * n + i]
-        for k in range(i):
-            value -= K[i * n + k] * K[i * n + k]
-        if not value > 0.0:
-            return False
-        K[i * n + i] = 1.0 / np.sqrt(value)  # the inverse: a division costs many products
-    return True
+from iiwa_dnn.qp.dense import cholesky_factor, factor_solve
+from iiwa_dnn.qp.layout import ONE, Vector, compiled, offsets
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def factor_solve(K, n, rhs, out):
-    """Solve with the factor of `cholesky_factor` in K, for the leading n entries of `out`."""
-    for i in range(n):
-        value = rhs[i]
-        for k in range(i):
-            value -= K[i * n + k] * out[k]
-        out[i] = value * K[i * n + i]
-    for i in range(n - 1, -1, -1):
-        value = out[i]
-        for k in range(i + 1, n):
-            value -= K[k * n + i] * out[k]
-        out[i] = value * K[i * n + i]
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def condensed_matrix(data, n, m, p, step, active, K):
-    """Write the lower half of P + I/step + step (A^T A + active rows^T active rows) into K.
+@compiled
+def condensed_matrix(
+    data: Vector, n: int, m: int, p: int, step: float, active: Vector, K: Vector,
+) -> None:  # fmt: skip
+    """Write the lower half of P + I/step + step (A^T A + active rows^T active rows) into K (n n,).
 
     Equality rows go two at a time, which halves the passes over K; indices are unsigned, which
     saves numba the question whether they are negative.
@@ -73,8 +38,8 @@ def condensed_matrix(data, n, m, p, step, active, K):
             _add_row(data, np.uint64(at_G + j * n), step, size, K)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _add_row(data, row, step, size, K):
+@compiled
+def _add_row(data: Vector, row: np.uint64, step: float, size: np.uint64, K: Vector) -> None:
     """Add step v v^T to the lower half of K, v being the row of `data` that begins there."""
     for i in range(size):
         scaled = step * data[row + i]
@@ -82,9 +47,12 @@ def _add_row(data, row, step, size, K):
             K[i * size + k] += scaled * data[row + k]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def reduced_rates(data, n, m, p, rates, active, step, rhs, new):
-    """Write the right-hand side of a linearly implicit step, its multipliers eliminated, into rhs.
+@compiled
+def reduced_rates(
+    data: Vector, n: int, m: int, p: int, rates: Vector, active: Vector, step: float,
+    rhs: Vector, new: Vector,
+) -> None:  # fmt: skip
+    """Write a linearly implicit step's right-hand side, multipliers eliminated, into rhs (n,).
 
     With dx = 0 the multipliers would change by what new[n:] then holds.
     """
@@ -104,9 +72,11 @@ def reduced_rates(data, n, m, p, rates, active, step, rhs, new):
         rhs[i] = value
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def recover_multipliers(data, n, m, p, s, active, step, new):
-    """Make a state of dx in new[:n] and of what `reduced_rates` left in new[n:]."""
+@compiled
+def recover_multipliers(
+    data: Vector, n: int, m: int, p: int, s: Vector, active: Vector, step: float, new: Vector,
+) -> None:  # fmt: skip
+    """Make a state (size,) of dx in new[:n] and of the entries of `reduced_rates` in new[n:]."""
     _, at_G, at_A, _ = offsets(n, m, p)
     at_z, at_u = n + p, n + p + m
     for j in range(p):
@@ -127,13 +97,16 @@ def recover_multipliers(data, n, m, p, s, active, step, new):
         new[k] += s[k]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def linearly_implicit_step(data, n, m, p, s, rates, active, step, factored, K, rhs, new):
+@compiled
+def linearly_implicit_step(
+    data: Vector, n: int, m: int, p: int, s: Vector, rates: Vector, active: Vector, step: float,
+    factored: bool, K: Vector, rhs: Vector, new: Vector,
+) -> bool:  # fmt: skip
     """One linearly implicit Euler step of the network without its primal projection.
 
-    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n) and
-    `rhs` (n) are scratch; with `factored`, K holds the factor that the last call left, for the same
-    step length and active rows.
+    Solves (I/step - F'(s)) (new - s) = F(s), with the multipliers' rows eliminated. `K` (n n,) and
+    `rhs` (n,) are scratch; with `factored`, K holds the factor that the last call left, for the
+    same step length and active rows.
 
     Returns:
         False if the condensed matrix is not positive definite; `new` is then meaningless.

@@ -1,0 +1,48 @@
+"""The numbers of a program in one flat array, and compiled helpers for such arrays.
+
+Compiled code takes a quadratic program as `QP.data` with its sizes n, m, p, and reads it in place:
+
+    P[i, k]  data[i n + k]          G[j, i]  data[at_G + j n + i]     lb[i]  data[at_lb + i]
+    q[i]     data[at_q + i]         A[j, i]  data[at_A + j n + i]     ub[i]  data[at_lb + n + i]
+    h[j]     data[at_G + m n + j]   b[j]     data[at_lb - p + j]
+
+Its loops are plain on purpose: for seven joints a BLAS call costs more than its work, and so does a
+view of an array, since numba counts its references.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# numba makes a float of a signed and an unsigned integer: the constant has to be unsigned too.
+ONE = np.uint64(1)
+
+
+def compiled(function: Function) -> Function:
+    """Compile a function with numba at its first call, and keep the code on disk."""
+    jit = njit(cache=True, error_model="numpy", fastmath={"contract"})
+    return cast(Function, jit(function))
+
+
+@compiled
+def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
+    """``(at_q, at_G, at_A, at_lb)``: where the parts of `QP.data` begin."""
+    at_q = n * n
+    at_G = at_q + n
+    at_A = at_G + m * n + m
+    return at_q, at_G, at_A, at_A + p * n + p
+
+
+@compiled
+def larger(largest: float, value: float) -> float:
+    """The larger of two; unlike with max(), a NaN once seen stays."""
+    return value if value > largest or value != value else largest
