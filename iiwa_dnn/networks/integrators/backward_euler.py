@@ -165,9 +165,9 @@ def backward_euler(
     """One backward Euler step of the network without its primal projection.
 
     new = s + step F(new), both of shape (3n + m + p,). Eliminating the multipliers leaves the
-    stationarity of a strongly convex, piecewise quadratic function of x, for every step length; it is
-    minimised by a semismooth Newton iteration with an exact line search, started at new[:n]. That
-    is why a step cannot cycle, however many bounds are active.
+    stationarity of a strongly convex, piecewise quadratic function of x, for every step length; it
+    is minimised by a semismooth Newton iteration with an exact line search, started at new[:n].
+    That is why a step cannot cycle, however many bounds are active.
 
     The iteration stops when the gradient is at most `tol` or lost in rounding, or after
     `max_newton` rounds. The first m + n n entries of `work` are those of `begin_gram`, counted
