@@ -11,7 +11,7 @@ from iiwa_dnn.errors import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.networks import DualNetwork, PrimalDualNetwork, ProjectionNetwork
+from iiwa_dnn.networks import DualNetwork, Network, PrimalDualNetwork, ProjectionNetwork
 from iiwa_dnn.networks.batch import BatchSolution, solve_batch
 from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver, solve_problem
@@ -22,7 +22,20 @@ from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
+from iiwa_dnn.schemes import (
+    Cost,
+    CyclicMotion,
+    DoubleIndicator,
+    JointLimits,
+    KineticEnergy,
+    Limit,
+    OrientationTask,
+    PositionTask,
+    PseudoInverse,
+    Scheme,
+    Step,
+    Task,
+)
 from iiwa_dnn.simulation import Simulation, simulate
 
 __version__ = version("iiwa-dnn")
@@ -36,7 +49,9 @@ __all__ = [
     "Command",
     "Configuration",
     "Controller",
+    "Cost",
     "CrossCheck",
+    "CyclicMotion",
     "DNNSolver",
     "DoubleIndicator",
     "DualNetwork",
@@ -46,11 +61,17 @@ __all__ = [
     "IiwaDnnError",
     "ImplicitEuler",
     "InvalidInputError",
+    "JointLimits",
+    "KineticEnergy",
+    "Limit",
     "Line",
     "Lissajous",
     "MissingDependencyError",
+    "Network",
     "NoSolutionError",
     "NotFoundError",
+    "OrientationTask",
+    "PositionTask",
     "PrimalDualNetwork",
     "ProjectionNetwork",
     "PseudoInverse",
@@ -62,7 +83,9 @@ __all__ = [
     "Simulation",
     "Solution",
     "Status",
+    "Step",
     "Target",
+    "Task",
     "Waypoints",
     "available_robots",
     "compute_metrics",

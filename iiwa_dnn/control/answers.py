@@ -8,123 +8,135 @@ from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 
-FIGURES = 5 + 16
-"""Numbers in a row beside program and answer."""
+FIGURES, PLACE = 5, 12
+"""Numbers of an answer's figures (iterations, time, three residuals) and of the tip's placement."""
 
 
 class Answers:
     """Room for `capacity` answers: a control loop that makes no objects is twice as quick.
 
     One step a row: ``[program | point | iterations, network time, primal and dual residual, gap |
-    pose]``, the first as `QP.data`, the second as `Solution.point`, the last row by row. All
-    programs have one shape, which the first one sets.
+    tip placement | joint positions]``, the first as `QP.data`, the second as `Solution.point`, the
+    placement as `Kinematics.placements`. All programs have one shape.
 
     Attributes:
-        capacity: How many there is room for.
-        count: How many there are.
-        status: Of those that are not in `unsolved`.
-        sizes: ``(n, m, p)`` of the programs; zeros before the first.
+        count: Number of answers so far.
+        sizes: ``(n, m, p)`` of the programs.
+        status: Status of the answers that are not in `unsolved`.
         rows: The array, (capacity, width).
-        x_slice: Where in a row the primal point is.
-        unsolved: Solutions that are none, by their number.
-        resolved: What a policy decided, by the number of the answer that it gave.
+        unsolved: Solutions of another status, by their number.
+        resolved: Decisions of a policy, by the number of the answer.
     """
 
-    def __init__(self, capacity: int, status: Status) -> None:
-        """Start empty."""
-        self.capacity, self.status, self.count = capacity, status, 0
-        self.sizes = (0, 0, 0)
-        self.rows: Matrix = np.empty((0, 0))
+    def __init__(
+        self, capacity: int, sizes: tuple[int, int, int], joints: int, status: Status
+    ) -> None:
+        """Allocate; nothing is answered yet."""
+        self.count, self.sizes, self.status = 0, sizes, status
+        n, m, p = sizes
+        program, point = (n + m + p) * (n + 1) + 2 * n, 2 * n + m + p
+        self._program, self._point = slice(0, program), slice(program, program + point)
+        self._x = slice(program, program + joints)
+        self._joints = joints
+        self.rows: Matrix = np.empty((capacity, program + point + FIGURES + PLACE + joints))
         self.unsolved: dict[int, Solution] = {}
         self.resolved: dict[int, Resolution] = {}
-        self._program = self._point = self.x_slice = slice(0, 0)
 
-    def shape(self, sizes: tuple[int, int, int]) -> None:
-        """Make room for programs of these sizes.
+    def program(self, i: int) -> Vector:
+        """Return row i's program, `QP.data`, to be read or written."""
+        data: Vector = self.rows[i, self._program]
+        return data
 
-        Raises:
-            InvalidInputError: There are programs of other sizes already.
-        """
-        if self.count:
-            problem = f"built a program of sizes {sizes} after others of {self.sizes}"
-            raise InvalidInputError("scheme", problem)
-        n, m, p = self.sizes = sizes
-        program = (n + m + p) * (n + 1) + 2 * n
-        point = 2 * n + m + p
-        self._program, self._point = slice(0, program), slice(program, program + point)
-        self.x_slice = slice(program, program + n)
-        self.rows = np.empty((self.capacity, program + point + FIGURES))
-
-    def add(self, qp: QP, solution: Solution, pose: Matrix) -> None:
+    def add(self, qp: QP, solution: Solution, place: Vector, q: Vector) -> None:
         """Copy one answer in.
 
         Raises:
-            InvalidInputError: The program has another shape than those before.
+            InvalidInputError: The program has another shape than the others.
         """
         if qp.sizes != self.sizes:
-            self.shape(qp.sizes)
-        row = self.rows[self.count]
+            problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
+            raise InvalidInputError("scheme", problem)
+        row, tail = self.rows[self.count], PLACE + self._joints
         row[self._program], row[self._point] = qp.data, solution.point
-        row[-FIGURES:-16] = (solution.iterations, solution.network_time, *solution[-3:])
-        row[-16:] = pose.ravel()
+        row[-tail - FIGURES : -tail] = (solution.iterations, solution.network_time, *solution[-3:])
+        row[-tail : -self._joints], row[-self._joints :] = place, q
         if solution.status is not self.status:
             self.unsolved[self.count] = solution
         self.count += 1
 
     def qp(self, i: int) -> QP:
-        """Program i."""
-        return QP.from_data(self.rows[i, self._program], self.sizes)
+        """Return program i."""
+        return QP.from_data(self.program(i), self.sizes)
 
     def solution(self, i: int) -> Solution:
-        """Its solution."""
+        """Return the solution of program i."""
         if i in self.unsolved:
             return self.unsolved[i]
-        row = self.rows[i]
-        iterations, time, primal, dual, gap = row[-FIGURES:-16].tolist()
-        point = row[self._point]
-        return Solution(
-            point, self.sizes, self.status, int(iterations), time, primal, dual, gap
-        )  # fmt: skip
+        iterations, time, *residuals = self._figures(i).tolist()
+        point = self.rows[i, self._point]
+        return Solution(point, self.sizes, self.status, int(iterations), time, *residuals)
 
-    def x(self, i: int) -> Vector:
-        """Its primal point, (n,)."""
-        x: Vector = self.rows[i, self.x_slice]
-        return x
+    def _figures(self, i: int | slice) -> Vector:
+        tail = PLACE + self._joints
+        figures: Vector = self.rows[i, -tail - FIGURES : -tail]
+        return figures
+
+    def dq(self, i: int) -> Vector:
+        """Return the joint velocity of answer i [rad/s], (joints,)."""
+        dq: Vector = self.rows[i, self._x]
+        return dq
 
     @property
     def programs(self) -> Matrix:
-        """One `QP.data` a row, (count, size)."""
+        """Programs, one `QP.data` a row, (count, size)."""
         return self.rows[: self.count, self._program]
 
     @property
     def all_x(self) -> Matrix:
-        """The primal points, (count, n)."""
-        return self.rows[: self.count, self.x_slice]
+        """Primal points, (count, n)."""
+        start = self._point.start
+        return self.rows[: self.count, start : start + self.sizes[0]]
+
+    @property
+    def all_dq(self) -> Matrix:
+        """Joint velocities [rad/s], (count, joints)."""
+        return self.rows[: self.count, self._x]
 
     @property
     def bound_multipliers(self) -> Matrix:
-        """`Solution.z_box` of each, (count, n)."""
-        stop = self._point.stop
-        return self.rows[: self.count, stop - self.sizes[0] : stop]
+        """Multipliers of the joints' bounds, `Solution.z_box`, (count, joints)."""
+        start = self._point.stop - self.sizes[0]
+        return self.rows[: self.count, start : start + self._joints]
 
-    def repeat(self, first: int) -> None:
-        """Put answer `first` in the place of all after it."""
-        self.rows[first + 1 : self.count] = self.rows[first]
-        for numbered in (self.unsolved, self.resolved):
-            for i in range(first + 1, self.count):
-                numbered.pop(i, None)
+    @property
+    def row_multipliers(self) -> Matrix:
+        """Multipliers of the inequality rows, `Solution.z`, (count, m)."""
+        stop = self._point.stop - self.sizes[0]
+        return self.rows[: self.count, stop - self.sizes[1] : stop]
 
     @property
     def iterations(self) -> Vector:
-        """What each one took, (count,)."""
-        return self.rows[: self.count, -FIGURES]
+        """Linear systems or sub-steps of each answer, (count,)."""
+        return self._figures(slice(self.count))[:, 0]  # type: ignore[no-any-return]
 
     @property
     def residuals(self) -> Matrix:
         """Primal and dual residual and gap, (count, 3)."""
-        return self.rows[: self.count, -FIGURES + 2 : -16]
+        return self._figures(slice(self.count))[:, 2:]
 
     @property
-    def poses(self) -> Matrix:
-        """Where the tip was, (count, 4, 4)."""
-        return self.rows[: self.count, -16:].reshape(-1, 4, 4)
+    def places(self) -> Matrix:
+        """Placements of the tip, (count, 12)."""
+        return self.rows[: self.count, -PLACE - self._joints : -self._joints]
+
+    @property
+    def q(self) -> Matrix:
+        """Joint positions that the programs were built at [rad], (count, joints)."""
+        return self.rows[: self.count, -self._joints :]
+
+    def repeat(self, first: int) -> None:
+        """Put answer `first` in the place of all after it."""
+        for i in range(first + 1, self.count):
+            self.rows[i] = self.rows[first]
+            self.unsolved.pop(i, None)
+            self.resolved.pop(i, None)

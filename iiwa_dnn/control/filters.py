@@ -10,9 +10,10 @@ The moving average is the paper's anti-noise mechanism, equation (9):
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from iiwa_dnn import checks, kernels
-from iiwa_dnn.qp.program import Vector
+from iiwa_dnn import checks
+from iiwa_dnn.qp import Matrix, Vector
 
 
 class MovingAverage:
@@ -38,6 +39,27 @@ class MovingAverage:
             return sample
         if self._count == 0:
             self._samples = np.zeros((self.window, sample.size))
-        mean: Vector = kernels.window_mean(self._samples, self._count, sample)
+        mean: Vector = _window_mean(self._samples, self._count, sample)
         self._count += 1
         return mean
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _window_mean(samples: Matrix, count: int, sample: Vector) -> Vector:
+    """Put the sample (n,) that comes after `count` others into the ring `samples` (window, n).
+
+    Returns:
+        The mean of the window, (n,), or of the samples that there are.
+    """
+    window, n = samples.shape
+    for i in range(n):
+        samples[count % window, i] = sample[i]
+    filled = min(count + 1, window)
+    mean = np.zeros(n)
+    # A running sum would be quicker and would drift by its rounding.
+    for k in range(filled):
+        for i in range(n):
+            mean[i] += samples[k, i]
+    for i in range(n):
+        mean[i] /= filled
+    return mean

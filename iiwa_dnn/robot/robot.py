@@ -74,6 +74,14 @@ class Robot:
         """Names of the n joints, in the order of q."""
         return tuple(self.model.names)[1:]
 
+    def frame_id(self, name: str) -> int:
+        """Return Pinocchio's index of a frame.
+
+        Raises:
+            NotFoundError: The robot has no frame of that name; the error lists those near to it.
+        """
+        return _frame_id(self.model, name)
+
     def with_limits(
         self,
         lower: ArrayLike | None = None,

@@ -1,14 +1,26 @@
-"""Redundancy-resolution schemes: each turns a configuration and a target into a QP."""
+"""Redundancy-resolution schemes: costs, tasks and limits that make the program of a control step."""
 
-from iiwa_dnn.schemes.base import Scheme, VelocityProgram, compiled_program, identity
+from iiwa_dnn.schemes.base import Scheme
+from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy
 from iiwa_dnn.schemes.double_indicator import DoubleIndicator
+from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.parts import Cost, FrameState, Limit, Part, Step, Task
 from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
+from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
 __all__ = [
+    "Cost",
+    "CyclicMotion",
     "DoubleIndicator",
+    "FrameState",
+    "JointLimits",
+    "KineticEnergy",
+    "Limit",
+    "OrientationTask",
+    "Part",
+    "PositionTask",
     "PseudoInverse",
     "Scheme",
-    "VelocityProgram",
-    "compiled_program",
-    "identity",
+    "Step",
+    "Task",
 ]

@@ -1,116 +1,163 @@
-"""What every scheme offers, and the assembly of the program that all of them share."""
+"""Schemes: costs, tasks and limits composed into the program of a control step."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import lru_cache
-from typing import Any, NamedTuple, Protocol, TypeVar
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn import kernels
-from iiwa_dnn.qp.program import QP, Matrix, Vector
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import QP
 from iiwa_dnn.references import Target
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.schemes.orientation import MODE_INDEX, ROW_COUNT, Orientation
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.assembly import Layout, assemble
+from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")
 
 
-class Scheme(Protocol):
-    """One way to choose joint velocities among those that fulfil the task."""
+class Scheme:
+    """A way to choose joint velocities among those that fulfil the tasks inside the limits.
 
-    @property
-    def limit_gain(self) -> float | None:
-        """The gain of the velocity bounds near a position limit [1/s]; None: no bounds."""
-        ...
-
-    def anchored(self: SchemeT, conf: Configuration) -> SchemeT:
-        """The same scheme with `conf` as the posture to come back to, where it has one."""
-        ...
-
-    def build_qp(self, conf: Configuration, target: Target) -> QP:
-        """The quadratic program whose solution is the joint velocity [rad/s]; not solved here."""
-        ...
-
-    def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
-        """The scheme's measure dq^T G(q) dq of a joint velocity (n,) [rad/s]."""
-        ...
-
-    def settings(self) -> dict[str, Any]:
-        """Name and parameters, as values that JSON can hold."""
-        ...
-
-
-@lru_cache
-def identity(n: int) -> Matrix:
-    """The (n, n) identity matrix, the same array for every caller."""
-    return np.eye(n)
-
-
-class VelocityProgram(NamedTuple):
-    r"""A velocity program less what changes along a run: objective, task rows, velocity bounds.
-
-    The position rows are :math:`J \dot q = v_d + \delta\,(p_d - p)`; the orientation rows and the
-    bounds stand in their own files, the objective in `iiwa_dnn.schemes.double_indicator`.
+    The program's variables are the n joint velocities [rad/s], then `slack` further variables that
+    costs and limits of one's own may use; the command is the first n of the solution.
 
     Attributes:
-        mode: Form of the orientation rows, as the kernels call it (`MODE_INDEX`).
-        rows: Equality rows: 3 of the position and 3, 4 or 0 of the orientation.
-        weights: The blend of kinetic energy (1) and cyclic motion (0), and the gains towards home,
-            of the position, of the orientation and near the limits [1/s]; (5,).
-        limits: Rows of `Robot.limits` to keep, (3, n).
-        home: Posture to come back to [rad], (n,).
-        inertia: Whether G(q) is the joint-space inertia matrix; otherwise it is the identity.
+        costs: Terms of the cost.
+        tasks: Equality rows, or soft tasks.
+        limits: Bounds and inequality rows.
+        slack: Number of slack variables.
     """
 
-    mode: int
-    rows: int
-    weights: Vector
-    limits: Matrix
-    home: Vector
-    inertia: bool
+    costs: tuple[Cost, ...]
+    tasks: tuple[Task, ...]
+    limits: tuple[Limit, ...]
+    slack: int = 0
 
-    @classmethod
-    def of(
-        cls,
-        orientation: Orientation,
-        weights: Sequence[float],
-        limits: Matrix,
-        home: Vector,
-        inertia: bool = False,
-    ) -> VelocityProgram:
-        """The program with this form of the orientation rows."""
-        rows = 3 + ROW_COUNT[orientation]
-        numbers = np.array(weights, dtype=np.float64)
-        return cls(MODE_INDEX[orientation], rows, numbers, limits, home, inertia)
+    def __init__(
+        self,
+        costs: Sequence[Cost] = (),
+        tasks: Sequence[Task] = (),
+        limits: Sequence[Limit] = (),
+        slack: int = 0,
+    ) -> None:
+        """Compose the parts.
 
-    def kinetic(self, conf: Configuration) -> Matrix:
-        """G(q), (n, n)."""
-        return np.array(conf.inertia) if self.inertia else identity(self.home.size)
+        Raises:
+            InvalidInputError: A part is of another kind than its list, or `slack` is negative.
+        """
+        self._compose(costs, tasks, limits)
+        self.slack = checks.integer("slack", slack, 0)
 
-    def build(self, conf: Configuration, target: Target) -> QP:
-        """The program at a configuration of n joints: a QP in n variables, not solved here."""
-        q, pose, jacobian = conf.arrays
-        n, p = q.size, self.rows
-        data = np.empty(n * (n + 3) + p * (n + 1))
-        kernels.velocity_program(
-            data, p, self.mode, q, pose, jacobian, target.data,
-            self.limits, self.home, self.kinetic(conf), self.weights,
+    def _compose(
+        self, costs: Sequence[Cost], tasks: Sequence[Task], limits: Sequence[Limit]
+    ) -> None:
+        for name, parts, kind in (
+            ("costs", costs, Cost),
+            ("tasks", tasks, Task),
+            ("limits", limits, Limit),
+        ):
+            for part in parts:
+                if not isinstance(part, kind):
+                    problem = f"must hold iiwa_dnn.{kind.__name__} objects, not {part!r}"
+                    raise InvalidInputError(name, problem, part)
+            # A scheme may be a frozen dataclass.
+            object.__setattr__(self, name, tuple(parts))
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All parts: costs, tasks, limits."""
+        return (*self.costs, *self.tasks, *self.limits)
+
+    def anchored(self: SchemeT, conf: Configuration) -> SchemeT:
+        """Return the scheme with `conf` as the posture to come back to, where a part lacks one."""
+        costs = [part.anchored(conf) for part in self.costs]
+        tasks = [part.anchored(conf) for part in self.tasks]
+        limits = [part.anchored(conf) for part in self.limits]
+        if all(a is b for a, b in zip((*costs, *tasks, *limits), self.parts, strict=True)):
+            return self
+        scheme = object.__new__(type(self))
+        scheme.__dict__.update(self.__dict__)
+        scheme._compose(costs, tasks, limits)
+        return scheme
+
+    def layout(self, robot: Robot) -> Layout:
+        """Lay the parts out for a robot: which rows belong to which part.
+
+        Raises:
+            NotFoundError: A part names a frame that the robot does not have.
+            InvalidInputError: A parameter of a part does not fit the robot.
+        """
+        return Layout(robot, self.costs, self.tasks, self.limits, self.slack)
+
+    def build_qp(self, conf: Configuration, target: Target | Mapping[str, Target]) -> QP:
+        """Build the program of one instant; it is not solved here.
+
+        Args:
+            conf: Where the robot is, n joints.
+            target: Where the tip should be; with tasks of other frames, a target by frame name.
+
+        Returns:
+            A QP in n + slack variables: the rows of the tasks in A, of the limits in G.
+
+        Raises:
+            InvalidInputError: A task's frame has no target, or a part does not fit the robot.
+        """
+        layout = self.layout(conf.robot)
+        kinematics = Kinematics(conf.robot, layout.frames, layout.needs_inertia)
+        q = conf.arrays[0]
+        kinematics.update(q)
+        targets = targets_of(layout, target)
+        data = np.empty(layout.size)
+        assemble(
+            data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
+            kinematics.inertia, np.concatenate(list(targets.values())), np.inf,
         )  # fmt: skip
-        return QP.from_data(data, (n, 0, p))
+        if layout.custom:
+            layout.fill(data, Step(kinematics, targets, 0.0, np.inf, q, np.zeros_like(q)))
+        return QP.from_data(data, layout.sizes)
+
+    def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
+        """Compute dq^T G(q) dq of a joint velocity dq (n,) [rad/s].
+
+        G is that of the scheme's `KineticEnergy`: [rad^2/s^2] with the identity, [J] (twice the
+        energy) with the inertia matrix.
+        """
+        velocity = np.asarray(dq, dtype=np.float64)
+        if self.kinetic == "identity":
+            return float(velocity @ velocity)
+        return float(velocity @ conf.inertia @ velocity)
+
+    @property
+    def kinetic(self) -> str:
+        """G of the kinetic index: ``"identity"`` or ``"inertia"``."""
+        found = [cost.kinetic for cost in self.costs if isinstance(cost, KineticEnergy)]
+        return found[0] if found else "identity"
+
+    def settings(self) -> dict[str, Any]:
+        """Return name, parts and parameters, as values that JSON can hold."""
+        parts = {name: [part.settings() for part in getattr(self, name)] for name in _LISTS}
+        return {"name": type(self).__name__, **parts, "slack": self.slack, "kinetic": self.kinetic}
 
 
-def compiled_program(scheme: Scheme, robot: Robot) -> VelocityProgram | None:
-    """The scheme's ``program(robot)``, where that is all that its `build_qp` builds.
+_LISTS = ("costs", "tasks", "limits")
 
-    A scheme may offer this method; the control loop then assembles and solves in one compiled
-    call. None where it does not, or where a subclass builds in a way of its own.
+
+def targets_of(
+    layout: Layout, target: Target | Mapping[str, Target]
+) -> dict[str, np.ndarray[Any, Any]]:
+    """Return `Target.data` of each frame that tasks track, in the layout's order.
+
+    Raises:
+        InvalidInputError: A frame has no target.
     """
-    builder = next(cls for cls in type(scheme).__mro__ if "build_qp" in vars(cls))
-    if "program" not in vars(builder):
-        return None
-    program: VelocityProgram = scheme.program(robot)  # type: ignore[attr-defined]
-    return program
+    given = target if isinstance(target, Mapping) else {layout.robot.tip: target}
+    for name in layout.target_frames:
+        if name not in given:
+            raise InvalidInputError("target", f"is missing for frame {name!r}", sorted(given))
+    return {name: given[name].data for name in layout.target_frames}

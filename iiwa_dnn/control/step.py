@@ -1,0 +1,97 @@
+"""A whole control step in one compiled call: the program is assembled and the network answers it.
+
+For seven joints the way into compiled code is a large part of the cost of a call, so a control loop
+enters it once a step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn.control.answers import FIGURES, PLACE
+from iiwa_dnn.networks.integrators.explicit import explicit_euler
+from iiwa_dnn.networks.integrators.implicit import settle_implicit
+from iiwa_dnn.networks.projection import field, stable_step
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.schemes.assembly import assemble
+from iiwa_dnn.schemes.parts import Codes
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def control_step(
+    rows: Matrix, index: int, codes: Codes, numbers: Vector, network: Vector, q: Vector,
+    jacobian: Matrix, placements: Matrix, inertia: Matrix, targets: Matrix, memory: Vector,
+    state: Vector, built: bool, motion: float,
+) -> bool:  # fmt: skip
+    """Write program and answer of one control step into row `index` of `Answers.rows`.
+
+    Args:
+        rows: `Answers.rows`.
+        index: Number of the row.
+        codes: `Layout.codes`, as for the next arguments of `assemble`.
+        numbers: `Layout.numbers`.
+        network: `DNNSolver.numbers`: tolerance, budget and first step of the implicit integrator,
+            time to advance (0: settle), whether x is projected, explicit sub-steps (0: as many as
+            stability needs) and the share of the stable step that is used.
+        q: Joint positions [rad], (dof,).
+        jacobian: `Kinematics.jacobian`.
+        placements: `Kinematics.placements`.
+        inertia: `Kinematics.inertia`.
+        targets: Row `index` holds the targets' data, one frame after the other.
+        memory: ``[1 / dt, last command (dof)]``; the command is written.
+        state: The network's state, advanced.
+        built: Whether the row holds the program already.
+        motion: Where above 0, the answer moves `q` for this time [s], as the ideal plant does.
+
+    Returns:
+        False where the network did not settle or diverged; `state` is then as it was.
+    """
+    n, m, p, dof = codes[0], codes[1], codes[2], codes[3]
+    row = rows[index]
+    at_point = (n + m + p) * (n + 1) + 2 * n
+    at_figures = at_point + 2 * n + m + p
+    data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
+    if not built:
+        assemble(data, codes, numbers, q, jacobian, placements, inertia, targets[index], memory[0])
+    before = state.copy()
+    if network[3] > 0.0:
+        count = int(network[5])
+        if count == 0:
+            active = np.empty(m + 2 * n)
+            field(data, n, m, p, network[4] != 0.0, state, np.empty(state.size), active)
+            stable = network[6] * stable_step(data, n, m, p, active)
+            if not stable > 0.0:
+                return False
+            count = max(1, int(np.ceil(network[3] / stable)))
+        explicit_euler(data, n, m, p, network[4] != 0.0, state, network[3] / count, count, -1.0)
+        iterations, time = count, network[3]
+        primal, dual, gap = kkt_point(data, n, m, p, state, point)
+        succeeded = primal + dual + gap < np.inf
+    else:
+        tol = network[0]
+        iterations, time, primal, dual, gap = settle_implicit(
+            data, n, m, p, state, point, tol, int(network[1]), network[2]
+        )
+        succeeded = primal <= tol and dual <= tol and gap <= tol
+    if not succeeded:
+        for i in range(state.size):
+            state[i] = before[i]
+        return False
+    figures[0], figures[1], figures[2], figures[3], figures[4] = iterations, time, primal, dual, gap
+    for i in range(PLACE):
+        figures[FIGURES + i] = placements[codes[5], i]
+    for i in range(dof):
+        figures[FIGURES + PLACE + i] = q[i]
+        memory[1 + i] = point[i]
+        if motion > 0.0:
+            # Rounded as numpy would: the record's q[k + 1] is q[k] + dt dq[k] to the last bit.
+            q[i] = move(q[i], motion, point[i])
+    return True
+
+
+@njit(cache=True, error_model="numpy")
+def move(q: float, dt: float, dq: float) -> float:
+    """Return q + dt dq, the product rounded before the sum."""
+    return q + dt * dq

@@ -1,0 +1,88 @@
+"""Joint Jacobian, frame placements and inertia of a robot, in arrays that a control loop holds once.
+
+Pinocchio computes them; what it leaves in its own memory is seen here through views, so that a
+control step converts nothing. `iiwa_dnn.Configuration` is the safe form for everyone else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from iiwa_dnn.robot.robot import Robot
+
+_Array = NDArray[np.float64]
+_PLACEMENT = 12  # numbers of a placement: the rotation column by column, then the translation
+
+
+class Kinematics:
+    """Kinematics of the frames that a control loop needs, overwritten by each `update`.
+
+    Attributes:
+        robot: The robot, n joints.
+        frame_ids: Pinocchio's indices of the frames that `update` places, the tip's first.
+        jacobian: Joint Jacobian, (n, 6): row j is the twist [linear velocity of the world's origin;
+            angular velocity] for each unit of velocity of joint j, along the world's axes.
+        placements: Frame placements by frame index, (frames, 12): the rotation's columns, then the
+            position [m]. Only the rows of `frame_ids` are current.
+        inertia: Joint-space inertia matrix [kg m^2], (n, n), current where `dynamics` is set.
+    """
+
+    def __init__(self, robot: Robot, frames: Iterable[str] = (), dynamics: bool = False) -> None:
+        """Allocate for the tip and for other frames, by name.
+
+        Raises:
+            NotFoundError: The robot has no frame of that name.
+        """
+        self.robot = robot
+        self._model, self._data = robot.model, robot.model.createData()
+        ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
+        self.frame_ids = tuple(dict.fromkeys(ids))
+        self._dynamics = dynamics
+        self.jacobian: _Array = self._data.J.T
+        self.inertia: _Array = self._data.M
+        self.placements = _placements(self._data)
+
+    def update(self, q: _Array) -> None:
+        """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
+        model, data = self._model, self._data
+        if self._dynamics:
+            pin.crba(model, data, q)
+        pin.computeJointJacobians(model, data, q)
+        for index in self.frame_ids:
+            pin.updateFramePlacement(model, data, index)
+
+    def frame(self, index: int) -> tuple[_Array, _Array, _Array]:
+        """Return position (3,), rotation (3, 3) and Jacobian (6, n) of a frame, copies.
+
+        The Jacobian's rows are [linear; angular] at the frame's origin, along the world's axes.
+        """
+        model, data = self._model, self._data
+        pin.updateFramePlacement(model, data, index)
+        place = data.oMf[index]
+        jacobian = pin.getFrameJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)
+        return place.translation.copy(), place.rotation.copy(), jacobian
+
+    def support(self, index: int) -> NDArray[np.int64]:
+        """Return 1 for each joint that moves a frame and 0 for the others, (n,)."""
+        moves = np.zeros(self._model.nv, dtype=np.int64)
+        for joint in list(self._model.supports[self._model.frames[index].parentJoint])[1:]:
+            start = self._model.idx_vs[joint]
+            moves[start : start + self._model.nvs[joint]] = 1
+        return moves
+
+
+def _placements(data: pin.Data) -> _Array:
+    """All frame placements as one array, (frames, 12): Pinocchio keeps them one after the other."""
+    rotations = [place.rotation for place in data.oMf]
+    starts = [rotation.__array_interface__["data"][0] for rotation in rotations]
+    step = 8 * _PLACEMENT
+    offset = data.oMf[0].translation.__array_interface__["data"][0] - starts[0]
+    expected = [starts[0] + step * i for i in range(len(starts))]
+    if starts != expected or offset != 72 or rotations[0].strides != (8, 24):
+        raise RuntimeError("this build of Pinocchio keeps its frame placements in another way")
+    shape, strides = (len(starts), _PLACEMENT), (step, 8)
+    return np.lib.stride_tricks.as_strided(rotations[0], shape, strides)

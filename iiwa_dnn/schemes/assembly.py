@@ -1,0 +1,279 @@
+"""A scheme's parts laid out as the blocks of one program, and the compiled call that writes them.
+
+`Layout` states once, for a scheme and a robot, which rows belong to which part. `assemble` then
+writes a whole program into one `QP.data` array; parts without a compiled form are asked afterwards
+(`Layout.fill`) and write into the same array.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import accumulate
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn.checks import finite_array
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.layout import offsets
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.costs import (
+    CYCLIC_MOTION,
+    KINETIC_ENERGY,
+    KineticEnergy,
+    add_cyclic_motion,
+    add_kinetic_energy,
+)
+from iiwa_dnn.schemes.limits import JOINT_LIMITS, joint_limits
+from iiwa_dnn.schemes.parts import CUSTOM, TARGET_SIZE, Codes, Cost, Limit, Part, Step, Task
+from iiwa_dnn.schemes.tasks import (
+    ORIENTATION_BLOCK,
+    ORIENTATION_SO3,
+    POSITION,
+    orientation_rows_block,
+    orientation_rows_so3,
+    position_rows,
+)
+
+HEADER, BLOCK = 6, 7
+"""Entries of the codes' head (n, m, p, joints, blocks, tip) and of each block after it."""
+
+
+class Block(NamedTuple):
+    """Rows of one part.
+
+    Attributes:
+        part: The part.
+        start: Its first row among the program's equality or inequality rows.
+        rows: How many rows it has; none for a cost.
+    """
+
+    part: Part
+    start: int
+    rows: int
+
+
+class Layout:
+    """Blocks of a program, for one scheme and one robot of `dof` joints.
+
+    Attributes:
+        robot: The robot.
+        sizes: ``(n, m, p)`` of the program.
+        blocks: The parts in the order costs, tasks, limits.
+        target_frames: Names of the frames that tasks track, in the order of the targets' array.
+        frames: Names of all frames that parts name.
+        codes: What compiled code reads of the layout: head, joints that move each frame, blocks.
+        numbers: Constants of the compiled parts, one after the other.
+        custom: Blocks of parts without a compiled form.
+        needs_inertia: Whether a part asks for the inertia matrix.
+        row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        costs: Sequence[Cost],
+        tasks: Sequence[Task],
+        limits: Sequence[Limit],
+        slack: int,
+    ) -> None:
+        """Lay the parts out.
+
+        Raises:
+            NotFoundError: A part names a frame that the robot does not have.
+            InvalidInputError: A parameter of a part does not fit the robot.
+        """
+        self.robot = robot
+        hard = [task for task in tasks if task.weight is None]
+        soft = [task for task in tasks if task.weight is not None]
+        self.blocks = (
+            *(Block(cost, 0, 0) for cost in costs),
+            *_stacked(hard),
+            *(Block(task, 0, task.rows) for task in soft),
+            *_stacked(limits),
+        )
+        m, p = (sum(part.rows for part in parts) for parts in (limits, hard))
+        self.sizes = (robot.dof + slack, m, p)
+        self.custom = tuple(block for block in self.blocks if block.part.kind == CUSTOM)
+        self.row_weights = np.repeat([t.row_weight for t in hard], [t.rows for t in hard])
+        self.needs_inertia = any(
+            isinstance(cost, KineticEnergy) and cost.kinetic == "inertia" for cost in costs
+        )
+        names = [task.frame_name(robot) for task in tasks]
+        self.target_frames = tuple(dict.fromkeys(names)) or (robot.tip,)
+        self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames]))
+        self._encode()
+
+    def _encode(self) -> None:
+        """Write `codes` and `numbers`."""
+        from iiwa_dnn.robot.kinematics import Kinematics
+
+        compiled = [block for block in self.blocks if block.part.kind != CUSTOM]
+        constants = [block.part.numbers(self.robot) for block in compiled]
+        starts = [0, *accumulate(map(len, constants))]
+        self.numbers: Vector = np.concatenate([np.zeros(0), *constants])
+        dof, count = self.robot.dof, len(compiled)
+        head = [*self.sizes, dof, count, self.robot.tip_id]
+        kinematics = Kinematics(self.robot, self.frames)
+        blocks: list[int] = []
+        for block, at in zip(compiled, starts, strict=False):
+            name = block.part.frame_name(self.robot)
+            frame = self.frames.index(name) if name in self.frames else 0
+            target = self.target_frames.index(name) if name in self.target_frames else 0
+            soft = isinstance(block.part, Task) and block.part.weight is not None
+            support = HEADER + BLOCK * count + dof * frame
+            place = kinematics.frame_ids[frame]
+            blocks += [block.part.kind, block.start, -block.rows if soft else block.rows]
+            blocks += [place, support, TARGET_SIZE * target, at]
+        moves = [kinematics.support(index) for index in kinematics.frame_ids]
+        self.codes: Codes = np.concatenate([np.array(head + blocks, dtype=np.int64), *moves])
+        weights = [
+            0.0 if not isinstance(b.part, Task) or b.part.weight is None else b.part.weight
+            for b in compiled
+        ]
+        # The weights of soft tasks come last, one for each block.
+        self.numbers = np.concatenate([self.numbers, weights])
+
+    @property
+    def size(self) -> int:
+        """Size of the program's `QP.data`."""
+        n, m, p = self.sizes
+        return (n + m + p) * (n + 1) + 2 * n
+
+    def row_names(self) -> list[dict[str, object]]:
+        """Return for each inequality row its part and its number in it, counted from 1."""
+        return [
+            {"part": type(block.part).__name__, "row": i + 1}
+            for block in self.blocks
+            if isinstance(block.part, Limit)
+            for i in range(block.rows)
+        ]
+
+    def fill(self, data: Vector, step: Step) -> None:
+        """Ask the parts without a compiled form, and add what they say to an assembled program.
+
+        Raises:
+            InvalidInputError: A part answers with an array of a wrong shape; it is named.
+        """
+        qp = QP.from_data(data, self.sizes)
+        n = self.sizes[0]
+        for part, start, rows in self.custom:
+            name, at = type(part).__name__, slice(start, start + rows)
+            if isinstance(part, Cost):
+                P, q = part.quadratic(step)
+                qp.P[:] += _shaped(name, "P", P, (n, n))
+                qp.q[:] += _shaped(name, "q", q, (n,))
+            elif isinstance(part, Task):
+                A, b = part.equations(step)
+                A, b = _shaped(name, "A", A, (rows, n)), _shaped(name, "b", b, (rows,))
+                if part.weight is None:
+                    qp.A[at], qp.b[at] = A, b
+                else:
+                    qp.P[:] += part.weight * A.T @ A
+                    qp.q[:] -= part.weight * A.T @ b
+            elif isinstance(part, Limit):
+                if rows:
+                    G, h = part.inequalities(step)
+                    qp.G[at] = _shaped(name, "G", G, (rows, n))
+                    qp.h[at] = _shaped(name, "h", h, (rows,))
+                if (bounds := part.bounds(step)) is not None:
+                    lower, upper = (_shaped(name, "bounds", bound, (n,)) for bound in bounds)
+                    np.maximum(qp.lb, lower, out=qp.lb)
+                    np.minimum(qp.ub, upper, out=qp.ub)
+
+
+def _stacked(parts: Sequence[Task] | Sequence[Limit]) -> list[Block]:
+    """Blocks of parts whose rows stand one after the other."""
+    starts = accumulate((part.rows for part in parts), initial=0)
+    return [Block(part, start, part.rows) for part, start in zip(parts, starts, strict=False)]
+
+
+def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matrix:
+    """The array of a custom part, or an InvalidInputError that names the part."""
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise InvalidInputError(part, f"{name} has shape {array.shape}, not {shape}", value)
+    return array
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def assemble(
+    data: Vector, codes: Codes, numbers: Vector, q: Vector, jacobian: Matrix, placements: Matrix,
+    inertia: Matrix, targets: Vector, rate: float,
+) -> None:  # fmt: skip
+    """Write a program into `data`, without the rows of parts that have no compiled form.
+
+    Args:
+        data: The program, laid out as `QP.data`.
+        codes: `Layout.codes`.
+        numbers: `Layout.numbers`.
+        q: Joint positions [rad], (dof,).
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        inertia: `Kinematics.inertia`, (dof, dof).
+        targets: One `Target.data` after the other.
+        rate: 1 / dt [1/s]; inf where there is no control period.
+    """
+    n, m, p, dof, blocks = codes[0], codes[1], codes[2], codes[3], codes[4]
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_b = at_lb - p
+    for i in range(at_lb):
+        data[i] = 0.0
+    for i in range(n):
+        data[at_lb + i] = -np.inf
+        data[at_lb + n + i] = np.inf
+    for k in range(blocks):
+        at = HEADER + BLOCK * k
+        kind, start, rows = codes[at], codes[at + 1], codes[at + 2]
+        constants = numbers[codes[at + 6] :]
+        if kind == KINETIC_ENERGY:
+            add_kinetic_energy(data, n, dof, constants, inertia)
+        elif kind == CYCLIC_MOTION:
+            add_cyclic_motion(data, data[at_q:], n, dof, constants, q)
+        elif kind == JOINT_LIMITS:
+            joint_limits(data[at_lb:], data[at_lb + n :], dof, constants, q, rate)
+        else:
+            support, target = codes[codes[at + 4] :], targets[codes[at + 5] :]
+            soft = rows < 0
+            if soft:
+                A, b = np.zeros(-rows * n), np.empty(-rows)
+            else:
+                A, b = data[at_A + start * n :], data[at_b + start :]
+            task_rows(kind, A, b, n, support, constants[0], jacobian, placements[codes[at + 3]],
+                      target)  # fmt: skip
+            if soft:
+                _add_soft(data, at_q, n, A, b, -rows, numbers[numbers.size - blocks + k])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def task_rows(
+    kind: int, rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
+    jacobian: Matrix, place: Vector, target: Vector,
+) -> None:  # fmt: skip
+    """Write the rows of a task, by the number of its compiled form; arguments as `position_rows`."""
+    if kind == POSITION:
+        position_rows(rows, rhs, n, support, gain, jacobian, place, target)
+    elif kind == ORIENTATION_SO3:
+        orientation_rows_so3(rows, rhs, n, support, gain, jacobian, place, target)
+    elif kind == ORIENTATION_BLOCK:
+        orientation_rows_block(rows, rhs, n, support, gain, jacobian, place, target)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def _add_soft(
+    data: Vector, at_q: int, n: int, A: Vector, b: Vector, rows: int, weight: float
+) -> None:
+    """Add weight A^T A to P and -weight A^T b to q."""
+    for k in range(rows):
+        for i in range(n):
+            scaled = weight * A[k * n + i]
+            data[at_q + i] -= scaled * b[k]
+            for j in range(n):
+                data[i * n + j] += scaled * A[k * n + j]
+
+
+def check_target(frame: str, target: Vector) -> Vector:
+    """Return a target's numbers (18,), or raise InvalidInputError naming its frame."""
+    return finite_array(f"target of {frame}", target, (TARGET_SIZE,))

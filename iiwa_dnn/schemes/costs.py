@@ -1,0 +1,121 @@
+r"""Costs: what a scheme minimises among the joint velocities that fulfil its tasks.
+
+With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's cost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.schemes.parts import Cost
+
+Kinetic = Literal["identity", "inertia"]
+KINETICS: tuple[Kinetic, ...] = ("identity", "inertia")
+
+KINETIC_ENERGY, CYCLIC_MOTION = 1, 2
+
+
+@dataclass(frozen=True)
+class KineticEnergy(Cost):
+    r"""Minimum kinetic energy (MKE).
+
+    .. math::  \tfrac12 w\,\dot q^T G(q)\,\dot q, \qquad P \mathrel{+}= w\,G(q)
+
+    Source: equation (6) of the paper.
+
+    Attributes:
+        weight: w, at least 0.
+        kinetic: G(q): ``"identity"`` (the paper's) or ``"inertia"``, the joint-space inertia
+            matrix, which makes the cost w times the true kinetic energy [J].
+    """
+
+    kind: ClassVar[int] = KINETIC_ENERGY
+    weight: float = 1.0
+    kinetic: Kinetic = "identity"
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        checks.not_negative("weight", self.weight)
+        checks.one_of("kinetic", self.kinetic, KINETICS)
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the weight and 1 for the inertia matrix, (2,)."""
+        return np.array([self.weight, float(self.kinetic == "inertia")])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def add_kinetic_energy(P: Vector, n: int, dof: int, numbers: Vector, inertia: Matrix) -> None:
+    """Add w G(q) to P, (n n) row by row, of which the first `dof` variables are joints."""
+    weight = numbers[0]
+    for i in range(dof):
+        if numbers[1] == 0.0:
+            P[i * n + i] += weight
+        else:
+            for j in range(dof):
+                P[i * n + j] += weight * inertia[i, j]
+
+
+@dataclass(frozen=True)
+class CyclicMotion(Cost):
+    r"""Cyclic motion generation (CMG): the posture is drawn back to where it began.
+
+    .. math::  \tfrac12 w\,\|\dot q + m\,(q - q_0)\|^2, \qquad
+        P \mathrel{+}= w I, \quad q_{\text{QP}} \mathrel{+}= w\,m\,(q - q_0)
+
+    Source: equation (6) of the paper.
+
+    Attributes:
+        weight: w, at least 0.
+        gain: The paper's m [1/s], at least 0.
+        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is: then
+            nothing draws it; `simulate` and `Controller` anchor it where they begin.
+    """
+
+    kind: ClassVar[int] = CYCLIC_MOTION
+    weight: float = 1.0
+    gain: float = 10.2
+    home: tuple[float, ...] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        checks.not_negative("weight", self.weight)
+        checks.not_negative("drift_gain", self.gain)
+        if self.home is not None:
+            home = checks.finite_array("home", self.home, (-1,))
+            object.__setattr__(self, "home", tuple(home.tolist()))
+
+    def anchored(self, conf: Configuration) -> CyclicMotion:
+        """Return the cost with `conf` as home, unless it has a home already."""
+        return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return weight, gain and home, (2 + n,).
+
+        Raises:
+            InvalidInputError: `home` has another length than the robot has joints.
+        """
+        if self.home is None:
+            return np.concatenate([[self.weight, 0.0], np.zeros(robot.dof)])
+        if len(self.home) != robot.dof:
+            raise InvalidInputError("home", f"has {len(self.home)} values for {robot.dof} joints")
+        return np.concatenate([[self.weight, self.gain], self.home])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def add_cyclic_motion(
+    P: Vector, linear: Vector, n: int, dof: int, numbers: Vector, q: NDArray[np.float64]
+) -> None:
+    """Add w I to P (n n) and w m (q - home) to the linear term (n,)."""
+    weight, gain = numbers[0], numbers[1]
+    for i in range(dof):
+        P[i * n + i] += weight
+        linear[i] += weight * gain * (q[i] - numbers[2 + i])

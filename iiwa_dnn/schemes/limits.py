@@ -1,0 +1,59 @@
+"""Limits: bounds and inequality rows that no policy ever relaxes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn import checks
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.parts import Limit
+
+JOINT_LIMITS = 20
+
+
+@dataclass(frozen=True)
+class JointLimits(Limit):
+    r"""Joint velocity bounds that keep the joint positions inside their limits.
+
+    .. math::
+
+        lb = \max(-\dot q_{max},\; \kappa\,(q_{lower} - q)), \qquad
+        ub = \min(\dot q_{max},\; \kappa\,(q_{upper} - q))
+
+    A joint may approach its limit no faster than exponentially with rate :math:`\kappa`, so in
+    steps of dt it never passes it as long as :math:`\kappa\,dt \le 1`; a larger :math:`\kappa` is
+    cut to 1 / dt. Outside a limit the formula can ask for more than the velocity limit allows and
+    then has lb > ub: both bounds are clipped to the velocity limit, so that the arm comes back as
+    fast as it may.
+
+    Source: equation (6) of the paper.
+
+    Attributes:
+        gain: The paper's kappa [1/s], above 0.
+    """
+
+    kind: ClassVar[int] = JOINT_LIMITS
+    gain: float = 20.0
+
+    def __post_init__(self) -> None:
+        """Check the gain; raises InvalidInputError."""
+        checks.positive("limit_gain", self.gain)
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the gain and the rows of `Robot.limits`, (1 + 3 n,)."""
+        return np.concatenate([[self.gain], robot.limits.ravel()])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def joint_limits(lb: Vector, ub: Vector, dof: int, numbers: Vector, q: Vector, rate: float) -> None:
+    """Intersect lb and ub with the bounds of joint positions q; `rate` is 1 / dt [1/s]."""
+    gain = min(numbers[0], rate)
+    for i in range(dof):
+        lower, upper, fastest = numbers[1 + i], numbers[1 + dof + i], numbers[1 + 2 * dof + i]
+        lb[i] = max(lb[i], min(max(gain * (lower - q[i]), -fastest), fastest))
+        ub[i] = min(ub[i], min(max(gain * (upper - q[i]), -fastest), fastest))

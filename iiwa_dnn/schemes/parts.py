@@ -1,0 +1,172 @@
+"""Parts of a program: costs, tasks and limits, each a block of rows, and the step they are asked with.
+
+A part of one's own overrides one method, written with numpy. The package's own parts name a compiled
+form instead (`Part.kind`, `Part.numbers`), which stands beside the equation in `costs`, `tasks` and
+`limits` and is chosen by its number in `iiwa_dnn.schemes.assembly`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, ClassVar, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.checks import read_only
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Kinematics
+
+PartT = TypeVar("PartT", bound="Part")
+
+CUSTOM = 0
+"""The kind of a part without a compiled form."""
+
+TARGET_SIZE = 18
+"""Numbers of a target, `Target.data`."""
+
+
+class FrameState(NamedTuple):
+    """Pose and Jacobian of a frame.
+
+    Attributes:
+        position: Position in the world [m], (3,).
+        rotation: Orientation, (3, 3): columns are the frame's axes in the world.
+        jacobian: (6, n): J dq = [linear; angular velocity] at the frame's origin, world axes.
+    """
+
+    position: Vector
+    rotation: Matrix
+    jacobian: Matrix
+
+
+class Step:
+    """One instant of a control loop, as a part of one's own is asked with it.
+
+    Attributes:
+        robot: The robot, n joints.
+        t: Time [s].
+        dt: Control period [s]; inf where a program is built outside of a loop.
+        q: Joint positions [rad], (n,).
+        dq: Last command [rad/s], (n,); zeros at the first step.
+    """
+
+    __slots__ = ("_kinematics", "_targets", "dq", "dt", "q", "robot", "t")
+
+    def __init__(
+        self,
+        kinematics: Kinematics,
+        targets: Mapping[str, Vector],
+        t: float,
+        dt: float,
+        q: Vector,
+        dq: Vector,
+    ) -> None:
+        self._kinematics, self._targets = kinematics, targets
+        self.robot, self.t, self.dt, self.q, self.dq = kinematics.robot, t, dt, q, dq
+
+    def frame(self, name: str | None = None) -> FrameState:
+        """Return pose and Jacobian of a frame of the robot; None stands for the tip.
+
+        Raises:
+            NotFoundError: The robot has no frame of that name.
+        """
+        index = self.robot.tip_id if name is None else self.robot.frame_id(name)
+        return FrameState(*self._kinematics.frame(index))
+
+    def target(self, name: str | None = None) -> Target:
+        """Return the target of a frame that some task tracks; None stands for the tip."""
+        return Target.from_data(self._targets[self.robot.tip if name is None else name])
+
+    @property
+    def inertia(self) -> Matrix:
+        """Joint-space inertia matrix [kg m^2], (n, n)."""
+        return read_only(np.array(Configuration(self.robot, self.q).inertia))
+
+
+class Part:
+    """A block of a program's rows; a cost, a task or a limit.
+
+    Attributes:
+        kind: Number of the compiled form; ``CUSTOM`` for a part written with numpy.
+    """
+
+    kind: ClassVar[int] = CUSTOM
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the constants that the compiled form takes, (k,).
+
+        Raises:
+            InvalidInputError: A parameter does not fit the robot.
+        """
+        return np.zeros(0)
+
+    def frame_name(self, robot: Robot) -> str:
+        """Return the name of the frame that the part is about; the tip's unless it names another."""
+        name = getattr(self, "frame", None)
+        return robot.tip if name is None else str(name)
+
+    def anchored(self: PartT, conf: Configuration) -> PartT:
+        """Return the part with `conf` as the posture to come back to, where it lacks one."""
+        return self
+
+    def settings(self) -> dict[str, Any]:
+        """Return name and parameters, as values that JSON can hold."""
+        parameters = fields(self) if is_dataclass(self) else ()
+        return {"name": type(self).__name__} | {
+            field.name: getattr(self, field.name) for field in parameters if field.init
+        }
+
+
+class Cost(Part):
+    """A term of the cost, 1/2 x^T P x + q^T x."""
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n), symmetric positive semidefinite, and q (n,), to be added to the cost.
+
+        n counts the scheme's variables: the joints, then its slack variables.
+        """
+        raise TypeError(f"{type(self).__name__} overrides neither quadratic nor kind")
+
+
+class Task(Part):
+    """Equality rows A x = b, or with a `weight` the cost 1/2 weight |A x - b|^2.
+
+    Attributes:
+        rows: How many rows it has.
+        row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
+            the task yield (`iiwa_dnn.control.policies`).
+        weight: None for hard rows, else the weight of the soft task.
+    """
+
+    rows: int = 0
+    row_weight: float = 1.0
+    weight: float | None = None
+
+    def equations(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return A (rows, n) and b (rows,)."""
+        raise TypeError(f"{type(self).__name__} overrides neither equations nor kind")
+
+
+class Limit(Part):
+    """Bounds lb <= x <= ub, inequality rows G x <= h, or both.
+
+    Attributes:
+        rows: How many inequality rows it has, the same at every step: an idle one has h = inf.
+    """
+
+    rows: int = 0
+
+    def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return G (rows, n) and h (rows,); asked where `rows` is above 0."""
+        raise TypeError(f"{type(self).__name__} has rows but does not override inequalities")
+
+    def bounds(self, step: Step) -> tuple[Vector, Vector] | None:
+        """Return lb (n,) and ub (n,), or None for no bounds; those of all limits are intersected."""
+        return None
+
+
+Codes = NDArray[np.int64]

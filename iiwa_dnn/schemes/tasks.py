@@ -1,0 +1,271 @@
+r"""Tasks: equality rows that let a frame follow its target.
+
+A frame at position p with orientation R is to be at :math:`p_d, R_d` with the twist
+:math:`[v_d;\, \omega_d]`. Each task states its rows A dq = b; with a ``weight`` w they become the
+cost :math:`\tfrac12 w\,\|A \dot q - b\|^2` instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn import checks
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.parts import Codes, Task
+
+Form = Literal["so3", "block"]
+Orientation = Literal["so3", "block", "none"]
+ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")
+
+POSITION, ORIENTATION_SO3, ORIENTATION_BLOCK = 10, 11, 12
+
+ROTATION_LENGTH = 0.1
+"""Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m]."""
+
+
+@dataclass(frozen=True)
+class PositionTask(Task):
+    r"""Position of a frame.
+
+    .. math::  J_p \dot q = v_d + \delta\,(p_d - p)
+
+    Source: equation (2) of the paper.
+
+    Attributes:
+        gain: The paper's delta [1/s], at least 0.
+        frame: Name of the frame; None stands for the robot's tip.
+        weight: None for hard rows, else the weight of the soft task, at least 0.
+    """
+
+    kind: ClassVar[int] = POSITION
+    rows: ClassVar[int] = 3
+    gain: float = 10.2
+    frame: str | None = None
+    weight: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        checks.not_negative("position_gain", self.gain)
+        if self.weight is not None:
+            checks.not_negative("weight", self.weight)
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the gain, (1,)."""
+        return np.array([self.gain])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def position_rows(
+    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
+    jacobian: Matrix, place: Vector, target: Vector,
+) -> None:  # fmt: skip
+    """Write three rows (3 n, one after the other) and the right-hand side (3,).
+
+    `jacobian` (dof, 6) holds the joints' twists at the world's origin, `place` the frame's
+    placement (`Kinematics`): a joint with angular velocity w and origin velocity v moves the frame
+    with v + w x p.
+    """
+    x, y, z = place[9], place[10], place[11]
+    for i in range(3):
+        rhs[i] = target[12 + i] + gain * (target[i] - place[9 + i])
+    for j in range(jacobian.shape[0]):
+        if support[j] != 0:
+            a, b, c = jacobian[j, 3], jacobian[j, 4], jacobian[j, 5]
+            rows[j] = jacobian[j, 0] + (b * z - c * y)
+            rows[n + j] = jacobian[j, 1] + (c * x - a * z)
+            rows[2 * n + j] = jacobian[j, 2] + (a * y - b * x)
+
+
+@dataclass(frozen=True)
+class OrientationTask(Task):
+    r"""Orientation of a frame, in one of two forms.
+
+    ``so3``: the angular velocity itself, three rows that lose nothing at any orientation,
+
+    .. math::  J_\omega \dot q = \omega_d + \nu \log(R_d R^T)
+
+    ``block``, the paper's: with :math:`r = [R_{11}, R_{12}, R_{21}, R_{22}]`,
+
+    .. math::  W(R)\,J_\omega \dot q = \dot r_d - \nu (r - r_d)
+
+    where W follows from :math:`\dot R = [\omega]_\times R`. These four rows have rank three at
+    most, and where the tool's axis is vertical they lose the two tilts (docs/errata.md). Off the
+    path the four contradict each other, at second order in the error: no velocity fulfils them
+    all. The right-hand side is therefore projected on the range of W, which gives the rows their
+    least-squares meaning and changes nothing at first order.
+
+    Sources: F. Bullo and R. M. Murray, "Proportional derivative (PD) control on the Euclidean
+    group", European Control Conference 1995, for ``so3``; equations (3) to (5) of the paper.
+
+    Attributes:
+        gain: The paper's nu as a feedback gain [1/s], at least 0.
+        form: ``"so3"`` or ``"block"``.
+        frame: Name of the frame; None stands for the robot's tip.
+        weight: None for hard rows, else the weight of the soft task, at least 0.
+    """
+
+    row_weight: ClassVar[float] = ROTATION_LENGTH
+    gain: float = 10.2
+    form: Form = "so3"
+    frame: str | None = None
+    weight: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        checks.not_negative("orientation_gain", self.gain)
+        checks.one_of("form", self.form, ("so3", "block"))
+        if self.weight is not None:
+            checks.not_negative("weight", self.weight)
+
+    @property
+    def kind(self) -> int:  # type: ignore[override]
+        """Number of the compiled form."""
+        return ORIENTATION_SO3 if self.form == "so3" else ORIENTATION_BLOCK
+
+    @property
+    def rows(self) -> int:  # type: ignore[override]
+        """Three rows in the form so3, four in the form block."""
+        return 3 if self.form == "so3" else 4
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the gain, (1,)."""
+        return np.array([self.gain])
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def orientation_rows_so3(
+    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
+    jacobian: Matrix, place: Vector, target: Vector,
+) -> None:  # fmt: skip
+    """Write three rows (3 n) and the right-hand side (3,); arguments as `position_rows`."""
+    relative = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            value = 0.0
+            for k in range(3):
+                value += target[3 + 3 * i + k] * place[3 * k + j]
+            relative[i, j] = value
+    rotation_log(relative, rhs)
+    for i in range(3):
+        rhs[i] = target[15 + i] + gain * rhs[i]
+        for j in range(jacobian.shape[0]):
+            if support[j] != 0:
+                rows[i * n + j] = jacobian[j, 3 + i]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def orientation_rows_block(
+    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
+    jacobian: Matrix, place: Vector, target: Vector,
+) -> None:  # fmt: skip
+    """Write four rows (4 n) and the right-hand side (4,); arguments as `position_rows`."""
+    here, there = np.empty((4, 3)), np.empty((4, 3))
+    rotation, desired = np.empty((3, 3)), np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            rotation[i, j] = place[3 * j + i]
+            desired[i, j] = target[3 + 3 * i + j]
+    block_map(rotation, here)
+    block_map(desired, there)
+    for i in range(4):
+        rhs[i] = gain * (desired[i // 2, i % 2] - rotation[i // 2, i % 2])
+        for k in range(3):
+            rhs[i] += there[i, k] * target[15 + k]
+        for j in range(jacobian.shape[0]):
+            if support[j] != 0:
+                value = 0.0
+                for k in range(3):
+                    value += here[i, k] * jacobian[j, 3 + k]
+                rows[i * n + j] = value
+    project_on_range(here, rhs)
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def rotation_log(R: Matrix, out: Vector) -> None:
+    """Write the rotation vector of R, of length at most pi, into `out`.
+
+    Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
+    """
+    trace = R[0, 0] + R[1, 1] + R[2, 2]
+    if trace > 0.0:
+        w = 0.5 * np.sqrt(1.0 + trace)
+        out[0] = (R[2, 1] - R[1, 2]) / (4.0 * w)
+        out[1] = (R[0, 2] - R[2, 0]) / (4.0 * w)
+        out[2] = (R[1, 0] - R[0, 1]) / (4.0 * w)
+    else:
+        i = 0
+        if R[1, 1] > R[0, 0]:
+            i = 1
+        if R[2, 2] > R[i, i]:
+            i = 2
+        j, k = (i + 1) % 3, (i + 2) % 3
+        largest = 0.5 * np.sqrt(max(1.0 + R[i, i] - R[j, j] - R[k, k], 0.0))
+        w = (R[k, j] - R[j, k]) / (4.0 * largest)
+        sign = 1.0 if w >= 0.0 else -1.0
+        w *= sign
+        out[i] = sign * largest
+        out[j] = sign * (R[i, j] + R[j, i]) / (4.0 * largest)
+        out[k] = sign * (R[i, k] + R[k, i]) / (4.0 * largest)
+    sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+    # angle / sin(angle / 2), whose limit at 0 is 2
+    scale = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
+    for i in range(3):
+        out[i] *= scale
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def block_map(R: Matrix, out: Matrix) -> None:
+    """Write W(R) (4, 3): the rate of [R11 R12 R21 R22] is W(R) times the angular velocity."""
+    for i in range(4):
+        for j in range(3):
+            out[i, j] = 0.0
+    for column in range(2):
+        out[column, 1] = R[2, column]
+        out[column, 2] = -R[1, column]
+        out[2 + column, 0] = -R[2, column]
+        out[2 + column, 2] = R[0, column]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def project_on_range(columns: Matrix, vector: Vector) -> None:
+    """Replace `vector` (4,) by its projection on the range of `columns` (4, 3), which is spoilt.
+
+    Gram-Schmidt with pivoting; a direction below 1e-9 of the entries' scale, one, is none.
+    """
+    rows, count = columns.shape
+    result = np.zeros(rows)
+    for _ in range(count):
+        best, largest = 0, 0.0
+        for j in range(count):
+            norm = 0.0
+            for i in range(rows):
+                norm += columns[i, j] * columns[i, j]
+            if norm > largest:
+                best, largest = j, norm
+        if largest <= 1e-18:
+            break
+        scale = 1.0 / np.sqrt(largest)
+        along = 0.0
+        for i in range(rows):
+            columns[i, best] *= scale
+            along += columns[i, best] * vector[i]
+        for i in range(rows):
+            result[i] += along * columns[i, best]
+        for j in range(count):
+            if j != best:
+                # Twice, so that rounding leaves no trace of the direction that was taken out.
+                for _ in range(2):
+                    overlap = 0.0
+                    for i in range(rows):
+                        overlap += columns[i, best] * columns[i, j]
+                    for i in range(rows):
+                        columns[i, j] -= overlap * columns[i, best]
+        for i in range(rows):
+            columns[i, best] = 0.0
+    for i in range(rows):
+        vector[i] = result[i]
