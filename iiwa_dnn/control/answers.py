@@ -16,8 +16,9 @@ class Answers:
     """Room for `capacity` answers: a control loop that makes no objects is twice as quick.
 
     One step a row: ``[program | point | iterations, network time, primal and dual residual, gap |
-    tip placement | joint positions]``, the first as `QP.data`, the second as `Solution.point`, the
-    placement as `Kinematics.placements`. All programs have one shape.
+    tip placement | joint positions | targets]``, the first as `QP.data`, the second as
+    `Solution.point`, the placement as `Kinematics.placements`, each target as `Target.data`. All
+    programs have one shape.
 
     Attributes:
         count: Number of answers so far.
@@ -29,16 +30,19 @@ class Answers:
     """
 
     def __init__(
-        self, capacity: int, sizes: tuple[int, int, int], joints: int, status: Status
+        self, sizes: tuple[int, int, int], joints: int, status: Status, targets: Matrix
     ) -> None:
-        """Allocate; nothing is answered yet."""
+        """Allocate a row for each row of the targets (k, 18 frames); nothing is answered yet."""
         self.count, self.sizes, self.status = 0, sizes, status
         n, m, p = sizes
         program, point = (n + m + p) * (n + 1) + 2 * n, 2 * n + m + p
         self._program, self._point = slice(0, program), slice(program, program + point)
         self._x = slice(program, program + joints)
-        self._joints = joints
-        self.rows: Matrix = np.empty((capacity, program + point + FIGURES + PLACE + joints))
+        self._figures = slice(program + point, program + point + FIGURES)
+        self._place = slice(self._figures.stop, self._figures.stop + PLACE)
+        self._q = slice(self._place.stop, self._place.stop + joints)
+        self.rows: Matrix = np.empty((len(targets), self._q.stop + targets.shape[1]))
+        self.rows[:, self._q.stop :] = targets
         self.unsolved: dict[int, Solution] = {}
         self.resolved: dict[int, Resolution] = {}
 
@@ -56,10 +60,10 @@ class Answers:
         if qp.sizes != self.sizes:
             problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
             raise InvalidInputError("scheme", problem)
-        row, tail = self.rows[self.count], PLACE + self._joints
+        row = self.rows[self.count]
         row[self._program], row[self._point] = qp.data, solution.point
-        row[-tail - FIGURES : -tail] = (solution.iterations, solution.network_time, *solution[-3:])
-        row[-tail : -self._joints], row[-self._joints :] = place, q
+        row[self._figures] = (solution.iterations, solution.network_time, *solution[-3:])
+        row[self._place], row[self._q] = place, q
         if solution.status is not self.status:
             self.unsolved[self.count] = solution
         self.count += 1
@@ -72,14 +76,9 @@ class Answers:
         """Return the solution of program i."""
         if i in self.unsolved:
             return self.unsolved[i]
-        iterations, time, *residuals = self._figures(i).tolist()
+        iterations, time, *residuals = self.rows[i, self._figures].tolist()
         point = self.rows[i, self._point]
         return Solution(point, self.sizes, self.status, int(iterations), time, *residuals)
-
-    def _figures(self, i: int | slice) -> Vector:
-        tail = PLACE + self._joints
-        figures: Vector = self.rows[i, -tail - FIGURES : -tail]
-        return figures
 
     def dq(self, i: int) -> Vector:
         """Return the joint velocity of answer i [rad/s], (joints,)."""
@@ -106,7 +105,7 @@ class Answers:
     def bound_multipliers(self) -> Matrix:
         """Multipliers of the joints' bounds, `Solution.z_box`, (count, joints)."""
         start = self._point.stop - self.sizes[0]
-        return self.rows[: self.count, start : start + self._joints]
+        return self.rows[: self.count, start : start + self._q.stop - self._q.start]
 
     @property
     def row_multipliers(self) -> Matrix:
@@ -117,22 +116,27 @@ class Answers:
     @property
     def iterations(self) -> Vector:
         """Linear systems or sub-steps of each answer, (count,)."""
-        return self._figures(slice(self.count))[:, 0]  # type: ignore[no-any-return]
+        return self.rows[: self.count, self._figures.start]
 
     @property
     def residuals(self) -> Matrix:
         """Primal and dual residual and gap, (count, 3)."""
-        return self._figures(slice(self.count))[:, 2:]
+        return self.rows[: self.count, self._figures][:, 2:]
 
     @property
     def places(self) -> Matrix:
         """Placements of the tip, (count, 12)."""
-        return self.rows[: self.count, -PLACE - self._joints : -self._joints]
+        return self.rows[: self.count, self._place]
 
     @property
     def q(self) -> Matrix:
         """Joint positions that the programs were built at [rad], (count, joints)."""
-        return self.rows[: self.count, -self._joints :]
+        return self.rows[: self.count, self._q]
+
+    @property
+    def targets(self) -> Matrix:
+        """Targets of all rows, one frame after the other, (rows, 18 frames)."""
+        return self.rows[:, self._q.stop :]
 
     def repeat(self, first: int) -> None:
         """Put answer `first` in the place of all after it."""

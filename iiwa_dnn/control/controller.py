@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pinocchio import computeJointJacobians, updateFramePlacement
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, Resolution, resolve, stopped
-from iiwa_dnn.control.step import control_step
-from iiwa_dnn.errors import InvalidInputError, NoSolutionError
+from iiwa_dnn.control.step import NETWORK, control_step
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
-from iiwa_dnn.schemes.assembly import Layout, assemble
+from iiwa_dnn.schemes.assembly import assemble
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
@@ -156,9 +157,9 @@ class Controller:
         self._q[:] = q
         if not self._begun:
             self._begin(t, target)
-        answers = self.answers(1)
         data = self.targets(t - self.delay) if target is None else self._target_data(target)
-        dq = self.answer(self._q, data, answers, t)
+        answers = self.answers(data)
+        dq = self.answer(self._q, answers, t)
         resolution = answers.resolved.get(0)
         if resolution is not None:
             self.delay += self.dt * (1.0 - resolution.fraction)
@@ -203,13 +204,13 @@ class Controller:
         """The scheme laid out for the robot, made anew where an attribute has changed."""
         plan = self._plan
         if plan is None or plan.version != getattr(self.solver, "version", 0):
-            self._plan = plan = _Plan.of(self)
+            self._plan = plan = _Plan(self)
         return plan
 
-    def answers(self, capacity: int) -> Answers:
-        """Return room for the answers of so many steps."""
+    def answers(self, targets: Matrix) -> Answers:
+        """Return room for the answers to a stretch of targets, (k, 18 frames)."""
         plan = self.plan
-        return Answers(capacity, plan.sizes, self._q.size, plan.expected)
+        return Answers(plan.sizes, self._q.size, plan.expected, targets)
 
     def targets(self, t: float) -> Matrix:
         """Return the reference's targets at a time, (1, 18 frames)."""
@@ -247,69 +248,71 @@ class Controller:
         frames = (self.robot.tip,) if layout is None else layout.target_frames
         return np.concatenate([target[name].data for name in frames])[np.newaxis]
 
-    def answer(self, q: Vector, targets: Matrix, answers: Answers, t: float = 0.0) -> Vector:
-        """Take a step and add its program and answer to `answers`.
+    def answer(self, q: Vector, answers: Answers, t: float = 0.0) -> Vector:
+        """Take a step towards the next target in `answers`, and add program and answer to them.
 
         Args:
             q: Joint positions [rad], (n,).
-            targets: One row a step, of which row `answers.count` is this step's.
-            answers: Where to put program and answer.
+            answers: Targets, programs and answers.
             t: Time [s], for parts of one's own.
 
         Returns:
             Joint velocity [rad/s], (n,), a view into `answers`.
         """
         plan, index = self.plan, answers.count
-        plan.kinematics.update(q)
-        built = plan.build(answers.program(index), q, targets[index], t) if plan.asks else False
+        plan.update(q)
+        if plan.asks:
+            plan.build(answers.program(index), answers.targets[index], t)
         state = self.solver.warm_state(plan.sizes)
         if (
             state is not None
             and plan.network is not None
-            and control_step(answers.rows, index, *plan.compiled, q, *plan.arrays, targets,
-                             plan.memory, state, built, 0.0)
-        ):  # fmt: skip
+            and control_step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
+        ):
             answers.count = index + 1
             return answers.dq(index)
-        return self._solve(q, targets, answers, t)
+        return self._solve(answers)
 
-    def follow(self, q: Vector, targets: Matrix, answers: Answers, count: int) -> int:
+    def follow(self, q: Vector, answers: Answers, count: int) -> int:
         """Take up to `count` steps of which each answer moves `q` for one control period.
 
         Args:
             q: Joint positions [rad], (n,); moved in place.
-            targets: One row a step.
-            answers: Where to put programs and answers.
-            count: How many steps at most.
+            answers: Targets, programs and answers.
+            count: Most steps to take.
 
         Returns:
-            How many steps were taken; the next one is not solved by compiled code alone.
+            Steps taken; the next one, if any is left, is not solved by compiled code alone.
         """
         plan = self.plan
         state = self.solver.warm_state(plan.sizes)
-        if state is None or plan.network is None or plan.asks:
+        if state is None or plan.network is None or plan.asks or plan.inertia.size:
             return 0
-        rows, first, update = answers.rows, answers.count, plan.kinematics.update
-        compiled, arrays, memory, dt = plan.compiled, plan.arrays, plan.memory, self.dt
-        index = first
+        rows, first, dt, step = answers.rows, answers.count, self.dt, control_step
+        codes, work, jacobian, placements = plan.compiled
+        model, data, tip, others = plan.kinematics.pinocchio
+        plan.q[:] = q
+        moving, index = plan.q, first
         for index in range(first, first + count):
-            update(q)
-            if not control_step(
-                rows, index, *compiled, q, *arrays, targets, memory, state, False, dt
-            ):
+            computeJointJacobians(model, data, moving)
+            updateFramePlacement(model, data, tip)
+            for frame in others:
+                updateFramePlacement(model, data, frame)
+            if not step(rows, index, codes, work, jacobian, placements, state, False, dt):
                 break
         else:
-            index += 1
+            index = first + count
+        q[:] = moving
         answers.count = index
         return index - first
 
-    def _solve(self, q: Vector, targets: Matrix, answers: Answers, t: float) -> Vector:
+    def _solve(self, answers: Answers) -> Vector:
         """Take a first step, one that does not succeed, or one without a compiled form."""
         plan, index = self.plan, answers.count
-        checks.finite_array("q", q, (q.size,))
+        checks.finite_array("q", plan.q, (plan.q.size,))
         if not plan.asks:
-            plan.assemble(answers.program(index), q, targets[index])
-        qp = QP.from_data(answers.program(index), plan.sizes)
+            plan.assemble(answers.program(index), answers.targets[index])
+        qp = answers.qp(index)
         if self.mode == "converged":
             solution = self.solver.solve(qp)
         else:
@@ -321,124 +324,122 @@ class Controller:
                 resolution = stopped(qp, solution)  # it is no longer a number
             qp, solution = resolution.qp, resolution.solution
             answers.resolved[index] = resolution
-        answers.add(qp, solution, plan.kinematics.placements[self.robot.tip_id], q)
-        plan.memory[1:] = answers.dq(index)
+        answers.add(qp, solution, plan.kinematics.placements[self.robot.tip_id], plan.q)
+        plan.last[:] = answers.dq(index)
         return answers.dq(index)
 
     def place(self, q: Vector) -> Vector:
         """Return the tip's placement at joint positions q (n,), as `Kinematics.placements`."""
-        kinematics = self.plan.kinematics
-        kinematics.update(q)
-        return kinematics.placements[self.robot.tip_id]
+        self.plan.update(q)
+        return self.plan.kinematics.placements[self.robot.tip_id]
 
     def program_at(self, q: Vector, targets: Vector, t: float) -> QP:
         """Build the program at joint positions, without solving it."""
         plan = self.plan
-        plan.kinematics.update(q)
-        data = np.empty((sum(plan.sizes)) * (plan.sizes[0] + 1) + 2 * plan.sizes[0])
-        plan.build(data, q, targets, t)
+        n, m, p = plan.sizes
+        plan.update(q)
+        data = np.empty((n + m + p) * (n + 1) + 2 * n)
+        plan.build(data, targets, t)
         return QP.from_data(data, plan.sizes)
 
 
 _PLANNED = frozenset({"robot", "scheme", "reference", "dt", "mode", "policy", "solver"})
 
 
-class _Plan(NamedTuple):
-    """All that does not change from step to step.
+class _Plan:
+    """All that does not change from step to step, and the arrays that compiled code works in.
 
     Attributes:
-        scheme: The scheme.
-        layout: Its blocks; None where the scheme builds its programs in a way of its own.
+        layout: Blocks of the scheme; None where the scheme builds its programs in its own way.
         kinematics: The robot's, overwritten at each step.
         sizes: ``(n, m, p)`` of the programs.
-        version: Of the solver's parameters.
+        version: Version of the solver's parameters.
         expected: Status of an answer that is taken.
         network: The solver's compiled form, if it has one.
-        compiled: The first arguments of `control_step` after the row.
-        arrays: The kinematics' arrays.
-        memory: ``[1 / dt, last command]``.
+        compiled: Arguments of `control_step`: codes, work, jacobian, placements.
+        last: Last command [rad/s], (n,), a view into the work array.
+        q: Joint positions [rad], (n,), likewise.
+        inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
         asks: Whether Python code has to be asked for (a part of) the program.
-        dt: Control period [s].
+        row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
     """
 
-    scheme: Scheme
-    layout: Layout | None
-    kinematics: Kinematics
-    sizes: tuple[int, int, int]
-    version: int
-    expected: Status
-    network: Vector | None
-    compiled: tuple[Any, Any, Any]
-    arrays: tuple[Matrix, Matrix, Matrix]
-    memory: Vector
-    asks: bool
-    dt: float
-
-    @classmethod
-    def of(cls, controller: Controller) -> _Plan:
+    def __init__(self, controller: Controller) -> None:
         """Lay a controller's scheme out for its robot.
 
         Raises:
             InvalidInputError: The scheme's program has another number of variables than it states.
         """
-        scheme, robot, solver = controller.scheme, controller.robot, controller.solver
+        robot, solver, scheme = controller.robot, controller.solver, controller.scheme
         converged = controller.mode == "converged"
         own = not isinstance(scheme, Scheme) or type(scheme).build_qp is not Scheme.build_qp
-        layout = None if own else scheme.layout(robot)
+        self.layout = layout = None if own else scheme.layout(robot)
+        self._scheme, self._dt = scheme, controller.dt
+        dof, constants, inertia = robot.dof, np.zeros(0), np.zeros(0)
         if layout is None:
-            kinematics = Kinematics(robot)
-            conf = Configuration(robot, controller._q)
-            sizes = scheme.build_qp(conf, Target(conf.position, conf.rotation)).sizes
-            slack = getattr(scheme, "slack", 0)
-            if sizes[0] != robot.dof + slack:
-                problem = (
-                    f"built a program in {sizes[0]} variables for {robot.dof} joints and "
-                    f"{slack} slack variables"
-                )
-                raise InvalidInputError("scheme", problem, scheme)
-            head = [*sizes, robot.dof, 0, robot.tip_id]
-            codes, numbers = np.array(head, dtype=np.int64), np.zeros(0)
+            self.kinematics = Kinematics(robot)
+            self.sizes = _sizes_of(scheme, Configuration(robot, controller._q))
+            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0], dtype=np.int64)
         else:
-            kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
-            sizes, codes, numbers = layout.sizes, layout.codes, layout.numbers
-        network = None
-        if type(solver) is DNNSolver:  # a subclass that solves in a way of its own is asked
-            network = solver.numbers(0.0 if converged else controller.dt)
-        memory = np.zeros(1 + robot.dof)
-        memory[0] = 1.0 / controller.dt
-        return cls(
-            scheme, layout, kinematics, sizes, getattr(solver, "version", 0),
-            Status.SOLVED if converged else Status.ADVANCED, network, (codes, numbers, network),
-            (kinematics.jacobian, kinematics.placements, kinematics.inertia), memory,
-            layout is None or bool(layout.custom), controller.dt,
+            self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
+            self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
+            inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
+        self.asks = layout is None or bool(layout.custom)
+        self.row_weights = None if layout is None else layout.row_weights
+        self.version = getattr(solver, "version", 0)
+        self.expected = Status.SOLVED if converged else Status.ADVANCED
+        # A subclass that solves in a way of its own is asked, not bypassed.
+        compiled = type(solver) is DNNSolver
+        self.network = solver.numbers(0.0 if converged else controller.dt) if compiled else None
+        network = np.zeros(NETWORK) if self.network is None else self.network
+        head = [1.0 / controller.dt, *np.zeros(2 * dof)]
+        work = np.concatenate([head, network, inertia, constants])
+        self.last, self.q = work[1 : 1 + dof], work[1 + dof : 1 + 2 * dof]
+        self.inertia = work[1 + 2 * dof + NETWORK :][: inertia.size]
+        self._constants = work[1 + 2 * dof + NETWORK + inertia.size :]
+        self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
+
+    def update(self, q: Vector) -> None:
+        """Bring the kinematics to joint positions q (n,) [rad]."""
+        self.q[:] = q
+        self.kinematics.update(self.q)
+        if self.inertia.size:
+            self.inertia[:] = self.kinematics.inertia.ravel()
+
+    def assemble(self, data: Vector, targets: Vector) -> None:
+        """Write the program of the compiled parts into `data`."""
+        codes, work, jacobian, placements = self.compiled
+        assemble(
+            data, codes, self._constants, self.q, jacobian, placements, self.inertia, targets,
+            work[0],
         )  # fmt: skip
 
-    @property
-    def row_weights(self) -> Vector | None:
-        """Weight of each task row where a policy lets the tasks yield, (p,); None: all alike."""
-        return None if self.layout is None else self.layout.row_weights
-
-    def assemble(self, data: Vector, q: Vector, targets: Vector) -> None:
-        """Write the compiled parts' program at the current kinematics into `data`."""
-        codes, numbers, _ = self.compiled
-        assemble(data, codes, numbers, q, *self.arrays, targets, self.memory[0])
-
-    def build(self, data: Vector, q: Vector, targets: Vector, t: float) -> bool:
-        """Write the whole program at the current kinematics into `data`; returns True."""
-        last = self.memory[1:]
+    def build(self, data: Vector, targets: Vector, t: float) -> None:
+        """Write the whole program into `data`."""
         if self.layout is None:
-            conf = Configuration.from_checked(self.kinematics.robot, q)
-            qp = self.scheme.build_qp(conf, Target.from_data(targets))
+            conf = Configuration(self.kinematics.robot, self.q)
+            qp = self._scheme.build_qp(conf, Target.from_data(targets))
             if qp.sizes != self.sizes:
                 problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
                 raise InvalidInputError("scheme", problem)
             data[:] = qp.data
-            return True
-        self.assemble(data, q, targets)
-        frames = self.layout.target_frames
-        by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(frames)}
-        self.layout.fill(data, Step(self.kinematics, by_name, t, self.dt, q, last))
-        return True
+            return
+        self.assemble(data, targets)
+        if self.layout.custom:
+            names = self.layout.target_frames
+            by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(names)}
+            step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
+            self.layout.fill(data, step)
+
+
+def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:
+    """Sizes of the programs of a scheme that builds them in a way of its own, from one of them."""
+    sizes = scheme.build_qp(conf, Target(conf.position, conf.rotation)).sizes
+    dof, slack = conf.robot.dof, getattr(scheme, "slack", 0)
+    if sizes[0] != dof + slack:
+        problem = f"built a program in {sizes[0]} variables for {dof} joints and {slack} slacks"
+        raise InvalidInputError("scheme", problem, scheme)
+    return sizes
 
 
 def warn_if_far(start: Configuration, first: Target, stacklevel: int) -> None:
@@ -450,6 +451,3 @@ def warn_if_far(start: Configuration, first: Target, stacklevel: int) -> None:
             "reference.anchored(configuration)",
             stacklevel=stacklevel,
         )
-
-
-__all__ = ["MODES", "Command", "Controller", "Mode", "NoSolutionError", "warn_if_far"]

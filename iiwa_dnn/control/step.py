@@ -18,32 +18,32 @@ from iiwa_dnn.qp.residuals import kkt_point
 from iiwa_dnn.schemes.assembly import assemble
 from iiwa_dnn.schemes.parts import Codes
 
+NETWORK = 7
+"""Numbers of a network, `DNNSolver.numbers`."""
+
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def control_step(
-    rows: Matrix, index: int, codes: Codes, numbers: Vector, network: Vector, q: Vector,
-    jacobian: Matrix, placements: Matrix, inertia: Matrix, targets: Matrix, memory: Vector,
+    rows: Matrix, index: int, codes: Codes, work: Vector, jacobian: Matrix, placements: Matrix,
     state: Vector, built: bool, motion: float,
 ) -> bool:  # fmt: skip
     """Write program and answer of one control step into row `index` of `Answers.rows`.
 
     Args:
-        rows: `Answers.rows`.
+        rows: `Answers.rows`; the row ends with the step's targets.
         index: Number of the row.
-        codes: `Layout.codes`, as for the next arguments of `assemble`.
-        numbers: `Layout.numbers`.
-        network: `DNNSolver.numbers`: tolerance, budget and first step of the implicit integrator,
-            time to advance (0: settle), whether x is projected, explicit sub-steps (0: as many as
-            stability needs) and the share of the stable step that is used.
-        q: Joint positions [rad], (dof,).
+        codes: `Layout.codes`.
+        work: ``[1 / dt | last command (dof) | joint positions (dof) | network (7) | inertia matrix
+            (dof dof, or none) | constants]``: the command is written; the network's numbers are those of `DNNSolver.numbers`
+            (tolerance, budget and first step of the implicit integrator, time to advance (0:
+            settle), whether x is projected, explicit sub-steps (0: as many as stability needs),
+            share of the stable step that is used); the constants are `Layout.numbers`.
         jacobian: `Kinematics.jacobian`.
         placements: `Kinematics.placements`.
-        inertia: `Kinematics.inertia`.
-        targets: Row `index` holds the targets' data, one frame after the other.
-        memory: ``[1 / dt, last command (dof)]``; the command is written.
         state: The network's state, advanced.
         built: Whether the row holds the program already.
-        motion: Where above 0, the answer moves `q` for this time [s], as the ideal plant does.
+        motion: Where above 0, the answer moves the joint positions in `work` for this time [s], as
+            the ideal plant does.
 
     Returns:
         False where the network did not settle or diverged; `state` is then as it was.
@@ -53,8 +53,12 @@ def control_step(
     at_point = (n + m + p) * (n + 1) + 2 * n
     at_figures = at_point + 2 * n + m + p
     data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
+    at_network = 1 + 2 * dof
+    q, network = work[1 + dof : at_network], work[at_network : at_network + NETWORK]
     if not built:
-        assemble(data, codes, numbers, q, jacobian, placements, inertia, targets[index], memory[0])
+        inertia, targets = work[at_network + NETWORK :], figures[FIGURES + PLACE + dof :]
+        constants = inertia[dof * dof :] if codes[6] != 0 else inertia
+        assemble(data, codes, constants, q, jacobian, placements, inertia, targets, work[0])
     before = state.copy()
     if network[3] > 0.0:
         count = int(network[5])
@@ -84,7 +88,7 @@ def control_step(
         figures[FIGURES + i] = placements[codes[5], i]
     for i in range(dof):
         figures[FIGURES + PLACE + i] = q[i]
-        memory[1 + i] = point[i]
+        work[1 + i] = point[i]
         if motion > 0.0:
             # Rounded as numpy would: the record's q[k + 1] is q[k] + dt dq[k] to the last bit.
             q[i] = move(q[i], motion, point[i])

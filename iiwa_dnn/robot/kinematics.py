@@ -46,6 +46,11 @@ class Kinematics:
         self.inertia: _Array = self._data.M
         self.placements = _placements(self._data)
 
+    @property
+    def pinocchio(self) -> tuple[pin.Model, pin.Data, int, tuple[int, ...]]:
+        """Model, data, the tip's frame index and the other frames', for a loop that calls itself."""
+        return self._model, self._data, self.frame_ids[0], self.frame_ids[1:]
+
     def update(self, q: _Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
         model, data = self._model, self._data

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.checks import finite_array
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.layout import offsets
@@ -37,8 +36,8 @@ from iiwa_dnn.schemes.tasks import (
     position_rows,
 )
 
-HEADER, BLOCK = 6, 7
-"""Entries of the codes' head (n, m, p, joints, blocks, tip) and of each block after it."""
+HEADER, BLOCK = 7, 7
+"""Entries of the codes' head (n, m, p, joints, blocks, tip, inertia) and of each block after it."""
 
 
 class Block(NamedTuple):
@@ -115,7 +114,7 @@ class Layout:
         starts = [0, *accumulate(map(len, constants))]
         self.numbers: Vector = np.concatenate([np.zeros(0), *constants])
         dof, count = self.robot.dof, len(compiled)
-        head = [*self.sizes, dof, count, self.robot.tip_id]
+        head = [*self.sizes, dof, count, self.robot.tip_id, int(self.needs_inertia)]
         kinematics = Kinematics(self.robot, self.frames)
         blocks: list[int] = []
         for block, at in zip(compiled, starts, strict=False):
@@ -201,7 +200,7 @@ def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matr
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def assemble(
     data: Vector, codes: Codes, numbers: Vector, q: Vector, jacobian: Matrix, placements: Matrix,
-    inertia: Matrix, targets: Vector, rate: float,
+    inertia: Vector, targets: Vector, rate: float,
 ) -> None:  # fmt: skip
     """Write a program into `data`, without the rows of parts that have no compiled form.
 
@@ -212,12 +211,12 @@ def assemble(
         q: Joint positions [rad], (dof,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
-        inertia: `Kinematics.inertia`, (dof, dof).
+        inertia: Joint-space inertia matrix row by row, (dof dof), where a cost takes it.
         targets: One `Target.data` after the other.
         rate: 1 / dt [1/s]; inf where there is no control period.
     """
     n, m, p, dof, blocks = codes[0], codes[1], codes[2], codes[3], codes[4]
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    _, _, at_A, at_lb = offsets(n, m, p)
     at_b = at_lb - p
     for i in range(at_lb):
         data[i] = 0.0
@@ -225,55 +224,53 @@ def assemble(
         data[at_lb + i] = -np.inf
         data[at_lb + n + i] = np.inf
     for k in range(blocks):
-        at = HEADER + BLOCK * k
-        kind, start, rows = codes[at], codes[at + 1], codes[at + 2]
-        constants = numbers[codes[at + 6] :]
+        block = HEADER + BLOCK * k
+        kind, start, rows = codes[block], codes[block + 1], codes[block + 2]
+        at = codes[block + 6]
         if kind == KINETIC_ENERGY:
-            add_kinetic_energy(data, n, dof, constants, inertia)
+            add_kinetic_energy(data, n, dof, numbers, at, inertia)
         elif kind == CYCLIC_MOTION:
-            add_cyclic_motion(data, data[at_q:], n, dof, constants, q)
+            add_cyclic_motion(data, n, dof, numbers, at, q)
         elif kind == JOINT_LIMITS:
-            joint_limits(data[at_lb:], data[at_lb + n :], dof, constants, q, rate)
+            joint_limits(data, at_lb, n, dof, numbers, at, q, rate)
+        elif rows > 0:
+            task_rows(
+                kind, data, at_A + start * n, at_b + start, n, codes, codes[block + 4],
+                numbers[at], jacobian, placements[codes[block + 3]], targets, codes[block + 5],
+            )  # fmt: skip
         else:
-            support, target = codes[codes[at + 4] :], targets[codes[at + 5] :]
-            soft = rows < 0
-            if soft:
-                A, b = np.zeros(-rows * n), np.empty(-rows)
-            else:
-                A, b = data[at_A + start * n :], data[at_b + start :]
-            task_rows(kind, A, b, n, support, constants[0], jacobian, placements[codes[at + 3]],
-                      target)  # fmt: skip
-            if soft:
-                _add_soft(data, at_q, n, A, b, -rows, numbers[numbers.size - blocks + k])
+            soft = np.zeros(-rows * (n + 1))
+            task_rows(
+                kind, soft, 0, -rows * n, n, codes, codes[block + 4],
+                numbers[at], jacobian, placements[codes[block + 3]], targets, codes[block + 5],
+            )  # fmt: skip
+            _add_soft(data, n, soft, -rows, numbers[numbers.size - blocks + k])
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def task_rows(
-    kind: int, rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
-    jacobian: Matrix, place: Vector, target: Vector,
+    kind: int, out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
+    jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write the rows of a task, by the number of its compiled form; arguments as `position_rows`."""
+    """Write the rows of a task by the number of its form; other arguments as `position_rows`."""
     if kind == POSITION:
-        position_rows(rows, rhs, n, support, gain, jacobian, place, target)
+        position_rows(out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target)
     elif kind == ORIENTATION_SO3:
-        orientation_rows_so3(rows, rhs, n, support, gain, jacobian, place, target)
+        orientation_rows_so3(
+            out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target
+        )
     elif kind == ORIENTATION_BLOCK:
-        orientation_rows_block(rows, rhs, n, support, gain, jacobian, place, target)
+        orientation_rows_block(
+            out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target
+        )
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def _add_soft(
-    data: Vector, at_q: int, n: int, A: Vector, b: Vector, rows: int, weight: float
-) -> None:
-    """Add weight A^T A to P and -weight A^T b to q."""
+def _add_soft(data: Vector, n: int, soft: Vector, rows: int, weight: float) -> None:
+    """Add weight A^T A to P and -weight A^T b to q; `soft` holds A row by row, then b."""
     for k in range(rows):
         for i in range(n):
-            scaled = weight * A[k * n + i]
-            data[at_q + i] -= scaled * b[k]
+            scaled = weight * soft[k * n + i]
+            data[n * n + i] -= scaled * soft[rows * n + k]
             for j in range(n):
-                data[i * n + j] += scaled * A[k * n + j]
-
-
-def check_target(frame: str, target: Vector) -> Vector:
-    """Return a target's numbers (18,), or raise InvalidInputError naming its frame."""
-    return finite_array(f"target of {frame}", target, (TARGET_SIZE,))
+                data[i * n + j] += scaled * soft[k * n + j]

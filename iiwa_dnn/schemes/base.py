@@ -116,7 +116,7 @@ class Scheme:
         data = np.empty(layout.size)
         assemble(
             data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
-            kinematics.inertia, np.concatenate(list(targets.values())), np.inf,
+            kinematics.inertia.ravel(), np.concatenate(list(targets.values())), np.inf,
         )  # fmt: skip
         if layout.custom:
             layout.fill(data, Step(kinematics, targets, 0.0, np.inf, q, np.zeros_like(q)))

@@ -10,11 +10,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.parts import Cost
 
@@ -53,15 +52,17 @@ class KineticEnergy(Cost):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def add_kinetic_energy(P: Vector, n: int, dof: int, numbers: Vector, inertia: Matrix) -> None:
-    """Add w G(q) to P, (n n) row by row, of which the first `dof` variables are joints."""
-    weight = numbers[0]
+def add_kinetic_energy(
+    data: Vector, n: int, dof: int, numbers: Vector, at: int, inertia: Vector
+) -> None:
+    """Add w G(q) to P in a program of n variables; constants from `at`, inertia (dof dof)."""
+    weight = numbers[at]
     for i in range(dof):
-        if numbers[1] == 0.0:
-            P[i * n + i] += weight
+        if numbers[at + 1] == 0.0:
+            data[i * n + i] += weight
         else:
             for j in range(dof):
-                P[i * n + j] += weight * inertia[i, j]
+                data[i * n + j] += weight * inertia[i * dof + j]
 
 
 @dataclass(frozen=True)
@@ -111,11 +112,9 @@ class CyclicMotion(Cost):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def add_cyclic_motion(
-    P: Vector, linear: Vector, n: int, dof: int, numbers: Vector, q: NDArray[np.float64]
-) -> None:
-    """Add w I to P (n n) and w m (q - home) to the linear term (n,)."""
-    weight, gain = numbers[0], numbers[1]
+def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, q: Vector) -> None:
+    """Add w I to P and w m (q - home) to the linear term, which follows P; constants from `at`."""
+    weight, gain = numbers[at], numbers[at + 1]
     for i in range(dof):
-        P[i * n + i] += weight
-        linear[i] += weight * gain * (q[i] - numbers[2 + i])
+        data[i * n + i] += weight
+        data[n * n + i] += weight * gain * (q[i] - numbers[at + 2 + i])

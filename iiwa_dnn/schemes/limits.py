@@ -50,10 +50,14 @@ class JointLimits(Limit):
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def joint_limits(lb: Vector, ub: Vector, dof: int, numbers: Vector, q: Vector, rate: float) -> None:
-    """Intersect lb and ub with the bounds of joint positions q; `rate` is 1 / dt [1/s]."""
-    gain = min(numbers[0], rate)
+def joint_limits(
+    data: Vector, at_lb: int, n: int, dof: int, numbers: Vector, at: int, q: Vector, rate: float
+) -> None:
+    """Intersect the bounds with those of joint positions q (dof,); `rate` is 1 / dt [1/s]."""
+    gain = min(numbers[at], rate)
     for i in range(dof):
-        lower, upper, fastest = numbers[1 + i], numbers[1 + dof + i], numbers[1 + 2 * dof + i]
-        lb[i] = max(lb[i], min(max(gain * (lower - q[i]), -fastest), fastest))
-        ub[i] = min(ub[i], min(max(gain * (upper - q[i]), -fastest), fastest))
+        lower, upper = numbers[at + 1 + i], numbers[at + 1 + dof + i]
+        fastest = numbers[at + 1 + 2 * dof + i]
+        lb, ub = at_lb + i, at_lb + n + i
+        data[lb] = max(data[lb], min(max(gain * (lower - q[i]), -fastest), fastest))
+        data[ub] = min(data[ub], min(max(gain * (upper - q[i]), -fastest), fastest))

@@ -61,24 +61,36 @@ class PositionTask(Task):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def position_rows(
-    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
-    jacobian: Matrix, place: Vector, target: Vector,
+    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
+    jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write three rows (3 n, one after the other) and the right-hand side (3,).
+    """Write three rows of n entries and their right-hand side into a program.
 
-    `jacobian` (dof, 6) holds the joints' twists at the world's origin, `place` the frame's
-    placement (`Kinematics`): a joint with angular velocity w and origin velocity v moves the frame
-    with v + w x p.
+    A joint with angular velocity w and velocity v of the world's origin moves a frame at p with
+    v + w x p.
+
+    Args:
+        out: Where to write.
+        rows: Index of the first row's first entry in `out`.
+        rhs: Index of the right-hand side's first entry in `out`.
+        n: Number of variables.
+        codes: `Layout.codes`.
+        support: Index in `codes` of the flags of the joints that move the frame.
+        gain: Feedback gain [1/s].
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        place: The frame's row of `Kinematics.placements`, (12,).
+        targets: One `Target.data` after the other.
+        target: Index in `targets` of the frame's target.
     """
     x, y, z = place[9], place[10], place[11]
     for i in range(3):
-        rhs[i] = target[12 + i] + gain * (target[i] - place[9 + i])
+        out[rhs + i] = targets[target + 12 + i] + gain * (targets[target + i] - place[9 + i])
     for j in range(jacobian.shape[0]):
-        if support[j] != 0:
+        if codes[support + j] != 0:
             a, b, c = jacobian[j, 3], jacobian[j, 4], jacobian[j, 5]
-            rows[j] = jacobian[j, 0] + (b * z - c * y)
-            rows[n + j] = jacobian[j, 1] + (c * x - a * z)
-            rows[2 * n + j] = jacobian[j, 2] + (a * y - b * x)
+            out[rows + j] = jacobian[j, 0] + (b * z - c * y)
+            out[rows + n + j] = jacobian[j, 1] + (c * x - a * z)
+            out[rows + 2 * n + j] = jacobian[j, 2] + (a * y - b * x)
 
 
 @dataclass(frozen=True)
@@ -139,50 +151,53 @@ class OrientationTask(Task):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def orientation_rows_so3(
-    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
-    jacobian: Matrix, place: Vector, target: Vector,
+    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
+    jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write three rows (3 n) and the right-hand side (3,); arguments as `position_rows`."""
-    relative = np.empty((3, 3))
+    """Write three rows and their right-hand side; arguments as `position_rows`."""
+    relative, error = np.empty((3, 3)), np.empty(3)
     for i in range(3):
         for j in range(3):
             value = 0.0
             for k in range(3):
-                value += target[3 + 3 * i + k] * place[3 * k + j]
+                value += targets[target + 3 + 3 * i + k] * place[3 * k + j]
             relative[i, j] = value
-    rotation_log(relative, rhs)
+    rotation_log(relative, error)
     for i in range(3):
-        rhs[i] = target[15 + i] + gain * rhs[i]
+        out[rhs + i] = targets[target + 15 + i] + gain * error[i]
         for j in range(jacobian.shape[0]):
-            if support[j] != 0:
-                rows[i * n + j] = jacobian[j, 3 + i]
+            if codes[support + j] != 0:
+                out[rows + i * n + j] = jacobian[j, 3 + i]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def orientation_rows_block(
-    rows: Vector, rhs: Vector, n: int, support: Codes, gain: float,
-    jacobian: Matrix, place: Vector, target: Vector,
+    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
+    jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write four rows (4 n) and the right-hand side (4,); arguments as `position_rows`."""
+    """Write four rows and their right-hand side; arguments as `position_rows`."""
     here, there = np.empty((4, 3)), np.empty((4, 3))
     rotation, desired = np.empty((3, 3)), np.empty((3, 3))
+    wanted = np.empty(4)
     for i in range(3):
         for j in range(3):
             rotation[i, j] = place[3 * j + i]
-            desired[i, j] = target[3 + 3 * i + j]
+            desired[i, j] = targets[target + 3 + 3 * i + j]
     block_map(rotation, here)
     block_map(desired, there)
     for i in range(4):
-        rhs[i] = gain * (desired[i // 2, i % 2] - rotation[i // 2, i % 2])
+        wanted[i] = gain * (desired[i // 2, i % 2] - rotation[i // 2, i % 2])
         for k in range(3):
-            rhs[i] += there[i, k] * target[15 + k]
+            wanted[i] += there[i, k] * targets[target + 15 + k]
         for j in range(jacobian.shape[0]):
-            if support[j] != 0:
+            if codes[support + j] != 0:
                 value = 0.0
                 for k in range(3):
                     value += here[i, k] * jacobian[j, 3 + k]
-                rows[i * n + j] = value
-    project_on_range(here, rhs)
+                out[rows + i * n + j] = value
+    project_on_range(here, wanted)
+    for i in range(4):
+        out[rhs + i] = wanted[i]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

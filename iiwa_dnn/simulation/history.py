@@ -8,7 +8,7 @@ import numpy as np
 
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import Scheme
 
@@ -46,16 +46,14 @@ class History:
         self.dq[k] = 0.0
         self.q[k + 1] = self.q[k]
 
-    def add_block(
-        self, first: int, steps: int, stages: int, answers: Answers, targets: Matrix
-    ) -> None:
+    def add_block(self, first: int, steps: int, stages: int, answers: Answers) -> None:
         """Take in the answers of a stretch of steps, each of so many stages."""
         rows = slice(first, first + steps)
         places = answers.places[::stages]
         # A placement holds the rotation column by column.
         self._rotation[rows] = places[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)
         self._position[rows] = places[:, 9:]
-        at_steps = targets[: steps * stages : stages]
+        at_steps = answers.targets[: steps * stages : stages]
         self._position_desired[rows] = at_steps[:, :3]
         self._rotation_desired[rows] = at_steps[:, 3:12].reshape(-1, 3, 3)
         self._kkt_residual[rows] = answers.residuals.reshape(steps, -1).max(axis=1)

@@ -186,8 +186,7 @@ class Simulation:
                 # One target a stage, in the order in which the method of motion asks.
                 times = np.add.outer(done + np.arange(count), self._motion.nodes) * self._dt
                 times -= self._controller.delay
-                self._targets = self._controller.sample(times.ravel())
-                self._answers = self._controller.answers(times.size)
+                self._answers = self._controller.answers(self._controller.sample(times.ravel()))
                 taken, slowed = 0, False
                 while taken < count and status == COMPLETED and not slowed:
                     taken += self._take_plain_steps(done, taken, count)
@@ -199,7 +198,7 @@ class Simulation:
                 # A step that slows the clock down ends its block; so do the next ones, most likely.
                 room = 1 if slowed else min(2 * room, BLOCK)
                 answers = self._answers
-                history.add_block(done, taken, stages, answers, self._targets)
+                history.add_block(done, taken, stages, answers)
                 self._incidents.multipliers(slice(done, done + taken), answers, stages)
                 pool.submit(answers.programs, answers.sizes, answers.all_x)
                 done += taken
@@ -231,7 +230,7 @@ class Simulation:
         plain = not (self._altered or self._misled or self._integral or self._incidents.pending)
         if not plain or not isinstance(plant, IdealPlant):
             return 0
-        steps = self._controller.follow(plant.state, self._targets, self._answers, count - taken)
+        steps = self._controller.follow(plant.state, self._answers, count - taken)
         first = done + taken
         rows = slice(taken, taken + steps)
         self._history.q[first : first + steps] = self._answers.q[rows]
@@ -278,12 +277,12 @@ class Simulation:
         """The controller's answer at the next stage of a step."""
         answers, index = self._answers, self._answers.count
         if self._integral is not None:
-            target = Target.from_data(self._targets[index])
+            target = Target.from_data(answers.targets[index])
             # Not while the arm cannot follow: the integral would wind up.
             if index % self._motion.stages == 0 and not self._incidents.pending:
                 self._integral.observe(Configuration(self._robot, q), target, self._dt)
-            self._targets[index] = self._integral.apply(target).data
-        return self._controller.answer(q, self._targets, answers, t)
+            answers.targets[index] = self._integral.apply(target).data
+        return self._controller.answer(q, answers, t)
 
     def _resolved(self, k: int, first: int, velocity: Vector) -> Vector:
         """Note what a policy decided in step k, if it did; returns the velocity of the step."""
@@ -320,7 +319,7 @@ class Simulation:
             command = self._average(command)
         qp = self._answers.qp(first)
         if self._misled:
-            targets = self._targets[first]
+            targets = self._answers.targets[first]
             qp = self._controller.program_at(self._history.q[k], targets, k * self._dt)
         command, clipped = clip_command(qp, command, self._clipper)
         self._incidents.clip(k, clipped)
