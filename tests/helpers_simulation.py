@@ -17,7 +17,7 @@ from iiwa_dnn.references import Heart, Reference, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, Scheme
+from iiwa_dnn.schemes import DoubleIndicator, JointLimits, OrientationTask, Scheme, tasks
 from iiwa_dnn.simulation import simulate
 
 UNCHECKED = CrossCheck(())
@@ -81,3 +81,30 @@ def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
     solution = qpsolvers.solve_problem(problem, solver=solver, **options)
     assert solution.is_optimal(1e-8)
     return solution.x
+
+
+def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:
+    """Lower and upper velocity bounds of the joint limits at a configuration."""
+    target = Target(conf.position, conf.rotation)
+    qp = Scheme(limits=[JointLimits(gain)]).build_qp(conf, target)
+    return qp.lb, qp.ub
+
+
+def orientation_rows(
+    form: str, conf: Configuration, target: Target, gain: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rows and right-hand side of the orientation task alone."""
+    qp = Scheme(tasks=[OrientationTask(gain, form)]).build_qp(conf, target)
+    return qp.A, qp.b
+
+
+def block_vector(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The paper's r: the upper left 2x2 block of a rotation, row by row, (4,)."""
+    return rotation[:2, :2].reshape(4)
+
+
+def block_map(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """W(R), (4, 3): the rate of `block_vector` is W(R) times the angular velocity."""
+    result = np.empty((4, 3))
+    tasks.block_map(np.ascontiguousarray(rotation), result)
+    return result

@@ -10,7 +10,16 @@ import qpsolvers
 from numpy.typing import NDArray
 
 from helpers_kinematics import PAPER_Q0, dh_pose, finite_difference, rotation_angle
-from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, solve_by
+from helpers_simulation import (
+    UNCHECKED,
+    block_map,
+    block_vector,
+    heart,
+    paper_robot,
+    paper_start,
+    solve_by,
+    velocity_bounds,
+)
 from iiwa_dnn import (
     QP,
     Configuration,
@@ -21,8 +30,6 @@ from iiwa_dnn import (
     simulate,
     solve_problem,
 )
-from iiwa_dnn.schemes.bounds import velocity_bounds
-from iiwa_dnn.schemes.orientation import block_map, block_vector
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.statistics import kendall_tau, trend
 

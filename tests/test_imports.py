@@ -19,7 +19,6 @@ ORDER = (
     "references",
     "qp",
     "networks",
-    "kernels",
     "schemes",
     "control",
     "results",

@@ -13,8 +13,8 @@ from tyro.conf import FlagCreatePairsOff, Positional, arg
 
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.schemes.double_indicator import Kinetic
-from iiwa_dnn.schemes.orientation import Orientation
+from iiwa_dnn.schemes.costs import Kinetic
+from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
 

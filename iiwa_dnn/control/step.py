@@ -95,7 +95,8 @@ def control_step(
     return True
 
 
-@njit(cache=True, error_model="numpy")
+# fastmath=False: left out, it would be inherited from the caller.
+@njit(cache=True, error_model="numpy", fastmath=False)
 def move(q: float, dt: float, dq: float) -> float:
     """Return q + dt dq, the product rounded before the sum."""
     return q + dt * dq

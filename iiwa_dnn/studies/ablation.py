@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
-from iiwa_dnn.schemes.orientation import Orientation
+from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NOISE_ENTRIES
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import HeartRun

@@ -22,8 +22,8 @@ from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
-from iiwa_dnn.schemes.double_indicator import Kinetic
-from iiwa_dnn.schemes.orientation import Orientation
+from iiwa_dnn.schemes.costs import Kinetic
+from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry, Simulation
 from iiwa_dnn.simulation.motion import Motion
 from iiwa_dnn.studies import paper

@@ -11,7 +11,7 @@ from iiwa_dnn.references import Line
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.schemes.orientation import Orientation
+from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies.runs import paper_robot
 

@@ -12,6 +12,7 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, near_target, paper_robot, paper_start
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.policies import Action
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
@@ -39,42 +40,60 @@ class Asked(DNNSolver):
 def test_a_compiled_step_is_its_parts_one_after_the_other(
     scheme: Scheme, mode: Any, substeps: int | None
 ) -> None:
-    follower = ExplicitEuler(substeps)
-    compiled = Controller(scheme, DNNSolver(follower=follower), mode)
-    asked = Controller(scheme, Asked(follower=follower), mode)
+    follower, robot = ExplicitEuler(substeps), paper_robot()
+    compiled, asked = (
+        Controller(robot, scheme, mode=mode, dt=1e-4, solver=solver)
+        for solver in (DNNSolver(follower=follower), Asked(follower=follower))
+    )
     rng = np.random.default_rng(7)
-    answers, others = compiled.answers(20), asked.answers(20)
-    for seed in range(20):
-        q = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal(7)
-        conf, target = Configuration(paper_robot(), q), near_target(q, seed, size=2e-3)
-        x, y = compiled.answer(conf, target.data, answers), asked.answer(conf, target.data, others)
+    postures = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal((20, 7))
+    targets = [near_target(q, seed, size=2e-3) for seed, q in enumerate(postures)]
+    data = np.stack([target.data for target in targets])
+    answers, others = compiled.answers(data), asked.answers(data)
+    for k, q in enumerate(postures):
+        x, y = compiled.answer(q, answers), asked.answer(q, others)
         # The compiler may round a product and its sum in one place once, in another twice.
         np.testing.assert_allclose(x, y, rtol=0, atol=1e-11)
-        np.testing.assert_array_equal(answers.qp(seed).data, scheme.build_qp(conf, target).data)
-        one, other = answers.solution(seed), others.solution(seed)
+        conf = Configuration(robot, q)
+        np.testing.assert_array_equal(answers.qp(k).data, scheme.build_qp(conf, targets[k]).data)
+        one, other = answers.solution(k), others.solution(k)
         assert one.status is other.status
         assert one.status is (Status.SOLVED if mode == "converged" else Status.ADVANCED)
         np.testing.assert_allclose(one.point, other.point, rtol=0, atol=1e-9)
         np.testing.assert_allclose(one[-3:], other[-3:], rtol=1e-9, atol=1e-11)
         assert one.network_time == pytest.approx(other.network_time)
-        np.testing.assert_array_equal(answers.poses[seed], conf.pose)
-        np.testing.assert_array_equal(answers.all_x[seed], one.x)
-        assert answers.residuals[seed].tolist() == list(one.residuals)
-        assert answers.iterations[seed] == one.iterations
+        np.testing.assert_array_equal(answers.places[k][:9].reshape(3, 3).T, conf.rotation)
+        np.testing.assert_array_equal(answers.places[k][9:], conf.position)
+        np.testing.assert_array_equal(answers.q[k], q)
+        np.testing.assert_array_equal(answers.all_x[k], one.x)
+        assert answers.residuals[k].tolist() == list(one.residuals)
+        assert answers.iterations[k] == one.iterations
     np.testing.assert_array_equal(answers.programs, others.programs)
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
 
 
+def test_steps_that_move_the_joints_are_the_same_steps() -> None:
+    dt, times = 1e-3, 1e-3 * np.arange(50)
+    moved, stepped = (Controller(paper_robot(), SCHEMES["so3"], heart(), dt=dt) for _ in range(2))
+    answers, others = (c.answers(c.sample(times)) for c in (moved, stepped))
+    q, other = np.array(PAPER_Q0), np.array(PAPER_Q0)
+    q = q + dt * moved.answer(q, answers)
+    assert moved.follow(q, answers, 49) == 49
+    for _ in times:
+        other = other + dt * stepped.answer(other, others)
+    np.testing.assert_array_equal(q, other)
+    np.testing.assert_array_equal(answers.rows, others.rows)
+
+
 def test_only_the_first_step_is_not_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    controller = Controller(SCHEMES["so3"], DNNSolver())
+    controller = Controller(paper_robot(), SCHEMES["so3"], heart(), dt=1e-4)
     solved = []
     ask = DNNSolver.solve
     monkeypatch.setattr(
         DNNSolver, "solve", lambda self, qp: solved.append(qp) or ask(self, qp)
     )  # fmt: skip
-    answers = controller.answers(5)
     for k in range(5):
-        controller.answer(paper_start(), heart().at(1e-4 * k).data, answers)
+        assert controller.step(PAPER_Q0, 1e-4 * k).ok
     assert len(solved) == 1
 
 
@@ -98,54 +117,72 @@ class Fixed(DNNSolver):
 
 
 def test_what_a_subclass_does_in_its_own_way_is_done() -> None:
-    conf, target = paper_start(), heart().at(0.5)
-    controller = Controller(Halved(home=PAPER_Q0), DNNSolver())
-    answers = controller.answers(3)
-    whole = SCHEMES["so3"].build_qp(conf, target)
-    for k in range(3):
-        x = controller.answer(conf, target.data, answers)
-        np.testing.assert_allclose(whole.A @ x, 0.5 * whole.b, rtol=0, atol=1e-9)
-        np.testing.assert_array_equal(answers.qp(k).b, 0.5 * whole.b)
-    controller = Controller(SCHEMES["so3"], Fixed())
-    answers = controller.answers(3)
+    target = heart().at(0.5)
+    controller = Controller(paper_robot(), Halved(home=PAPER_Q0))
+    whole = SCHEMES["so3"].build_qp(paper_start(), target)
     for _ in range(3):
-        np.testing.assert_array_equal(
-            controller.answer(conf, target.data, answers), np.full(7, 0.25)
-        )
+        command = controller.step(PAPER_Q0, 0.0, target)
+        np.testing.assert_allclose(whole.A @ command.dq, 0.5 * whole.b, rtol=0, atol=1e-9)
+        np.testing.assert_array_equal(command.qp.b, 0.5 * whole.b)
+    controller = Controller(paper_robot(), SCHEMES["so3"], solver=Fixed())
+    for _ in range(3):
+        np.testing.assert_array_equal(controller.step(PAPER_Q0, 0.0, target).dq, np.full(7, 0.25))
 
 
 def test_a_changed_scheme_and_another_robot_count_from_the_next_step_on() -> None:
-    conf, target = paper_start(), heart().at(0.5)
-    controller = Controller(SCHEMES["so3"], DNNSolver())
-    controller.step(conf, target)
-    controller.step(conf, target)
+    target = heart().at(0.5)
+    controller = Controller(paper_robot(), SCHEMES["so3"])
+    controller.step(PAPER_Q0, 0.0, target)
+    controller.step(PAPER_Q0, 0.0, target)
     controller.scheme = DoubleIndicator(home=PAPER_Q0, position_gain=1.0)
-    expected = controller.scheme.build_qp(conf, target)
-    np.testing.assert_array_equal(controller.step(conf, target).qp.data, expected.data)
-    slow = Configuration(paper_robot().with_limits(velocity=0.5), PAPER_Q0)
-    assert (controller.step(slow, target).qp.ub <= 0.5).all()
+    expected = controller.scheme.build_qp(paper_start(), target)
+    np.testing.assert_array_equal(controller.step(PAPER_Q0, 0.0, target).qp.data, expected.data)
+    controller.robot = paper_robot().with_limits(velocity=0.5)
+    assert (controller.step(PAPER_Q0, 0.0, target).qp.ub <= 0.5).all()
+
+
+@pytest.mark.parametrize("name", ["tol", "mode", "dt", "solver"])
+def test_a_changed_parameter_counts_from_the_next_step_on(name: str) -> None:
+    # What was compiled for the first steps held the old value, and said SOLVED at 6.6e-6.
+    controller = Controller(
+        paper_robot(), SCHEMES["so3"], heart(), dt=1e-4, solver=DNNSolver(tol=1e-4)
+    )
+    for k in range(3):
+        controller.step(PAPER_Q0, 0.1 * k)
+    if name == "tol":
+        controller.solver.tol = 1e-12
+    elif name == "solver":
+        controller.solver = DNNSolver(tol=1e-12)
+    elif name == "mode":
+        controller.mode = "continuous"
+    else:
+        controller.mode, controller.dt = "continuous", 3e-4
+    solution = controller.step(PAPER_Q0, 1.0).solution
+    if name in ("tol", "solver"):
+        assert solution.found
+        assert solution.residuals.largest <= 1e-12
+    else:
+        assert solution.status is Status.ADVANCED
+        assert solution.network_time == pytest.approx(controller.dt / 9e-5)
 
 
 def test_a_step_that_is_not_solved_is_told_apart() -> None:
-    robot = paper_robot().with_limits(velocity=1e-6)
-    controller = Controller(SCHEMES["so3"], DNNSolver(), "converged")
-    answers = controller.answers(3)
-    target = heart().at(0.5)
-    controller.answer(paper_start(), target.data, answers)
-    before = controller.solver.state
-    controller.answer(Configuration(robot, PAPER_Q0), target.data, answers)
-    controller.answer(paper_start(), target.data, answers)
-    assert list(answers.unsolved) == [1]
-    assert not answers.solution(1).found
+    controller = Controller(paper_robot(), SCHEMES["so3"], dt=1e-4)
+    near, far = heart().at(0.0), near_target(PAPER_Q0, 3, size=3.0)
+    answers = controller.answers(np.stack([near.data, far.data, near.data]))
+    for _ in range(3):
+        controller.answer(np.array(PAPER_Q0), answers)
+    assert list(answers.resolved) == [1]
+    assert answers.resolved[1].action is Action.SLOW
     assert answers.solution(0).found
     assert answers.solution(2).found
-    np.testing.assert_allclose(controller.solver.state, before, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(answers.dq(2), answers.dq(0), rtol=0, atol=1e-9)
 
 
 def test_programs_of_two_shapes_are_refused_by_name() -> None:
-    answers = Answers(2, Status.SOLVED)
-    solver = DNNSolver()
+    answers = Answers((2, 0, 0), 2, Status.SOLVED, np.zeros((2, 18)))
+    solver, place = DNNSolver(), np.zeros(12)
     first, second = QP(np.eye(2), np.ones(2)), QP(np.eye(2), np.ones(2), A=[[1.0, 1.0]], b=[0.0])
-    answers.add(first, solver.solve(first), np.eye(4))
+    answers.add(first, solver.solve(first), place, np.zeros(2))
     with pytest.raises(InvalidInputError, match="scheme"):
-        answers.add(second, solver.solve(second), np.eye(4))
+        answers.add(second, solver.solve(second), place, np.zeros(2))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,19 +14,23 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Status
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 
 SCHEME = DoubleIndicator(home=PAPER_Q0)
 
 
+def controller_of(scheme: Scheme, robot: Robot | None = None, **options: Any) -> Controller:
+    return Controller(robot or paper_robot(), scheme, **options)
+
+
 def test_a_converged_step_is_the_programs_solution() -> None:
-    controller = Controller(SCHEME, DNNSolver())
+    controller = controller_of(SCHEME)
     rng = np.random.default_rng(61)
     for seed in range(5):
         q = np.array(PAPER_Q0) + 0.02 * rng.standard_normal(7)
         conf, target = Configuration(paper_robot(), q), near_target(q, seed, size=2e-3)
-        command = controller.step(conf, target)
+        command = controller.step(conf.q, 0.0, target)
         for one, other in zip(
             command.qp.arrays(), SCHEME.build_qp(conf, target).arrays(), strict=True
         ):
@@ -37,9 +43,9 @@ def test_a_converged_step_is_the_programs_solution() -> None:
 
 def test_a_continuous_step_advances_by_one_period_and_lags() -> None:
     conf, target = paper_start(), heart().at(0.5)
-    settled = Controller(SCHEME, DNNSolver()).step(conf, target).dq
-    controller = Controller(SCHEME, DNNSolver(), mode="continuous", dt=1e-4)
-    command = controller.step(conf, target)
+    settled = controller_of(SCHEME).step(conf.q, 0.0, target).dq
+    controller = controller_of(SCHEME, mode="continuous", dt=1e-4)
+    command = controller.step(conf.q, 0.0, target)
     assert command.solution.status is Status.ADVANCED
     assert not command.solution.found
     assert command.solution.network_time == pytest.approx(1e-4 / 9e-5)
@@ -47,7 +53,7 @@ def test_a_continuous_step_advances_by_one_period_and_lags() -> None:
     # The target held still, the network settles in its own time: sigma = 0.241 here, so like
     # exp(-sigma^2 t / rho), 16 control steps to a factor of e.
     for _ in range(300):
-        gap.append(float(np.abs(controller.step(conf, target).dq - settled).max()))
+        gap.append(float(np.abs(controller.step(conf.q, 0.0, target).dq - settled).max()))
     assert gap[0] > 1e-2
     assert gap[20] > 1e-3
     assert gap[300] < 1e-6
@@ -56,11 +62,11 @@ def test_a_continuous_step_advances_by_one_period_and_lags() -> None:
 def test_the_continuous_networks_clock_is_the_robots() -> None:
     # Twice the period with twice the time constant is the same network time.
     conf, target = paper_start(), heart().at(0.5)
-    fast = Controller(SCHEME, DNNSolver(), mode="continuous", dt=1e-4)
+    fast = controller_of(SCHEME, mode="continuous", dt=1e-4)
     slow_network = ProjectionNetwork(rho=2 * 9e-5)
-    slow = Controller(SCHEME, DNNSolver(slow_network), mode="continuous", dt=2e-4)
+    slow = controller_of(SCHEME, solver=DNNSolver(slow_network), mode="continuous", dt=2e-4)
     for _ in range(5):
-        one, other = fast.step(conf, target), slow.step(conf, target)
+        one, other = fast.step(conf.q, 0.0, target), slow.step(conf.q, 0.0, target)
         np.testing.assert_allclose(one.dq, other.dq, rtol=0, atol=1e-14)
 
 
@@ -70,7 +76,7 @@ def test_commands_stay_inside_the_velocity_bounds(mode: str, orientation: str) -
     # Tight limits, a far target: many bounds bind, and the program may even be infeasible.
     robot = paper_robot().with_limits(velocity=0.05)
     scheme = DoubleIndicator(orientation=orientation, home=PAPER_Q0)
-    controller = Controller(scheme, DNNSolver(), mode)
+    controller = controller_of(scheme, robot, mode=mode, dt=1e-4)
     rng = np.random.default_rng(62)
     bound = 0
     for seed in range(20):
@@ -78,7 +84,7 @@ def test_commands_stay_inside_the_velocity_bounds(mode: str, orientation: str) -
         q[0] = -2.5 + 1e-4 * seed
         conf, target = Configuration(robot, q), near_target(q, seed, size=0.01)
         for _ in range(1 if mode == "converged" else 15):
-            command = controller.step(conf, target)
+            command = controller.step(conf.q, 0.0, target)
             assert (command.dq >= command.qp.lb).all()
             assert (command.dq <= command.qp.ub).all()
         near = np.minimum(command.dq - command.qp.lb, command.qp.ub - command.dq) < 1e-3
@@ -89,27 +95,27 @@ def test_commands_stay_inside_the_velocity_bounds(mode: str, orientation: str) -
 def test_the_networks_state_is_carried_from_step_to_step() -> None:
     conf, target = paper_start(), heart().at(0.5)
     solver = DNNSolver()
-    controller = Controller(SCHEME, solver)
-    cold = controller.step(conf, target).solution.iterations
-    warm = controller.step(conf, heart().at(0.5001)).solution.iterations
+    controller = controller_of(SCHEME, solver=solver)
+    cold = controller.step(conf.q, 0.0, target).solution.iterations
+    warm = controller.step(conf.q, 0.0, heart().at(0.5001)).solution.iterations
     assert warm < cold
     solver.reset()
-    assert controller.step(conf, target).solution.iterations == cold
+    assert controller.step(conf.q, 0.0, target).solution.iterations == cold
 
 
 def test_any_scheme_will_do() -> None:
     conf, target = paper_start(), heart().at(0.5)
-    command = Controller(PseudoInverse(), DNNSolver()).step(conf, target)
+    command = controller_of(PseudoInverse()).step(conf.q, 0.0, target)
     expected = PseudoInverse().velocity(conf, target)
     np.testing.assert_allclose(command.dq, expected, rtol=0, atol=1e-8)
 
 
 def test_an_unknown_mode_is_named() -> None:
     with pytest.raises(InvalidInputError, match=r"^mode\b.*converged, continuous.*'discrete'"):
-        Controller(SCHEME, DNNSolver(), mode="discrete")
+        controller_of(SCHEME, mode="discrete")
 
 
 @pytest.mark.parametrize("dt", [0.0, -1e-4, np.nan, np.inf])
 def test_a_bad_period_is_named(dt: float) -> None:
     with pytest.raises(InvalidInputError, match=r"^dt\b"):
-        Controller(SCHEME, DNNSolver(), mode="continuous", dt=dt)
+        controller_of(SCHEME, mode="continuous", dt=dt)

@@ -46,7 +46,7 @@ def inside(dq: np.ndarray, qp: QP) -> bool:
 
 
 def undamped(qp: QP) -> policies.Reach:
-    return least_violation(qp, damping=0.0)
+    return least_violation(qp, WEIGHTS.diagonal(), damping=0.0)
 
 
 def distance(rows: np.ndarray, rhs: np.ndarray, qp: QP) -> float:
@@ -94,7 +94,7 @@ def test_the_least_violation_is_a_quadratic_programs_solution(outside: float) ->
         qp = program(seed, outside=outside)
         rows, rhs = WEIGHTS @ qp.A, WEIGHTS @ qp.b
         for damping in (0.0, 0.01, None):
-            dq = least_violation(qp, damping).dq
+            dq = least_violation(qp, WEIGHTS.diagonal(), damping).dq
             assert inside(dq, qp)
             if damping is None:  # a hundredth of what is left without it
                 damping = 0.01 * np.sqrt(2.0 * distance(rows, rhs, qp))
@@ -132,7 +132,8 @@ def test_policies_that_go_on_keep_the_rows_and_the_bounds(
     for seed in range(10):
         qp, solver = program(seed, orientation), DNNSolver()
         data = qp.data.copy()
-        answer = resolve(qp, failed(qp), policy, solver)
+        weights = WEIGHTS.diagonal()[: qp.b.size] if orientation != "block" else None
+        answer = resolve(qp, failed(qp), policy, solver, weights)
         np.testing.assert_array_equal(qp.data, data)
         assert answer.action is (Action.SLOW if policy == "slow" else Action.RELAX)
         assert inside(answer.solution.x, qp)
@@ -150,7 +151,7 @@ def test_policies_that_go_on_keep_the_rows_and_the_bounds(
             )
         else:
             assert answer.fraction == 1.0
-            np.testing.assert_array_equal(answer.solution.x, least_violation(qp).dq)
+            np.testing.assert_array_equal(answer.solution.x, least_violation(qp, weights).dq)
 
 
 def test_a_joint_outside_its_limits_comes_back_whatever_the_task_says() -> None:

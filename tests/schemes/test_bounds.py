@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
-from helpers_simulation import near_target, paper_robot, paper_start
+from helpers_simulation import near_target, paper_robot, paper_start, velocity_bounds
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.schemes.bounds import velocity_bounds
 
 joints = arrays(np.float64, 7, elements=st.floats(-1e3, 1e3))
 limits = arrays(np.float64, 7, elements=st.one_of(st.floats(0.01, 1e3), st.just(np.inf)))

@@ -92,7 +92,7 @@ def test_rows_are_the_position_task_then_the_orientation(orientation: str, rows:
     qp = DoubleIndicator(position_gain=4.0, orientation=orientation).build_qp(conf, target)
     assert qp.A.shape == (rows, 7)
     assert qp.G.shape == (0, 7)
-    np.testing.assert_array_equal(qp.A[:3], conf.jacobian[:3])
+    np.testing.assert_allclose(qp.A[:3], conf.jacobian[:3], rtol=0, atol=1e-15)
     expected = target.linear_velocity + 4.0 * (target.position - conf.position)
     np.testing.assert_allclose(qp.b[:3], expected, rtol=1e-14)
     assert (qp.lb < qp.ub).all()
