@@ -20,8 +20,7 @@ from iiwa_dnn.qp.program import QP, Residuals, Solution, Status
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 from iiwa_dnn.simulation import Simulation, simulate
 

@@ -224,13 +224,3 @@ def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
 def test_wrong_arguments(robot, options, name):
     with pytest.raises(InvalidInputError, match=name):
         heart_in_physics(robot, **options)
-
-
-def test_a_locked_robot_is_refused():
-    robot = load_robot("iiwa7", locked=("iiwa7_joint_7",))
-    from iiwa_dnn.simulation.physics import PhysicsSimulation
-
-    q0 = START[:6]
-    heart = Heart().anchored(Configuration(robot, q0))
-    with pytest.raises(InvalidInputError, match="locked"):
-        PhysicsSimulation(robot, DoubleIndicator(), heart, q0)
