@@ -1,1 +1,1 @@
-"""Plants: what moves under the controller's velocity commands."""
+"""Plants: robots that move under the controller's velocity commands."""
