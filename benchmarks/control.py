@@ -17,8 +17,7 @@ from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart, Target
 from iiwa_dnn.references.targets import Targets
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import MOTIONS, Simulation
 from iiwa_dnn.studies import paper

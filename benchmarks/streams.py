@@ -10,8 +10,7 @@ from benchmarks.programs import strictly_convex
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP, Matrix, Vector
 from iiwa_dnn.references import Heart
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import load_robot
+from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies import paper

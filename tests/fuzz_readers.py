@@ -28,7 +28,7 @@ from iiwa_dnn.references import Waypoints
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import summary
-from iiwa_dnn.robot.robot import load_robot
+from iiwa_dnn.robot import load_robot
 
 ROOT = Path(__file__).parents[1]
 

@@ -17,9 +17,8 @@ from iiwa_dnn.results.metrics import failures
 from iiwa_dnn.results.pictures import frame_times, import_encoder, save_moments, save_video
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run
-from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.offscreen import opengl_library
-from iiwa_dnn.robot.robot import Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.physics import PhysicsSimulation

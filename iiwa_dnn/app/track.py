@@ -23,9 +23,8 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
 from iiwa_dnn.results.metrics import failures
 from iiwa_dnn.results.report import save_run, settings_lines, summary
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.arms import ARMS
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import Simulation
 from iiwa_dnn.studies import paper

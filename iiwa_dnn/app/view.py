@@ -12,7 +12,7 @@ from iiwa_dnn.app.track import limited, start_posture
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.robot import Robot, load_robot
 
 
 def view(

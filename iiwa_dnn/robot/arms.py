@@ -1,7 +1,7 @@
-"""Arms of other makers that can be loaded by name: which file, which tip, what is held still.
+"""Arms that can be loaded by name: URDF file, tip frame, locked joints and start posture.
 
-The files are those of the package ``example-robot-data`` (extra ``robots``), which brings the URDFs
-as their makers publish them and no code.
+The files of `ARMS` are those of the package ``example-robot-data`` (extra ``robots``), which brings
+the URDFs as their makers publish them and no code.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _FOLDER = "cmeel.prefix/share/example-robot-data/robots"
 
 @dataclass(frozen=True)
 class Arm:
-    """What the URDF of an arm does not say.
+    """Facts on an arm that its URDF does not hold.
 
     Attributes:
         file: The URDF's path in the package's folder of robots.
@@ -62,15 +62,15 @@ ARMS = {
         (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
     ),
     "ur5": Arm(
-        "ur_description/urdf/ur5_robot.urdf",
-        "tool0",
-        (),
-        (0.0, -1.2, 1.6, -1.97, -1.57, 0.0),
+        "ur_description/urdf/ur5_robot.urdf", "tool0", (), (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)
     ),
     "xarm7": Arm(
-        "xarm_description/urdf/xarm7.urdf",
-        "link_eef",
-        (),
-        (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0),
+        "xarm_description/urdf/xarm7.urdf", "link_eef", (), (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
     ),
 }
+
+STARTS = {
+    "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
+    **{name: arm.start for name, arm in ARMS.items()},
+}
+"""Known start postures by the robot's name [rad], each (n,)."""

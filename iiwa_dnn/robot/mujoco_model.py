@@ -1,8 +1,8 @@
 """A robot in MuJoCo, compiled from the project's own URDF.
 
 MuJoCo reads the URDF by itself (its own parser and its own dynamics: an implementation independent
-of Pinocchio). What a URDF does not say is added here: torque actuators with the data sheet's
-limits, joint damping, rotor inertia, and which links can collide.
+of Pinocchio). Facts that a URDF does not hold are added here: torque actuators with the data
+sheet's limits, joint damping, rotor inertia, and the pairs of links that can collide.
 
 MuJoCo is imported only when a model is built; it comes with the extra ``sim``.
 """
@@ -15,6 +15,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
@@ -45,7 +46,7 @@ _COLLISION_PAIRS: dict[str, tuple[tuple[str, str], ...]] = {
 
 @dataclass(frozen=True)
 class JointDynamics:
-    """What the drives add to the links' dynamics. Both are ESTIMATES: the maker publishes neither.
+    """Damping and rotor inertia of the drives. Both are ESTIMATES: the maker publishes neither.
 
     Attributes:
         damping: Viscous friction of every joint [N m s/rad]. 0.5 is the size of what is identified
@@ -64,7 +65,7 @@ class JointDynamics:
 
 
 def torque_limits(robot: Robot) -> NDArray[np.float64]:
-    """Torque limits of the URDF [N m], (n,); inf where it gives none."""
+    """Return the torque limits of the URDF [N m], (n,); inf where it gives none."""
     effort = np.array(robot.model.effortLimit, dtype=np.float64)
     return np.where(effort > 0.0, effort, np.inf)
 
@@ -73,8 +74,8 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
     """Describe a robot to MuJoCo: its URDF, a torque motor on each joint, its collision pairs.
 
     Args:
-        robot: The robot, from a URDF file, no joint locked. Its own position limits are a matter
-            of the controller; the mechanical stops here are the URDF's.
+        robot: The robot, from a URDF file; its locked joints are welded. Its own position limits
+            are a matter of the controller; the mechanical stops here are the URDF's.
 
     Returns:
         A specification that can still be added to, ready to be compiled. Body 0 is the world;
@@ -83,16 +84,20 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
 
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
-        InvalidInputError: If the robot has no file or a locked joint, or MuJoCo refuses the URDF.
+        InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
         FileError: If the file cannot be read any more.
     """
     mj = import_mujoco()
     if robot.path is None:
         raise InvalidInputError("robot", "must come from a URDF file", robot)
-    if robot.locked:
-        raise InvalidInputError("robot", "must have no locked joint in physics", robot.locked)
+    root = urdf.read(robot.path)
+    urdf.weld(root, dict(zip(robot.locked, robot.q_locked, strict=True)))
+    urdf.drop_meshes(root)
+    extension = ET.SubElement(root, "mujoco")
+    # Not fused: links keep their names, and the base can be told from the world.
+    ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
     try:
-        spec = mj.MjSpec.from_string(_prepared(urdf.read(robot.path)[0]))
+        spec = mj.MjSpec.from_string(urdf.text_of(root))
     except ValueError as error:
         raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
     joints = {joint.name: joint for joint in spec.joints}
@@ -103,7 +108,11 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
         if np.isfinite(limit):
             motor.ctrllimited, motor.ctrlrange = True, [-limit, limit]
             motor.forcelimited, motor.forcerange = True, [-limit, limit]
-    _add_tip(spec, robot)
+    # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
+    frame = robot.model.frames[robot.tip_id]
+    x, y, z, w = pin.Quaternion(frame.placement.rotation).coeffs()
+    carrier = joints[robot.model.names[frame.parentJoint]].parent
+    carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=[w, x, y, z])
     allowed = {frozenset(pair) for pair in _COLLISION_PAIRS.get(robot.name, ())}
     bodies = [body.name for body in spec.bodies[1:]]
     for first, second in combinations(bodies, 2):
@@ -122,22 +131,28 @@ def compile_model(
     """Compile a robot for simulation.
 
     Args:
-        robot: See `build_spec`, as for what else can be wrong with it.
+        robot: The robot, see `build_spec`.
         timestep: Physics step [s].
-        dynamics: What the drives add; None takes the estimates of `JointDynamics`.
+        dynamics: Damping and rotor inertia of the drives; None takes the estimates.
         friction: Coulomb friction of the joints [N m], (n,); None for none.
-        mass_factors: What to multiply the moving links' masses and inertias by, (n,), in the order
-            of the joints that carry them; None for one.
+        mass_factors: Factors on the masses and inertias of the moving links, (n,), in the order of
+            the joints that carry them; None for one.
 
     Returns:
         The model, integrated by MuJoCo's implicit method for the damping.
+
+    Raises:
+        MissingDependencyError, InvalidInputError, FileError: As `build_spec` does.
     """
     mj = import_mujoco()
     dynamics = JointDynamics() if dynamics is None else dynamics
     spec = build_spec(robot)
     spec.option.timestep = timestep
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:  # a moving link without mass, for example
+        raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
     # On the model, not the joints of the specification: there, MuJoCo's type of it has changed.
     model.dof_damping[:] = dynamics.damping
     model.dof_armature[:] = dynamics.armature
@@ -145,33 +160,10 @@ def compile_model(
         model.dof_frictionloss[:] = friction
     if mass_factors is not None:
         for body in range(1, model.nbody):
-            if model.body_dofnum[body]:
-                factor = mass_factors[model.body_dofadr[body]]
+            carrier = model.body_weldid[body]  # the body itself, where it has a joint
+            if carrier:
+                factor = mass_factors[model.body_dofadr[carrier]]
                 model.body_mass[body] *= factor
                 model.body_inertia[body] *= factor
-    mj.mj_setConst(model, mj.MjData(model))  # what MuJoCo derives from masses and inertias
+    mj.mj_setConst(model, mj.MjData(model))  # it derives more from masses and inertias
     return model
-
-
-def _prepared(text: str) -> str:
-    """The URDF with MuJoCo's own element in it, and without shapes that are read from files."""
-    root = ET.fromstring(text)
-    for link in root.findall("link"):
-        for shape in [*link.findall("visual"), *link.findall("collision")]:
-            if shape.find("geometry/mesh") is not None:
-                link.remove(shape)
-    extension = ET.SubElement(root, "mujoco")
-    # Not fused: links keep their names, and the base can be told from the world.
-    ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")
-    return ET.tostring(root, encoding="unicode")
-
-
-def _add_tip(spec: mujoco.MjSpec, robot: Robot) -> None:
-    """Put a site where Pinocchio has the tip frame, on the body of the joint that carries it."""
-    import pinocchio as pin
-
-    frame = robot.model.frames[robot.tip_id]
-    names = {joint.name: joint.parent for joint in spec.joints}
-    body = names[robot.model.names[frame.parentJoint]]
-    x, y, z, w = pin.Quaternion(frame.placement.rotation).coeffs()
-    body.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=[w, x, y, z])

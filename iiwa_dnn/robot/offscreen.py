@@ -24,10 +24,10 @@ _OPENGL_REMEDY = "on Debian and Ubuntu: apt-get install libosmesa6 (or, for EGL:
 
 
 def import_mujoco() -> Any:
-    """MuJoCo's Python package.
+    """Import MuJoCo's Python package.
 
     Raises:
-        MissingDependencyError: If it is not installed, or the OpenGL library is not that the
+        MissingDependencyError: If it is not installed, or lacks the OpenGL library that the
             environment variable MUJOCO_GL makes it load.
     """
     try:
@@ -43,10 +43,10 @@ def import_mujoco() -> Any:
 
 
 def opengl_library() -> str:
-    """Which of the modules ``mujoco.egl``, ``mujoco.osmesa`` or ``mujoco.gl_context`` can draw.
+    """Choose the module of MuJoCo that can draw without a display.
 
     Returns:
-        ``"egl"``, ``"osmesa"``, or ``"gl_context"``: MuJoCo's own choice, off Linux.
+        ``"egl"`` or ``"osmesa"``; off Linux ``"gl_context"``, MuJoCo's own choice.
 
     Raises:
         MissingDependencyError: On Linux, if there is none; it names the Debian package.
@@ -59,14 +59,11 @@ def opengl_library() -> str:
     for name in [name for name in wanted if name in libraries][:1] or libraries:
         if libraries[name]():
             return name
-    raise MissingDependencyError(
-        "an OpenGL library for pictures without a display",
-        _OPENGL_REMEDY,
-    )
+    raise MissingDependencyError("an OpenGL library for pictures without a display", _OPENGL_REMEDY)
 
 
 def open_context(width: int, height: int) -> Any:
-    """An OpenGL context to draw pictures of this size [pixel] in, made the current one.
+    """Open an OpenGL context for pictures of this size [pixel], made the current one.
 
     Raises:
         MissingDependencyError: If MuJoCo or an OpenGL library is not there.
@@ -79,7 +76,7 @@ def open_context(width: int, height: int) -> Any:
 
 
 def egl_works() -> bool:
-    """Whether EGL opens a display on some device; a library without a driver does not."""
+    """Check that EGL opens a display on some device; a library without a driver does not."""
     try:
         egl = ctypes.CDLL("libEGL.so.1")
         ctypes.CDLL("libOpenGL.so.0" if _loads("libOpenGL.so.0") else "libGL.so.1")
@@ -107,7 +104,7 @@ def egl_works() -> bool:
 
 
 def osmesa_works() -> bool:
-    """Whether OSMesa is there; it needs neither a device nor a display."""
+    """Check that OSMesa is there; it needs neither a device nor a display."""
     return _loads("libOSMesa.so.8") or _loads("libOSMesa.so")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,7 +14,7 @@ from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import Robot
 
 STICK_RADIUS = 0.02
-"""Of the sticks that stand for links without a primitive shape [m]."""
+"""Radius of the sticks that stand for links without a primitive shape [m]."""
 
 _GREY = (0.6, 0.6, 0.6)
 
@@ -42,7 +41,7 @@ class Shape:
 
 
 def visual_shapes(robot: Robot) -> list[Shape]:
-    """The primitives of a robot; sticks from joint to joint where it has only meshes.
+    """List the primitives of a robot, or sticks from joint to joint where it has only meshes.
 
     Args:
         robot: The robot, from its URDF file.
@@ -56,12 +55,9 @@ def visual_shapes(robot: Robot) -> list[Shape]:
     """
     if robot.path is None:
         raise InvalidInputError("robot", "must come from a URDF file", robot)
-    root = ET.fromstring(urdf.read(robot.path)[0])
-    for link in root.findall("link"):
-        for visual in link.findall("visual"):
-            if visual.find("geometry/mesh") is not None:
-                link.remove(visual)  # meshes are not read
-    text = ET.tostring(root, encoding="unicode")
+    root = urdf.read(robot.path)
+    urdf.drop_meshes(root)
+    text = urdf.text_of(root)
     visuals = pin.buildGeomFromUrdfString(robot.model, text, pin.GeometryType.VISUAL)
     shapes = []
     for found in visuals.geometryObjects:
@@ -79,12 +75,15 @@ def visual_shapes(robot: Robot) -> list[Shape]:
 
 
 def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> list[pin.SE3]:
-    """Where each joint's frame is in the world, the base (0) first: what `Shape.joint` counts.
+    """Compute the pose of each joint's frame in the world, in the order of `Shape.joint`.
 
     Args:
         robot: The robot, n joints.
         q: Joint positions [rad], (n,).
-        data: Room for Pinocchio to work in; None makes it.
+        data: Pinocchio scratch memory to reuse; None makes it.
+
+    Returns:
+        The poses, the base's (0) first.
     """
     data = robot.model.createData() if data is None else data
     pin.forwardKinematics(robot.model, data, np.asarray(q, dtype=np.float64))
@@ -94,7 +93,7 @@ def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> lis
 def _measure(
     geometry: object,
 ) -> tuple[Literal["cylinder", "sphere", "box"] | None, tuple[float, ...]]:
-    """Kind and size of one of coal's primitives; None for anything else."""
+    """Return kind and size of one of coal's primitives; None for anything else."""
     name = type(geometry).__name__
     shape: pin.CollisionGeometry = geometry
     if name == "Cylinder":
@@ -107,7 +106,7 @@ def _measure(
 
 
 def _sticks(robot: Robot) -> list[Shape]:
-    """A cylinder from each joint to the next, and to the tip."""
+    """Make a cylinder from each joint to the next, and to the tip."""
     model = robot.model
     tip = model.frames[robot.tip_id]
     places = model.jointPlacements

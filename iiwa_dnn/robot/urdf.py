@@ -1,7 +1,7 @@
 """URDF files: read with care, then made into a Pinocchio model.
 
-The file is first read as XML here. That gives one-line reasons for what is wrong with it, and a few
-facts that Pinocchio's model does not keep: which limits were given, which joints follow others.
+The file is first read as XML here. That gives one-line reasons for faults in it, and a few facts
+that Pinocchio's model does not keep: the limits that were given, the joints that follow others.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,24 +17,24 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.errors import FileError
 
 
 class _NoDoctype(ET.TreeBuilder):
-    """Refuses a DOCTYPE: a URDF needs none, and entities can read files or fill the memory."""
+    """A tree builder that refuses a DOCTYPE: entities can read files or fill the memory."""
 
     def doctype(self, *_: str | None) -> None:
         raise ET.ParseError("a DOCTYPE is not accepted")
 
 
-def read(path: Path) -> tuple[str, dict[str, ET.Element]]:
+def read(path: Path) -> ET.Element:
     """Read a URDF file as XML.
 
     Args:
         path: The file.
 
     Returns:
-        The XML text for :func:`build_model`, and the ``<joint>`` elements by name.
+        The element ``<robot>``, which has joints.
 
     Raises:
         FileError: If the file cannot be read, is not XML, has a DOCTYPE or is not a robot with
@@ -46,36 +46,82 @@ def read(path: Path) -> tuple[str, dict[str, ET.Element]]:
         raise FileError(path, getattr(error, "strerror", None) or str(error)) from error
     try:
         root = ET.fromstring(content, parser=ET.XMLParser(target=_NoDoctype()))
-        # What was checked is what Pinocchio gets: the tree, not the file's bytes.
-        text = ET.tostring(root, encoding="unicode")
+        text_of(root)  # elements nested too deeply can be read, but not written
     except (ET.ParseError, LookupError, ValueError, RecursionError) as error:
         raise FileError(path, f"not XML that can be read: {error}") from error
     if root.tag != "robot":
         raise FileError(path, f"not a URDF: its first element is <{root.tag}>, not <robot>")
-    joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
-    if not joints:
+    if root.find("joint") is None:
         raise FileError(path, "the robot has no joints")
-    return text, joints
+    return root
 
 
-def build_model(path: Path, text: str) -> pin.Model:
+def text_of(root: ET.Element) -> str:
+    """Write XML as text: other readers get the tree that was checked, not the file's bytes."""
+    return ET.tostring(root, encoding="unicode")
+
+
+def drop_meshes(root: ET.Element) -> None:
+    """Remove the shapes that would be read from other files."""
+    for link in root.findall("link"):
+        for shape in [*link.findall("visual"), *link.findall("collision")]:
+            if shape.find("geometry/mesh") is not None:
+                link.remove(shape)
+
+
+def weld(root: ET.Element, posture: Mapping[str, float]) -> None:
+    """Replace joints by fixed ones.
+
+    Args:
+        root: The element ``<robot>``, which is changed.
+        posture: Position of each of these joints by its name [rad]; 0 for continuous, planar and
+            floating ones.
+    """
+    for joint in root.findall("joint"):
+        name, mimic = joint.get("name", ""), joint.find("mimic")
+        if mimic is not None and {name, mimic.get("joint")} & posture.keys():
+            joint.remove(mimic)
+        if posture.get(name):
+            axis = _numbers(joint, "axis", "xyz", "1 0 0")
+            step, still = posture[name] * axis / np.linalg.norm(axis), np.zeros(3)
+            slides = joint.get("type") == "prismatic"
+            moved = pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), still)
+            rpy, xyz = (_numbers(joint, "origin", key, "0 0 0") for key in ("rpy", "xyz"))
+            place = pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz) * moved
+            for origin in joint.findall("origin"):
+                joint.remove(origin)
+            numbers = {"rpy": pin.rpy.matrixToRpy(place.rotation), "xyz": place.translation}
+            words = {key: " ".join(map(repr, value.tolist())) for key, value in numbers.items()}
+            ET.SubElement(joint, "origin", words)
+        if name in posture:
+            joint.set("type", "fixed")
+
+
+def _numbers(joint: ET.Element, tag: str, key: str, default: str) -> NDArray[np.float64]:
+    """Read the three numbers of an attribute of a joint's element `tag`."""
+    element = joint.find(tag)
+    text = default if element is None else element.get(key, default)
+    return np.array([float(word) for word in text.split()])
+
+
+def build_model(path: Path, root: ET.Element) -> pin.Model:
     """Build the Pinocchio model of a URDF, with no word on the console.
 
     Args:
-        path: The file that the text came from, for the error.
-        text: The URDF's XML.
+        path: The file that the XML came from, for the error.
+        root: The element ``<robot>``.
 
     Returns:
         The model, its base fixed to the world.
 
     Raises:
-        FileError: If Pinocchio refuses the text (its own first complaint is the reason), or no
+        FileError: If Pinocchio refuses the robot (its own first complaint is the reason), or no
             joint moves.
     """
     complaints: list[str] = []
     try:
         with _captured_stderr(complaints):
-            model = pin.buildModelFromXML(text)
+            model = pin.buildModelFromXML(text_of(root))
     except (ValueError, RuntimeError, IndexError) as error:
         found = [line.partition("Error:")[2].strip() for line in complaints if "Error:" in line]
         reason = found[0] if found else str(error).strip().partition("\n")[0]
@@ -89,7 +135,7 @@ def build_model(path: Path, text: str) -> pin.Model:
 
 @contextmanager
 def _captured_stderr(lines: list[str]) -> Iterator[None]:
-    """Collect what C++ writes to standard error; urdfdom tells its reasons only there.
+    """Collect the lines that C++ writes to standard error; urdfdom tells its reasons only there.
 
     It redirects the process's file descriptor 2, as nothing else reaches C++ streams, so another
     thread's messages of these few milliseconds end up in ``lines`` too.
@@ -110,103 +156,3 @@ def _captured_stderr(lines: list[str]) -> Iterator[None]:
                 lines += file.read().decode(errors="replace").splitlines()
     finally:
         os.close(saved)
-
-
-def lock(model: pin.Model, locked: tuple[str, ...]) -> pin.Model:
-    """Freeze joints at their zero position, or at the limit nearest to it.
-
-    Args:
-        model: The model with all its joints.
-        locked: Names of the joints to freeze.
-
-    Returns:
-        The model of the joints that are left; ``model`` itself if none is to be frozen.
-
-    Raises:
-        NotFoundError: If there is no such joint.
-        InvalidInputError: If no joint is left.
-    """
-    names = tuple(model.names)
-    for name in locked:
-        if name not in names[1:]:
-            raise NotFoundError("joint", name, names[1:])
-    if len(locked) == len(names) - 1:
-        raise InvalidInputError("locked", "no joint is left to move", locked)
-    if not locked:
-        return model
-    # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
-    posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
-    return pin.buildReducedModel(model, [names.index(name) for name in locked], posture)
-
-
-def check_one_coordinate_each(model: pin.Model, joints: dict[str, ET.Element]) -> None:
-    """Refuse continuous, planar and floating joints: for those, q and its velocity differ in kind.
-
-    Args:
-        model: The model.
-        joints: The URDF's ``<joint>`` elements by name.
-
-    Raises:
-        InvalidInputError: At the first such joint, with its name.
-    """
-    for index, name in enumerate(tuple(model.names)[1:], start=1):
-        if model.nqs[index] != 1 or model.nvs[index] != 1:
-            problem = (
-                f"joint {name!r} is {joints[name].get('type')}; only joints with one coordinate "
-                "are supported: lock it, or make it revolute, with limits, in the URDF"
-            )
-            raise InvalidInputError("locked", problem, name)
-
-
-def check_no_mimic(model: pin.Model, tip_id: int, joints: dict[str, ET.Element]) -> None:
-    """Refuse a joint that moves the tip and follows another: here it would move on its own.
-
-    Args:
-        model: The model.
-        tip_id: Index of the tip frame.
-        joints: The URDF's ``<joint>`` elements by name.
-
-    Raises:
-        InvalidInputError: At the first such joint, with its name.
-    """
-    names = tuple(model.names)
-    for index in list(model.supports[model.frames[tip_id].parentJoint])[1:]:
-        mimic = joints[names[index]].find("mimic")
-        if mimic is not None:
-            problem = (
-                f"joint {names[index]!r} follows {mimic.get('joint')!r} (<mimic>), which is not "
-                "supported between base and tip: lock it"
-            )
-            raise InvalidInputError("locked", problem, names[index])
-
-
-def limits(
-    path: Path, model: pin.Model, joints: dict[str, ET.Element]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """The URDF's limits; infinite where it gives none.
-
-    A joint without ``lower`` and ``upper`` has no position limit; velocity 0 means "not given".
-
-    Args:
-        path: The file, for the error.
-        model: The model, each joint with one coordinate.
-        joints: The URDF's ``<joint>`` elements by name.
-
-    Returns:
-        Lower and upper position limits [rad] and velocity limits [rad/s], each of shape (n,).
-
-    Raises:
-        FileError: If a lower limit is not below the upper one, or a velocity limit is negative.
-    """
-    lower, upper = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
-    velocity = model.velocityLimit.copy()
-    for i, name in enumerate(tuple(model.names)[1:]):
-        limit = joints[name].find("limit")
-        if limit is None or not {"lower", "upper"} & set(limit.keys()):
-            lower[i], upper[i] = -np.inf, np.inf
-        if not lower[i] < upper[i]:
-            raise FileError(path, f"joint {name!r}: lower limit {lower[i]} is not below {upper[i]}")
-        if not velocity[i] >= 0.0:
-            raise FileError(path, f"joint {name!r}: velocity limit {velocity[i]} is negative")
-    velocity[velocity == 0.0] = np.inf
-    return lower, upper, velocity

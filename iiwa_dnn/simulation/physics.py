@@ -18,11 +18,9 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Command, Controller
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.checkpool import CheckPool
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Reference
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
@@ -30,12 +28,10 @@ from iiwa_dnn.robot.mujoco_model import JointDynamics
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.disturbances import Disturbances
-from iiwa_dnn.simulation.plants.mujoco import Plant
-from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
+from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
+from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 COMPLETED = "completed"
-COARSEST = 1e-3
-"""The longest physics step that is accepted [s]."""
 _BLOCK = 500  # steps between two hand-overs to the check
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp", "mujoco")
 
@@ -122,24 +118,17 @@ class PhysicsSimulation:
             InvalidInputError: An argument is out of range; the message names it.
         """
         length = reference.duration if duration is None else duration
-        for name, value in (("dt", dt), ("duration", length), ("physics_dt", timestep)):
+        for name, value in (("dt", dt), ("duration", length)):
             checks.positive(name, value)
         checks.integer("seed", seed, 0)
-        if timestep > COARSEST:
-            problem = f"must be at most {COARSEST:g} s, not {timestep:g}"
-            raise InvalidInputError("physics_dt", problem, timestep)
-        self._substeps = round(dt / timestep)
-        if self._substeps < 1 or abs(self._substeps * timestep - dt) > 1e-9 * dt:
-            problem = f"must divide the control period of {dt:g} s, {timestep:g} s does not"
-            raise InvalidInputError("physics_dt", problem, timestep)
         self.steps = max(1, round(length / dt))
         self._robot, self._dt = robot, dt
         self._scratch = robot.model.createData()
         start = Configuration(robot, q0, self._scratch)
         self._q0 = start.q
-        self._disturbances = Disturbances() if disturbances is None else disturbances
-        self._plant = Plant(robot, dt / self._substeps, self._disturbances, seed, dynamics)
-        self._torques = TorqueController(robot, dt, dt / self._substeps, gains, dynamics)
+        self._seed = seed
+        self._plant = MujocoPlant(disturbances, gains, dynamics, timestep)
+        self._plant.start(robot, start.q, dt, seed)
         self._solver = DNNSolver(tol=tol)
         self._check = CrossCheck() if check is None else check
         self._controller = Controller(scheme.anchored(start), self._solver, "converged", dt)
@@ -150,7 +139,6 @@ class PhysicsSimulation:
             "q_lower": robot.q_lower,
             "q_upper": robot.q_upper,
             "dq_max": robot.dq_max,
-            "torque_max": self._torques.limit,
             "q0": start.q,
             "dt": dt,
             "duration": length,
@@ -162,7 +150,7 @@ class PhysicsSimulation:
             "scheme": self._controller.scheme.settings(),
             "reference": reference.settings(),
             "check": self._check.settings(),
-            "physics": self._plant.settings() | {"torque_loop": self._torques.settings()},
+            **self._plant.settings(),
             "versions": {name: version(name) for name in _PACKAGES},
         }
 
@@ -178,9 +166,7 @@ class PhysicsSimulation:
         began = time.perf_counter()
         self._allocate()
         self._solver.reset()
-        self._plant.reset(self._q0)
-        self._torques.reset(self._q0)
-        self._late = [np.zeros_like(self._q0)] * self._disturbances.delay
+        self._plant.start(self._robot, self._q0, self._dt, self._seed)
         status, done = COMPLETED, 0
         with CheckPool(self._check, self.steps) as pool:
             while done < self.steps and status == COMPLETED:
@@ -214,7 +200,7 @@ class PhysicsSimulation:
         true = Configuration(self._robot, self._q[k], self._scratch)
         self._position[k], self._rotation[k] = true.position, true.rotation
         self._q[k + 1] = self._q[k]  # unless it moves
-        reading = self._plant.read_encoders()
+        reading = self._plant.read()
         measured = Configuration(self._robot, reading, self._scratch)
         command = self._controller.step(measured, self._targets[k])
         commands.append(command)
@@ -224,26 +210,14 @@ class PhysicsSimulation:
         if not command.solution.found:
             return f"{here}: the network did not settle, KKT residual {residual:.1e}"
         self._dq_solver[k] = command.dq
-        self._late.append(command.dq)
-        self._torque[k] = self._move(self._late.pop(0), reading)
+        self._plant.move(command.dq)
+        self._torque[k] = self._plant.torque
         if self._plant.diverged:
             return f"{here}: the physics diverged"
         self._q[k + 1] = self._plant.q
         self._dq[k] = (self._q[k + 1] - self._q[k]) / self._dt
         self._kinetic_index[k] = self._controller.scheme.kinetic_index(true, self._dq[k])
         return COMPLETED
-
-    def _move(self, dq: Vector, reading: Vector) -> Vector:
-        """Follow a velocity command for one control period; returns the largest torques."""
-        self._torques.command(dq)
-        largest = np.zeros_like(dq)
-        for substep in range(self._substeps):
-            # The control step and the first physics step share one reading.
-            now = reading if substep == 0 else self._plant.read_encoders()
-            torque = self._torques.torque(now)
-            self._plant.step(torque)
-            largest = np.where(np.abs(torque) > np.abs(largest), torque, largest)
-        return largest
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""

@@ -263,7 +263,7 @@ class Simulation:
             history.stay(k)
             return self._incidents.status(k, t)
         command = self._command(k, first, velocity, noise)
-        history.dq[k] = self._plant.move(command)
+        self._plant.move(command)
         torque = self._plant.torque
         if torque is not None and history.torque is not None:
             history.torque[k] = torque
@@ -271,6 +271,8 @@ class Simulation:
             history.stay(k)
             return f"stopped at step {k} (t = {t:g} s): the physics diverged"
         history.q[k + 1] = self._plant.q
+        # Of an arm with mass the mean velocity of the period.
+        history.dq[k] = command if self._ideal else (history.q[k + 1] - q) / self._dt
         return COMPLETED
 
     def _velocity_at(self, q: Vector, t: float) -> Vector:

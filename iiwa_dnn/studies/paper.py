@@ -7,7 +7,9 @@ section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squa
 
 from __future__ import annotations
 
-START = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
+from iiwa_dnn.robot.arms import STARTS
+
+START = STARTS["iiwa7"]
 """theta(0) [rad]."""
 
 JOINT_LIMIT = 2.5

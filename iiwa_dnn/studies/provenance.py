@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.robot.robot import available_robots, load_robot
+from iiwa_dnn.robot import available_robots, load_robot
 
 _PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
 

@@ -19,8 +19,7 @@ from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart, Reference
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 from iiwa_dnn.schemes.costs import Kinetic
 from iiwa_dnn.schemes.tasks import Orientation

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import load_robot
+from iiwa_dnn.robot import Configuration, load_robot
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
 CLOSED = [

@@ -6,6 +6,7 @@ import pickle
 
 import numpy as np
 import pytest
+import yourdfpy
 from numpy.typing import ArrayLike
 
 from helpers_kinematics import (
@@ -16,9 +17,8 @@ from helpers_kinematics import (
     finite_difference,
     pose_jacobian,
 )
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 
 OFFSETS = (0.1475, 0.1925, 0.2075, 0.1925, 0.2075, 0.1925, 0.0910)
 AXES = ((0, 0, 1), (0, 1, 0), (0, 0, 1), (0, -1, 0), (0, 0, 1), (0, 1, 0), (0, 0, 1))
@@ -52,6 +52,60 @@ def test_jacobian_by_finite_differences(load) -> None:
         jacobian = Configuration(robot, x, data).jacobian
         assert jacobian.shape == (6, robot.dof)
         np.testing.assert_allclose(jacobian, pose_jacobian(pose, x), rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("load", [lambda: load_robot("iiwa7"), panda], ids=["iiwa7", "panda"])
+def test_any_frame_by_finite_differences_and_by_a_second_reader(load) -> None:
+    robot = load()
+    file = yourdfpy.URDF.load(str(robot.path), load_meshes=False)
+    q = np.random.default_rng(5).uniform(robot.q_lower, robot.q_upper)
+    conf = Configuration(robot, q, robot.model.createData())
+    file.update_cfg(dict(zip(robot.joint_names, q, strict=True)))
+    for name in robot.frame_names:
+        frame = conf.frame(name)
+        assert (frame.position.shape, frame.rotation.shape) == ((3,), (3, 3))
+        assert frame.jacobian.shape == (6, robot.dof)
+
+        def pose(x: Array, name: str = name) -> tuple[Array, Array]:
+            frame = Configuration(robot, x).frame(name)
+            return frame.position, frame.rotation
+
+        np.testing.assert_allclose(frame.jacobian, pose_jacobian(pose, q), rtol=0, atol=1e-6)
+        if name in file.link_map:
+            expected = file.get_transform(name, file.base_link)
+            np.testing.assert_allclose(frame.pose, expected, rtol=0, atol=1e-9)
+    for name in ("pose", "position", "rotation", "jacobian"):
+        array = getattr(conf.frame(robot.tip), name)
+        np.testing.assert_array_equal(array, getattr(conf, name))
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0.0
+
+
+def test_arrays_of_a_single_joint_have_two_axes(iiwa7: Robot) -> None:
+    robot = load_robot("iiwa7", locked=iiwa7.joint_names[:-1])
+    conf = Configuration(robot, [0.4])
+    expected = [[0.0], [0.0], [0.0], [0.0], [0.0], [1.0]]
+    for jacobian in (conf.jacobian, conf.frame("iiwa7_link_7").jacobian):
+        np.testing.assert_allclose(jacobian, expected, atol=1e-15)
+    assert not conf.frame("iiwa7_link_6").jacobian.any()
+    assert conf.inertia.shape == (1, 1)
+
+
+def test_a_frame_stays_valid_and_leaves_the_tip_alone(iiwa7: Robot, q: Array) -> None:
+    data = iiwa7.model.createData()
+    conf = Configuration(iiwa7, q, data)
+    elbow = conf.frame("iiwa7_link_4")
+    other = Configuration(iiwa7, q[::-1], data)
+    fresh = Configuration(iiwa7, q)
+    np.testing.assert_array_equal(conf.pose, fresh.pose)
+    np.testing.assert_array_equal(elbow.pose, fresh.frame("iiwa7_link_4").pose)
+    assert not np.array_equal(elbow.jacobian, other.frame("iiwa7_link_4").jacobian)
+    assert not elbow.jacobian[:, 4:].any()  # joints further out do not move it
+
+
+def test_an_unknown_frame_names_those_near_to_it(iiwa7: Robot, q: Array) -> None:
+    with pytest.raises(NotFoundError, match="no frame 'iiwa7_link4'; did you mean: iiwa7_link_"):
+        Configuration(iiwa7, q).frame("iiwa7_link4")
 
 
 def test_jacobian_of_the_dh_formula(iiwa7: Robot, q: Array) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 from itertools import combinations
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
+from helpers_kinematics import example_urdf
 from helpers_physics import START
 from iiwa_dnn import Configuration, InvalidInputError, load_robot
+from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.mujoco_model import (
     TIP_SITE,
     JointDynamics,
@@ -111,14 +114,7 @@ def test_masses_and_friction(robot):
 
 
 def test_an_arm_of_meshes_moves_too():
-    data_folder = pytest.importorskip("pinocchio").__file__
-    from pathlib import Path
-
-    share = Path(data_folder).parents[4] / "share/example-robot-data/robots"
-    path = share / "ur_description/urdf/ur5_robot.urdf"
-    if not path.exists():
-        pytest.skip("no other arms: pip install 'iiwa-dnn[robots]'")
-    robot = load_robot(path, tip="tool0")
+    robot = load_robot(example_urdf("ur_description/urdf/ur5_robot.urdf"), tip="tool0")
     model = compile_model(robot, 1e-3)
     data = mujoco.MjData(model)
     data.qpos[:] = q = np.linspace(-1.0, 1.0, robot.dof)
@@ -133,11 +129,78 @@ def test_wrong_dynamics(name, value):
         JointDynamics(**{name: value})
 
 
-def test_robots_that_cannot_be_had_in_physics(robot):
-    locked = load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    with pytest.raises(InvalidInputError, match="no locked joint"):
-        build_spec(locked)
-    import dataclasses
+@pytest.mark.parametrize(
+    ("name", "also"),
+    [
+        ("panda", ()),
+        ("panda", ("panda_joint4",)),  # at -0.07, the limit nearest to zero
+        ("talos_left_arm", ()),
+        ("iiwa7", ("iiwa7_joint_3", "iiwa7_joint_7")),
+    ],
+)
+def test_locked_joints_are_welded(name, also):
+    if name in ARMS:
+        example_urdf(ARMS[name].file)
+    robot = load_robot(name, locked=also)
+    model = compile_model(robot, 1e-3, JointDynamics(0.0, 0.0))
+    data, scratch = mujoco.MjData(model), robot.model.createData()
+    assert (model.nq, model.nv, model.neq) == (robot.dof, robot.dof, 0)
+    for q in np.random.default_rng(4).uniform(robot.q_lower, robot.q_upper, (20, robot.dof)):
+        data.qpos[:] = q
+        mujoco.mj_forward(model, data)
+        np.testing.assert_allclose(
+            data.site(TIP_SITE).xpos, Configuration(robot, q).position, atol=1e-12
+        )
+        mass = pin.crba(robot.model, scratch, q)
+        assert np.abs(inertia(model, data) - mass).max() < 1e-9 * np.abs(mass).max()
+        weight = pin.computeGeneralizedGravity(robot.model, scratch, q)
+        assert np.abs(data.qfrc_bias - weight).max() < 1e-9 * np.abs(weight).max()
 
+
+PRISMATIC = """<robot name="lift"><link name="base"/>
+<link name="arm"><inertial><mass value="2"/><origin xyz="0.1 0 0"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="slider"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="turner">
+<inertial><mass value="1"/><inertia ixx="1" iyy="2" izz="3" ixy="0" ixz="0" iyz="0"/></inertial>
+</link><link name="tip"/>
+<joint name="shoulder" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+<joint name="slide" type="prismatic"><parent link="arm"/><child link="slider"/>
+<origin xyz="0.3 0 0.1" rpy="0.4 -0.3 0.2"/><axis xyz="0 0.6 0.8"/>
+<limit lower="0.2" upper="0.5" effort="1" velocity="1"/></joint>
+<joint name="turn" type="revolute"><parent link="slider"/><child link="turner"/>
+<axis xyz="3 0 4"/><limit lower="-2" upper="-0.7" effort="1" velocity="1"/><mimic joint="slide"/>
+</joint><joint name="end" type="fixed"><parent link="turner"/><child link="tip"/>
+<origin xyz="0.1 0.2 0.3"/></joint></robot>"""
+
+
+def test_joints_are_welded_where_pinocchio_freezes_them(tmp_path):
+    (tmp_path / "lift.urdf").write_text(PRISMATIC)
+    robot = load_robot(tmp_path / "lift.urdf", locked=("slide", "turn"))
+    assert robot.q_locked == (0.2, -0.7)
+    model = compile_model(robot, 1e-3, JointDynamics(0.0, 0.0))
+    data = mujoco.MjData(model)
+    data.qpos[:] = 0.3
+    mujoco.mj_forward(model, data)
+    conf = Configuration(robot, [0.3])
+    np.testing.assert_allclose(data.site(TIP_SITE).xpos, conf.position, atol=1e-12)
+    np.testing.assert_allclose(data.site(TIP_SITE).xmat.reshape(3, 3), conf.rotation, atol=1e-12)
+    np.testing.assert_allclose(inertia(model, data), conf.inertia, rtol=1e-9)
+
+
+def test_masses_behind_a_locked_joint_are_off_with_the_link_that_carries_them(robot):
+    locked = load_robot("iiwa7", locked=("iiwa7_joint_7",))
+    plain = compile_model(locked, 1e-3)
+    other = compile_model(locked, 1e-3, mass_factors=np.array([1, 1, 1, 1, 1, 1.1]))
+    for link, factor in (("iiwa7_link_5", 1.0), ("iiwa7_link_6", 1.1), ("iiwa7_link_7", 1.1)):
+        np.testing.assert_allclose(other.body(link).mass, factor * plain.body(link).mass)
+
+
+def test_robots_that_cannot_be_had_in_physics(robot, tmp_path):
     with pytest.raises(InvalidInputError, match="must come from a URDF file"):
         build_spec(dataclasses.replace(robot, path=None))
+    light = PRISMATIC.replace('<mass value="1"/>', '<mass value="0"/>')
+    (tmp_path / "light.urdf").write_text(light)
+    with pytest.raises(InvalidInputError, match="MuJoCo refuses its URDF"):
+        compile_model(load_robot(tmp_path / "light.urdf", tip="slider", locked="turn"), 1e-3)

@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import iiwa_dnn.robot.robot
+import iiwa_dnn.robot.loading
 from helpers_kinematics import example_urdf
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.arms import ARMS
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
 
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
@@ -67,7 +66,7 @@ def test_robots_beside_the_module_come_first(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
-        iiwa_dnn.robot.robot, "__file__", str(tmp_path / "iiwa_dnn" / "robot" / "robot.py")
+        iiwa_dnn.robot.loading, "__file__", str(tmp_path / "iiwa_dnn" / "robot" / "loading.py")
     )
     for folder, name in (("robots", "above"), ("iiwa_dnn/robots", "inside")):
         (tmp_path / folder / name).mkdir(parents=True)
@@ -158,6 +157,26 @@ def test_tips(robot: Robot) -> None:
         load_robot("iiwa7", tip="iiwa7_link_0")
 
 
+def test_frames_by_name(robot: Robot) -> None:
+    assert robot.frame_names[0] == "iiwa7_link_0"
+    assert set(robot.joint_names) < set(robot.frame_names)
+    assert len(set(robot.frame_names)) == len(robot.frame_names)
+    for name in robot.frame_names:
+        assert robot.model.frames[robot.frame_id(name)].name == name
+    assert robot.frame_id(robot.tip) == robot.tip_id
+    for name in ("universe", "iiwa7_link4"):
+        with pytest.raises(NotFoundError, match=f"no frame '{name}'") as caught:
+            robot.frame_id(name)
+        assert caught.value.available == robot.frame_names
+
+
+def test_a_link_comes_before_a_joint_of_its_name(written) -> None:
+    text = one_joint().replace('name="b"', 'name="j"').replace('link="b"', 'link="j"')
+    robot = load_robot(written(text))
+    assert robot.frame_names == ("a", "j")
+    assert str(robot.model.frames[robot.frame_id("j")].type) == "BODY"
+
+
 def test_locked_joints_stay_at_zero(robot: Robot) -> None:
     locked = load_robot("iiwa7", locked=["iiwa7_joint_3", "iiwa7_joint_7"])
     assert (locked.dof, locked.tip) == (5, "iiwa7_flange")
@@ -177,6 +196,9 @@ def test_a_joint_is_locked_within_its_limits(written) -> None:
     )
     conf = Configuration(load_robot(written(two), locked="j"), [0.0])
     np.testing.assert_allclose(conf.position, [np.sin(0.5), 0, 1 + np.cos(0.5)], atol=1e-15)
+    assert conf.robot.q_locked == (0.5,)
+    with pytest.raises(InvalidInputError, match="one position for each of 1 locked joints"):
+        dataclasses.replace(conf.robot, q_locked=())
 
 
 def test_locking_what_cannot_be_locked(robot: Robot) -> None:
@@ -202,7 +224,8 @@ def test_kinova_needs_its_continuous_joints_locked() -> None:
     with pytest.raises(InvalidInputError, match="'j2s6s200_joint_1' is continuous"):
         load_robot(path, tip="j2s6s200_end_effector")
     locked = [f"j2s6s200_joint_{i}" for i in (1, 4, 6)]
-    assert load_robot(path, "j2s6s200_end_effector", locked).dof == 3
+    robot = load_robot(path, "j2s6s200_end_effector", locked)
+    assert (robot.dof, robot.q_locked) == (3, (0.0, 0.0, 0.0))
 
 
 def test_with_limits(robot: Robot) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 import pytest
 import yourdfpy
 
+from helpers_kinematics import example_urdf
 from helpers_physics import START
 from iiwa_dnn import Configuration, InvalidInputError, load_robot
 from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
@@ -61,13 +61,7 @@ def test_a_locked_joint_takes_its_shapes_along():
 
 
 def test_an_arm_of_meshes_is_drawn_with_sticks():
-    path = (
-        Path(pin.__file__).parents[4]
-        / "share/example-robot-data/robots/ur_description/urdf/ur5_robot.urdf"
-    )
-    if not path.exists():
-        pytest.skip("no other arms: pip install 'iiwa-dnn[robots]'")
-    robot = load_robot(path, tip="tool0")
+    robot = load_robot(example_urdf("ur_description/urdf/ur5_robot.urdf"), tip="tool0")
     q = np.linspace(-1.0, 1.0, robot.dof)
     found = placed(robot, q)
     assert {kind for kind, _, _ in found} == {"cylinder"}

@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 import yourdfpy
 
-import iiwa_dnn.robot.robot
 from helpers_kinematics import IIWA7_INERTIALS, PAPER_Q0, Array, dh_pose, rotation_angle
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 
 JOINTS = [f"iiwa7_joint_{i}" for i in range(1, 8)]
 LINKS = [f"iiwa7_link_{i}" for i in range(8)]
@@ -166,7 +164,7 @@ def test_end_cylinders(urdf: yourdfpy.URDF, i: int, radius: float, low: float, h
 
 
 def test_every_robot_of_the_package_is_one_plain_file() -> None:
-    for name in iiwa_dnn.robot.robot.available_robots():
+    for name in available_robots():
         path = load_robot(name).path
         assert path is not None
         root = ET.parse(path).getroot()

@@ -11,8 +11,7 @@ from helpers_simulation import heart, near_target, paper_robot, paper_start, sol
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver, solve_problem
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import load_robot
+from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 
 WEIGHTS = (0.0, 0.2, 0.7, 1.0)

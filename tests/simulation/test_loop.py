@@ -21,8 +21,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Circle
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import load_robot
+from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
 from iiwa_dnn.simulation import NOISE_ENTRIES, Simulation, gaussian_noise, simulate
 

@@ -14,9 +14,9 @@ from iiwa_dnn import (
     Record,
     compute_metrics,
     failures,
-    load_robot,
 )
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
+from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
 pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
 
@@ -98,24 +98,6 @@ def test_back_within_a_second_after_the_push(robot, force):
     assert limits_are_kept(record)
 
 
-def test_the_push_has_the_impulse_that_is_asked_for(robot):
-    """A frozen clock would push for ever; the joints' momentum balance tells."""
-    import mujoco
-
-    from iiwa_dnn.simulation.plants.mujoco import Plant
-
-    push = Push((3.0, -2.0, 1.0), start=0.01, duration=0.02)
-    plant = Plant(robot, 1e-3, Disturbances(push=push), seed=0)
-    plant.reset(START)
-    jacobian = Configuration(robot, START).jacobian[:3]
-    total = np.zeros(7)
-    for _ in range(60):
-        plant.step(np.zeros(7))
-        total += 1e-3 * plant._data.qfrc_applied
-    np.testing.assert_allclose(total, jacobian.T @ push.force * 0.02, rtol=0.02, atol=1e-3)
-    assert isinstance(plant._data, mujoco.MjData)
-
-
 def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
     def lag(record: Record) -> int:
         """Steps by which the arm's velocity follows the network's."""
@@ -192,16 +174,14 @@ def test_physics_that_blows_up_is_noticed(robot):
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
-    from iiwa_dnn.simulation.plants.mujoco import Plant
-
-    step = Plant.step
+    step = MujocoPlant._step
 
     def break_once(plant, torque):
         if 0.1 < plant._data.time < 0.1005:
             plant._data.qvel[2] = np.nan
         step(plant, torque)
 
-    monkeypatch.setattr(Plant, "step", break_once)
+    monkeypatch.setattr(MujocoPlant, "_step", break_once)
     record = heart_in_physics(robot, duration=1.0)
     assert record.settings["status"] == "stopped at step 100 (t = 0.1 s): the physics diverged"
     assert record.steps == 101
@@ -224,13 +204,3 @@ def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):
 def test_wrong_arguments(robot, options, name):
     with pytest.raises(InvalidInputError, match=name):
         heart_in_physics(robot, **options)
-
-
-def test_a_locked_robot_is_refused():
-    robot = load_robot("iiwa7", locked=("iiwa7_joint_7",))
-    from iiwa_dnn.simulation.physics import PhysicsSimulation
-
-    q0 = START[:6]
-    heart = Heart().anchored(Configuration(robot, q0))
-    with pytest.raises(InvalidInputError, match="locked"):
-        PhysicsSimulation(robot, DoubleIndicator(), heart, q0)

@@ -2,5 +2,6 @@
 
 from iiwa_dnn.simulation.plants.base import Plant
 from iiwa_dnn.simulation.plants.ideal import IdealPlant
+from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
-__all__ = ["IdealPlant", "Plant"]
+__all__ = ["IdealPlant", "MujocoPlant", "Plant"]

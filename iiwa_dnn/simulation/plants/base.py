@@ -1,16 +1,16 @@
-"""The plant of a run: the part that moves under the controller's velocity commands."""
+"""Plants: robots that move under velocity commands and show their joint angles by encoders."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
 
 
 class Plant(ABC):
-    """An arm that follows joint velocity commands, one control period after the other.
+    """A robot that a run moves: `start` once, then `read` and `move` at every control step.
 
     Attributes:
         packages: Installed packages whose versions belong into the record.
@@ -20,45 +20,38 @@ class Plant(ABC):
 
     @abstractmethod
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
-        """Put the arm at rest at joint positions q0 (n,) [rad].
+        """Put a robot at rest at joint angles `q0` (n,) [rad].
 
         Args:
             robot: The robot, n joints.
-            q0: Joint positions [rad], (n,).
+            q0: Joint angles at the start [rad], (n,).
             dt: Control period [s].
-            seed: Seed of whatever is random; the same seed gives the same run.
-
-        Raises:
-            InvalidInputError: The plant cannot take the robot or the control period.
+            seed: Seed of everything random.
         """
 
     @property
     @abstractmethod
     def q(self) -> Vector:
-        """True joint positions [rad], (n,), a new array."""
+        """True joint angles [rad], (n,), a copy."""
 
     @abstractmethod
     def read(self) -> Vector:
-        """Measure the joint positions [rad], (n,); every call is a new reading."""
+        """Measure the joint angles [rad], (n,); every call is a new reading."""
 
     @abstractmethod
-    def move(self, command: Vector) -> Vector:
-        """Follow a joint velocity command (n,) [rad/s] for one control period.
-
-        Returns:
-            The mean joint velocity of the period [rad/s], (n,).
-        """
+    def move(self, command: Vector) -> None:
+        """Follow a velocity command (n,) [rad/s] for one control period."""
 
     @property
     def torque(self) -> Vector | None:
-        """Largest joint torques of the last period [N m], (n,); None for a plant without masses."""
+        """Largest torques of the last `move` [N m], (n,); None for a plant without motors."""
         return None
 
     @property
     def diverged(self) -> bool:
-        """Whether the plant has left the range in which its model makes sense."""
+        """True if the plant's state is not valid any more."""
         return False
 
     def settings(self) -> dict[str, Any]:
-        """Return what the record says of the plant, as values that JSON can hold."""
+        """Return the plant's entries in the settings of a record."""
         return {}

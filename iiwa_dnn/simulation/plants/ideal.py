@@ -31,7 +31,6 @@ class IdealPlant(Plant):
         """Measure the joint positions [rad], (n,), exactly."""
         return self._q.copy()
 
-    def move(self, command: Vector) -> Vector:
-        """Move by dt times the command; returns the command."""
+    def move(self, command: Vector) -> None:
+        """Move by dt times the command (n,) [rad/s]."""
         self._q += self._dt * command
-        return command

@@ -1,70 +1,104 @@
-"""The physical arm: MuJoCo steps it under torques; only its encoders can be read."""
+"""The physical arm: MuJoCo steps it under torques; the torque loop sees its encoders only."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.robot.mujoco_model import (
-    TIP_SITE,
-    JointDynamics,
-    compile_model,
-    torque_limits,
-)
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.mujoco_model import TIP_SITE, JointDynamics, compile_model, torque_limits
 from iiwa_dnn.robot.offscreen import import_mujoco
-from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
+from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
+
+COARSEST = 1e-3
+"""The longest physics step that is accepted [s]."""
 
 
-class Plant:
-    """A disturbed arm in MuJoCo.
+class MujocoPlant(Plant):
+    """An arm with mass, motors and disturbances, whose torque loop follows velocity commands.
 
     Attributes:
-        timestep: Physics step [s].
-        disturbances: How it differs from the nominal model.
+        disturbances: Differences between the arm and the controller's idea of it.
+        gains: Stiffness of the torque loop.
+        dynamics: Joint damping and rotor inertia, of the arm and of its nominal model.
+        timestep: Physics step that was asked for [s].
     """
+
+    packages: ClassVar[tuple[str, ...]] = ("mujoco",)
 
     def __init__(
         self,
-        robot: Robot,
-        timestep: float,
-        disturbances: Disturbances,
-        seed: int,
+        disturbances: Disturbances | None = None,
+        gains: TorqueGains | None = None,
         dynamics: JointDynamics | None = None,
+        timestep: float = 2.5e-4,
     ) -> None:
-        """Compile the arm; `reset` comes before the first step.
+        """Check the numbers; `start` builds the arm.
+
+        Args:
+            disturbances: Differences between the arm and the controller's idea of it; None for
+                none.
+            gains: Stiffness of the torque loop; None takes the defaults.
+            dynamics: Joint damping and rotor inertia; None takes the estimates.
+            timestep: Physics step [s], at most 1e-3; a whole number of them makes the control
+                period.
+
+        Raises:
+            InvalidInputError: If the physics step is out of range.
+        """
+        checks.positive("physics_dt", timestep)
+        if timestep > COARSEST:
+            problem = f"must be at most {COARSEST:g} s, not {timestep:g}"
+            raise InvalidInputError("physics_dt", problem, timestep)
+        self.timestep = timestep
+        self.disturbances = Disturbances() if disturbances is None else disturbances
+        self.gains = TorqueGains() if gains is None else gains
+        self.dynamics = JointDynamics() if dynamics is None else dynamics
+
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
+        """Build the arm and put it at rest at joint angles `q0` (n,) [rad].
+
+        Args:
+            robot: The robot, n joints, from a URDF file.
+            q0: Joint angles at the start [rad], (n,).
+            dt: Control period [s].
+            seed: Seed of the mass errors and the encoder noise.
 
         Raises:
             MissingDependencyError: If MuJoCo is not installed.
-            InvalidInputError: If MuJoCo cannot take the robot (`iiwa_dnn.robot.mujoco_model`).
+            InvalidInputError: If the physics step does not divide the control period, or MuJoCo
+                cannot take the robot (`iiwa_dnn.robot.mujoco_model`).
         """
+        substeps = round(dt / self.timestep)
+        if substeps < 1 or abs(substeps * self.timestep - dt) > 1e-9 * dt:
+            problem = f"must divide the control period of {dt:g} s, {self.timestep:g} s does not"
+            raise InvalidInputError("physics_dt", problem, self.timestep)
         self._mj = mj = import_mujoco()
         if mj.get_mju_user_warning() is None:
             # Else MuJoCo writes its warnings to a file in the working folder; `diverged` has them.
             mj.set_mju_user_warning(lambda message: None)
-        limit = torque_limits(robot)
+        wrong, limit = self.disturbances, torque_limits(robot)
+        friction = np.where(np.isfinite(limit), wrong.friction * limit, 0.0)
         self._model = compile_model(
-            robot,
-            timestep,
-            dynamics,
-            friction=np.where(np.isfinite(limit), disturbances.friction * limit, 0.0),
-            mass_factors=disturbances.mass_factors(robot.dof, seed),
+            robot, dt / substeps, self.dynamics, friction, wrong.mass_factors(robot.dof, seed)
         )
-        self._data = self._mj.MjData(self._model)
-        self._site = self._model.site(TIP_SITE).id
-        self._tip_body = int(self._model.site_bodyid[self._site])
-        self._seed = seed
-        self.timestep, self.disturbances = timestep, disturbances
-
-    def reset(self, q: Vector) -> None:
-        """Put the arm at rest at joint angles `q` (n,) [rad] and start its noise anew."""
-        wrong = self.disturbances
-        self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_step, self._seed)
-        self._mj.mj_resetData(self._model, self._data)
-        self._data.qpos[:] = q
-        self._mj.mj_forward(self._model, self._data)
+        self._data = mj.MjData(self._model)
+        self._data.qpos[:] = q0
+        mj.mj_forward(self._model, self._data)
+        self._tip = self._model.site(TIP_SITE).id
+        self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_step, seed)
+        self._torques = TorqueController(robot, dt, dt / substeps, self.gains, self.dynamics)
+        self._torques.reset(q0)
+        self._substeps = substeps
+        self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay
+        self._largest: Vector = np.zeros(robot.dof)
+        self._reading: Vector | None = None
 
     @property
     def q(self) -> Vector:
@@ -73,39 +107,63 @@ class Plant:
         return copy
 
     @property
+    def torque(self) -> Vector:
+        """Largest torques of the last `move` [N m], (n,), signed; a copy."""
+        return self._largest.copy()
+
+    @property
     def diverged(self) -> bool:
-        """Whether MuJoCo has met a state that is not a number or too large, and reset the arm."""
+        """True if MuJoCo has met a state that is not a number or too large, and reset the arm."""
         warnings = self._data.warning
         kinds = self._mj.mjtWarning
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
         return any(warnings[int(kind)].number > 0 for kind in bad)
 
-    def read_encoders(self) -> Vector:
-        """Measured joint angles [rad], (n,); every call is a new reading."""
-        return self._encoder(self._data.qpos)
+    def read(self) -> Vector:
+        """Measure the joint angles [rad], (n,); every call is a new reading."""
+        self._reading = self._encoder(self._data.qpos)
+        return self._reading.copy()
 
-    def step(self, torque: Vector) -> None:
+    def move(self, command: Vector) -> None:
+        """Follow a velocity command (n,) [rad/s] for one control period.
+
+        It arrives late by the delay of `disturbances`. The first physics step goes by the last
+        `read`, if there was one since the last move.
+        """
+        self._late.append(np.array(command))
+        self._torques.command(self._late.pop(0))
+        self._largest = np.zeros_like(command)
+        for _ in range(self._substeps):
+            reading = self._encoder(self._data.qpos) if self._reading is None else self._reading
+            self._reading = None
+            torque = self._torques.torque(reading)
+            self._step(torque)
+            larger = np.abs(torque) > np.abs(self._largest)
+            self._largest = np.where(larger, torque, self._largest)
+
+    def _step(self, torque: Vector) -> None:
         """Hold joint torques (n,) [N m] for one physics step."""
-        data = self._data
+        mj, model, data, push = self._mj, self._model, self._data, self.disturbances.push
         data.ctrl[:] = torque
-        push = self.disturbances.push
         if push is not None:
             data.qfrc_applied[:] = 0.0
             # The middle of the step, so that rounding of the time cannot cost or add a step.
-            if push.start <= data.time + 0.5 * self.timestep < push.end:
-                point, force = data.site_xpos[self._site], np.array(push.force)
-                self._mj.mj_applyFT(
-                    self._model, data, force, np.zeros(3), point, self._tip_body, data.qfrc_applied
-                )
-        self._mj.mj_step(self._model, data)
+            if push.start <= data.time + 0.5 * model.opt.timestep < push.end:
+                point, body = data.site_xpos[self._tip], int(model.site_bodyid[self._tip])
+                force = np.array(push.force)
+                mj.mj_applyFT(model, data, force, np.zeros(3), point, body, data.qfrc_applied)
+        mj.mj_step(model, data)
 
     def settings(self) -> dict[str, Any]:
-        """What the record says of the physics."""
-        return {
+        """Return torque limits, physics and torque loop, as a record has them."""
+        model = self._model
+        physics = {
             "engine": f"MuJoCo {self._mj.__version__}",
-            "timestep": self.timestep,
-            "damping": self._model.dof_damping.reshape(self._model.nv, -1)[:, 0].tolist(),
-            "armature": self._model.dof_armature.tolist(),
-            "friction": self._model.dof_frictionloss.tolist(),
+            "timestep": model.opt.timestep,
+            "damping": model.dof_damping.reshape(model.nv, -1)[:, 0].tolist(),
+            "armature": model.dof_armature.tolist(),
+            "friction": model.dof_frictionloss.tolist(),
             "disturbances": self.disturbances.settings(),
+            "torque_loop": self._torques.settings(),
         }
+        return {"torque_max": self._torques.limit, "physics": physics}

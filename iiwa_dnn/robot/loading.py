@@ -1,0 +1,180 @@
+"""Loading of robots, by name or from a URDF file: the file read, joints locked, limits checked."""
+
+from __future__ import annotations
+
+import os
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import NDArray
+
+from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.robot import urdf
+from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.robot import Robot
+
+_Joints = dict[str, ET.Element]
+_Array = NDArray[np.float64]
+
+
+def available_robots() -> tuple[str, ...]:
+    """List the names of the robots that come with the package, for :func:`load_robot`.
+
+    It knows those of `iiwa_dnn.robot.arms` too, whose files are in another package.
+    """
+    files = _robots_folder().glob("*/*.urdf")
+    return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
+
+
+def load_robot(
+    name_or_path: str | os.PathLike[str],
+    tip: str | None = None,
+    locked: Iterable[str] = (),
+    verify: bool = False,
+) -> Robot:
+    """Load a robot by its name or from a URDF file.
+
+    Limits are the URDF's. A joint whose ``<limit>`` gives neither ``lower`` nor ``upper`` has no
+    position limit, and a ``velocity`` of 0 stands for "not given": no velocity limit.
+
+    Args:
+        name_or_path: A name out of :func:`available_robots` or `iiwa_dnn.robot.arms.ARMS`, or the
+            path of a URDF file: a :class:`~pathlib.Path`, or a string that ends in ``.urdf`` or
+            has a separator in it.
+        tip: Frame that is to follow references. Default: that of the name (`iiwa_dnn.robot.arms`),
+            or the link at the end of the chain, for a robot that has only one end.
+        locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
+            an arm loaded by name has the joints of its gripper frozen besides.
+        verify: Compare joints, limits and link poses with those that a second reader finds in the
+            file (`iiwa_dnn.robot.verification`). That takes about a second more.
+
+    Returns:
+        The robot.
+
+    Raises:
+        NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
+        FileError: If the file cannot be read, is not a URDF, its limits make no sense, or the
+            second reader disagrees.
+        InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
+            left free has more or less than one coordinate, or follows another joint.
+        MissingDependencyError: If the arm of that name is in a package that is not installed.
+    """
+    arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
+    path = _find(name_or_path) if arm is None else arm.path
+    root = urdf.read(path)
+    chosen = (locked,) if isinstance(locked, str) else tuple(locked)
+    frozen = tuple(dict.fromkeys((*(arm.locked if arm is not None else ()), *chosen)))
+    full = urdf.build_model(path, root)
+    # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.
+    if tip is None:
+        tip = _default_tip(full) if arm is None else arm.tip
+    model, q_locked = _lock(full, frozen)
+    joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
+    lower, upper, velocity = _limits(path, model, joints)
+    # By the name it was asked for: the URDFs call some of these arms otherwise.
+    name = model.name if arm is None else str(name_or_path)
+    robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked)
+    _check_no_mimic(robot, joints)
+    if verify:
+        from iiwa_dnn.robot.verification import verify_robot  # here: the reader takes a second
+
+        verify_robot(robot)
+    return robot
+
+
+def _robots_folder() -> Path:
+    """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
+    here = Path(__file__).resolve().parents[1]
+    inside = here / "robots"
+    return inside if inside.is_dir() else here.parent / "robots"
+
+
+def _find(name_or_path: str | os.PathLike[str]) -> Path:
+    """Find the URDF file of a robot that is not one of `ARMS`."""
+    if not isinstance(name_or_path, str | os.PathLike):
+        raise InvalidInputError("name_or_path", "must be a robot's name or a path", name_or_path)
+    text = os.fspath(name_or_path)
+    has_separator = any(s in text for s in (os.sep, os.altsep, "/") if s)
+    if isinstance(name_or_path, os.PathLike) or text.endswith(".urdf") or has_separator:
+        return Path(text)
+    available = available_robots()
+    if text not in available:
+        raise NotFoundError("robot", text, (*available, *ARMS))
+    return _robots_folder() / text / f"{text}.urdf"
+
+
+def _default_tip(model: pin.Model) -> str:
+    """Name the link at the end of the chain; refuse a robot with several ends."""
+    parents = {frame.parentFrame for frame in model.frames}
+    ends = [
+        frame.name
+        for index, frame in enumerate(model.frames)
+        if frame.type == pin.FrameType.BODY and index not in parents
+    ]
+    if len(ends) != 1:
+        raise InvalidInputError("tip", f"is needed: the robot has several ends: {', '.join(ends)}")
+    return str(ends[0])
+
+
+def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[float, ...]]:
+    """Freeze joints at zero, or at the limit nearest to it.
+
+    Returns:
+        The model of the joints that are left, and the positions of the frozen ones [rad].
+    """
+    names = tuple(model.names)
+    for name in locked:
+        if name not in names[1:]:
+            raise NotFoundError("joint", name, names[1:])
+    if len(locked) == len(names) - 1:
+        raise InvalidInputError("locked", "no joint is left to move", locked)
+    if not locked:
+        return model, ()
+    # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
+    posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
+    frozen = [names.index(name) for name in locked]
+    # Joints of several coordinates are frozen where they do not move anything: at zero.
+    q_locked = [posture[model.idx_qs[i]] if model.nqs[i] == 1 else 0.0 for i in frozen]
+    return pin.buildReducedModel(model, frozen, posture), tuple(map(float, q_locked))
+
+
+def _check_no_mimic(robot: Robot, joints: _Joints) -> None:
+    """Refuse a joint that moves the tip and follows another: here it would move on its own."""
+    model = robot.model
+    for index in list(model.supports[model.frames[robot.tip_id].parentJoint])[1:]:
+        name = model.names[index]
+        mimic = joints[name].find("mimic")
+        if mimic is not None:
+            problem = (
+                f"joint {name!r} follows {mimic.get('joint')!r} (<mimic>), which is not "
+                "supported between base and tip: lock it"
+            )
+            raise InvalidInputError("locked", problem, name)
+
+
+def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[_Array, _Array, _Array]:
+    """Read lower, upper and velocity limits, each (n,); infinite where the URDF gives none.
+
+    Continuous, planar and floating joints are refused: for them q and its velocity differ in kind.
+    """
+    lower, upper = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
+    velocity = model.velocityLimit.copy()
+    for i, name in enumerate(tuple(model.names)[1:]):
+        if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:
+            problem = (
+                f"joint {name!r} is {joints[name].get('type')}; only joints with one coordinate "
+                "are supported: lock it, or make it revolute, with limits, in the URDF"
+            )
+            raise InvalidInputError("locked", problem, name)
+        limit = joints[name].find("limit")
+        if limit is None or not {"lower", "upper"} & set(limit.keys()):
+            lower[i], upper[i] = -np.inf, np.inf
+        if not lower[i] < upper[i]:
+            raise FileError(path, f"joint {name!r}: lower limit {lower[i]} is not below {upper[i]}")
+        if not velocity[i] >= 0.0:
+            raise FileError(path, f"joint {name!r}: velocity limit {velocity[i]} is negative")
+    velocity[velocity == 0.0] = np.inf
+    return lower, upper, velocity

@@ -1,0 +1,170 @@
+"""The arm in MuJoCo as the runner sees it: start, read, move; no controller around it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import example_urdf
+from helpers_physics import START
+from iiwa_dnn import Configuration, InvalidInputError, load_robot
+from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.mujoco_model import JointDynamics
+from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
+from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
+from iiwa_dnn.simulation.plants.torque_control import TorqueGains
+
+mujoco = pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+
+COMMAND = np.array([0.2, -0.1, 0.3, 0.1, -0.2, 0.1, 0.4])
+DT = 1e-3
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return load_robot("iiwa7")
+
+
+def started(robot, seed: int = 0, **options) -> MujocoPlant:
+    plant = MujocoPlant(**options)
+    plant.start(robot, START, DT, seed)
+    return plant
+
+
+def drive(plant: MujocoPlant, steps: int) -> np.ndarray:
+    """Joint angles after each of some steps under one command."""
+    angles = []
+    for _ in range(steps):
+        plant.read()
+        plant.move(COMMAND)
+        angles.append(plant.q)
+    return np.array(angles)
+
+
+def test_it_starts_at_rest_and_reaches_the_commanded_velocity(robot):
+    plant = started(robot)
+    assert isinstance(plant, Plant)
+    np.testing.assert_array_equal(plant.q, START)
+    np.testing.assert_array_equal(plant.torque, np.zeros(7))
+    q = drive(plant, 500)
+    np.testing.assert_allclose((q[-1] - q[-2]) / DT, COMMAND, rtol=1e-4)
+    assert not plant.diverged
+    limit = plant.settings()["torque_max"]
+    assert ((np.abs(plant.torque) > 0.0) & (np.abs(plant.torque) < limit)).all()
+
+
+def test_its_arrays_are_copies(robot):
+    plant = started(robot)
+    for array in (plant.q, plant.read(), plant.torque):
+        array[:] = 9.0
+    np.testing.assert_array_equal(plant.q, START)
+    np.testing.assert_array_equal(drive(plant, 20), drive(started(robot), 20))
+
+
+def test_a_second_start_gives_the_same_run_and_another_seed_another(robot):
+    plant = started(robot, disturbances=Disturbances.typical(), seed=4)
+    first = drive(plant, 50)
+    plant.start(robot, START, DT, 4)
+    np.testing.assert_array_equal(drive(plant, 50), first)
+    plant.start(robot, START, DT, 5)
+    assert not np.array_equal(drive(plant, 50), first)
+
+
+def test_the_first_physics_step_goes_by_the_reading_of_the_step(robot, monkeypatch):
+    readings = []
+    measure = Encoder.__call__
+
+    def counted(encoder, q):
+        readings.append(measure(encoder, q))
+        return readings[-1]
+
+    monkeypatch.setattr(Encoder, "__call__", counted)
+    noisy = Disturbances(encoder_noise=1e-4)
+    plant, seen = started(robot, disturbances=noisy), []
+    torque = plant._torques.torque
+
+    def noted(reading):
+        seen.append(reading)
+        return torque(reading)
+
+    monkeypatch.setattr(plant._torques, "torque", noted)
+    for step in range(3):
+        reading = plant.read()
+        plant.move(COMMAND)
+        np.testing.assert_array_equal(seen[4 * step], reading)
+    assert len(readings) == len(seen) == 3 * 4
+    plant.move(COMMAND)  # without a reading of its own it makes one
+    assert len(readings) == 4 * 4
+    np.testing.assert_array_equal(seen, readings)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 7])
+def test_a_command_arrives_late_by_the_delay(robot, delay):
+    late = drive(started(robot, disturbances=Disturbances(delay=delay)), 30)
+    still = started(robot)
+    for _ in range(delay):
+        still.read()
+        still.move(np.zeros(7))
+    np.testing.assert_array_equal(late[delay:], drive(still, 30 - delay))
+    assert np.abs(late[:delay] - START).max(initial=0.0) < 1e-9
+
+
+def test_its_settings_say_everything(robot):
+    plant = started(
+        robot, disturbances=Disturbances(friction=0.01, delay=2), timestep=5e-4,
+        gains=TorqueGains(bandwidth=50.0), dynamics=JointDynamics(0.3, 0.07),
+    )  # fmt: skip
+    limit = [176.0, 176.0, 110.0, 110.0, 110.0, 40.0, 40.0]
+    settings = plant.settings()
+    np.testing.assert_array_equal(settings.pop("torque_max"), limit)
+    assert settings == {
+        "physics": {
+            "engine": f"MuJoCo {mujoco.__version__}",
+            "timestep": 5e-4,
+            "damping": [0.3] * 7,
+            "armature": [0.07] * 7,
+            "friction": [0.01 * value for value in limit],
+            "disturbances": Disturbances(friction=0.01, delay=2).settings(),
+            "torque_loop": {"bandwidth": 50.0, "observer_bandwidth": 300.0, "leash": 0.1},
+        }
+    }
+
+
+def test_an_arm_with_its_gripper_locked_follows_too():
+    example_urdf(ARMS["panda"].file)
+    robot, start = load_robot("panda"), np.array(ARMS["panda"].start)
+    plant = MujocoPlant()
+    plant.start(robot, start, DT, 0)
+    q = drive(plant, 500)
+    np.testing.assert_allclose((q[-1] - q[-2]) / DT, COMMAND, rtol=1e-3)
+    # From rest to the command within one period, then at its pace.
+    np.testing.assert_allclose(q[-1], start + (500 - 0.5) * DT * COMMAND, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("timestep", "problem"),
+    [(0.0, "physics_dt"), (np.nan, "physics_dt"), (2e-3, "at most 0.001 s")],
+)
+def test_wrong_timesteps_are_refused_before_there_is_a_robot(timestep, problem):
+    with pytest.raises(InvalidInputError, match=problem):
+        MujocoPlant(timestep=timestep)
+
+
+@pytest.mark.parametrize(("timestep", "dt"), [(3e-4, 1e-3), (1e-3, 1e-4)])
+def test_the_timestep_has_to_divide_the_control_period(robot, timestep, dt):
+    with pytest.raises(InvalidInputError, match="physics_dt: must divide"):
+        MujocoPlant(timestep=timestep).start(robot, START, dt, 0)
+
+
+def test_the_push_has_the_impulse_that_is_asked_for(robot):
+    """A frozen clock would push for ever; the joints' momentum balance tells."""
+    push = Push((3.0, -2.0, 1.0), start=0.01, duration=0.02)
+    plant = MujocoPlant(Disturbances(push=push), timestep=1e-3)
+    plant.start(robot, START, 1e-3, seed=0)
+    jacobian = Configuration(robot, START).jacobian[:3]
+    total = np.zeros(7)
+    for _ in range(60):
+        plant._step(np.zeros(7))
+        total += 1e-3 * plant._data.qfrc_applied
+    np.testing.assert_allclose(total, jacobian.T @ push.force * 0.02, rtol=0.02, atol=1e-3)
