@@ -17,11 +17,19 @@ from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, Imp
 from iiwa_dnn.networks.solver import DNNSolver, solve_problem
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
+from iiwa_dnn.references import (
+    Circle,
+    Heart,
+    Line,
+    Lissajous,
+    MovingTarget,
+    Reference,
+    Target,
+    Waypoints,
+)
 from iiwa_dnn.results.metrics import compute_metrics, failures
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, available_robots, load_robot
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.schemes import (
     Cost,
     CyclicMotion,
@@ -36,7 +44,7 @@ from iiwa_dnn.schemes import (
     Step,
     Task,
 )
-from iiwa_dnn.simulation import Simulation, simulate
+from iiwa_dnn.simulation import MujocoPlant, Simulation, simulate
 
 __version__ = version("iiwa-dnn")
 
@@ -67,6 +75,8 @@ __all__ = [
     "Line",
     "Lissajous",
     "MissingDependencyError",
+    "MovingTarget",
+    "MujocoPlant",
     "Network",
     "NoSolutionError",
     "NotFoundError",

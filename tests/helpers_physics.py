@@ -13,6 +13,8 @@ import pytest
 import iiwa_dnn
 from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
 from iiwa_dnn.app.track import PAPER_START
+from iiwa_dnn.simulation import Disturbances
+from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 ROOT = Path(__file__).parents[1]
 START = np.array(PAPER_START)
@@ -23,14 +25,19 @@ def papers_robot() -> Robot:
     return load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
 
 
-def heart_in_physics(robot: Robot, check: tuple[str, ...] = (), **options: object) -> Record:
+def heart_in_physics(
+    robot: Robot,
+    check: tuple[str, ...] = (),
+    timestep: float = 2.5e-4,
+    disturbances: Disturbances | None = None,
+    gains: TorqueGains | None = None,
+    **options: object,
+) -> Record:
     """The paper's heart in physics."""
-    from iiwa_dnn.simulation.physics import simulate_physics
-
     heart = Heart().anchored(Configuration(robot, START))
-    return simulate_physics(
-        robot, DoubleIndicator(), heart, START, check=CrossCheck(check), **options
-    )
+    plant = iiwa_dnn.MujocoPlant(disturbances, gains, timestep=timestep)
+    options = {"dt": 1e-3, "check": CrossCheck(check)} | options
+    return iiwa_dnn.simulate(robot, DoubleIndicator(), heart, START, plant=plant, **options)
 
 
 def heart_without_physics(robot: Robot, steps: int = 500) -> Record:

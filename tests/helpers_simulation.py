@@ -15,8 +15,7 @@ from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.robot.robot import Robot, load_robot
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, JointLimits, OrientationTask, Scheme, tasks
 from iiwa_dnn.simulation import simulate
 

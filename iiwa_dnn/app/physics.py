@@ -21,7 +21,8 @@ from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.offscreen import opengl_library
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
-from iiwa_dnn.simulation.physics import PhysicsSimulation
+from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
+from iiwa_dnn.simulation.runner import Simulation
 
 
 def simulate_physics(arguments: Sequence[str] | None = None, prog: str = "simulate_physics") -> int:
@@ -70,21 +71,20 @@ def _disturbances(options: PhysicsSettings) -> Disturbances:
     return Disturbances(**chosen, push=push)
 
 
-def _simulation(options: PhysicsSettings) -> tuple[Robot, PhysicsSimulation]:
+def _simulation(options: PhysicsSettings) -> tuple[Robot, Simulation]:
     """The run that the options ask for, every argument checked and nothing written."""
     robot = load_robot(options.robot, tip=options.tip)
     is_papers = robot.name == "iiwa7"
     q0 = np.array(options.q0) if options.q0 else start_posture(robot, is_papers)
     robot = limited(robot, options.joint_limit, is_papers)
-    return robot, PhysicsSimulation(
+    return robot, Simulation(
         robot,
         DoubleIndicator(weight=options.weight, orientation=options.orientation),
         Heart(scale=options.scale).anchored(Configuration(robot, q0)),
         q0,
         dt=options.dt,
-        timestep=options.physics_dt,
+        plant=MujocoPlant(_disturbances(options), timestep=options.physics_dt),
         duration=options.duration,
-        disturbances=_disturbances(options),
         seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),
     )

@@ -20,7 +20,7 @@ ROW_TOLERANCE = 1e-9
 
 
 def clip_command(qp: QP, dq: Vector, solver: DNNSolver) -> tuple[Vector, NDArray[np.int8]]:
-    """Clip joint velocities to the bounds of a program, and to its inequality rows where it has any.
+    """Clip joint velocities to the bounds and inequality rows of a program.
 
     A velocity that is no number becomes the bound nearest to rest. Beyond an inequality row the
     nearest velocity within all limits is taken, the solution of a quadratic program.

@@ -331,7 +331,8 @@ class Controller:
     def place(self, q: Vector) -> Vector:
         """Return the tip's placement at joint positions q (n,), as `Kinematics.placements`."""
         self.plan.update(q)
-        return self.plan.kinematics.placements[self.robot.tip_id]
+        place: Vector = self.plan.kinematics.placements[self.robot.tip_id]
+        return place
 
     def program_at(self, q: Vector, targets: Vector, t: float) -> QP:
         """Build the program at joint positions, without solving it."""
@@ -372,10 +373,13 @@ class _Plan:
         """
         robot, solver, scheme = controller.robot, controller.solver, controller.scheme
         converged = controller.mode == "converged"
-        own = not isinstance(scheme, Scheme) or type(scheme).build_qp is not Scheme.build_qp
+        # A scheme of one's own may be any object with a build_qp.
+        own = getattr(type(scheme), "build_qp", None) is not Scheme.build_qp
         self.layout = layout = None if own else scheme.layout(robot)
         self._scheme, self._dt = scheme, controller.dt
-        dof, constants, inertia = robot.dof, np.zeros(0), np.zeros(0)
+        dof = robot.dof
+        constants: Vector = np.zeros(0)
+        inertia = np.zeros(0)
         if layout is None:
             self.kinematics = Kinematics(robot)
             self.sizes = _sizes_of(scheme, Configuration(robot, controller._q))
@@ -443,7 +447,7 @@ def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:
 
 
 def warn_if_far(start: Configuration, first: Target, stacklevel: int) -> None:
-    """Warn where the first target is far from the tip: the reference was most likely not anchored."""
+    """Warn where the first target is far from the tip: most likely it was not anchored."""
     distance = float(np.linalg.norm(first.position - start.position))
     if distance > FAR:
         warnings.warn(

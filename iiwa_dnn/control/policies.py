@@ -6,10 +6,12 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
 
 ``slow``
     :math:`b' = s\,b` with the largest feasible :math:`s \in [0, 1]`, the solution of the linear
-    program :math:`\max s` subject to :math:`A \dot q = s\,b`, the bounds and :math:`G \dot q \le h`. Feedforward and
-    feedback are slowed alike, and the reference's clock has to advance by s dt: then the arm goes
-    along the same path, later. Where not even standing still is feasible, since a joint outside its
-    limits has to come back or an obstacle comes near, the task yields as with ``relax``.
+    program :math:`\max s` subject to :math:`A \dot q = s\,b`, the bounds and
+    :math:`G \dot q \le h`. Feedforward and feedback are slowed alike, and the reference's clock has
+    to advance by s dt: then the arm goes along the same path, later. Where not even standing still
+    is feasible, since a joint outside its limits has to come back or an obstacle comes near, the
+    task yields as with ``relax``.
+``relax``.
 ``relax``
     :math:`b' = A \dot q'` with :math:`\dot q'` the point within the limits that violates the task
     rows least, :math:`\min \|A \dot q' - b\|_W`, damped, and the objective is to be near it: a
@@ -20,8 +22,9 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
     A `NoSolutionError` with the program inside.
 
 The multipliers of the first two problems name the bounds and rows that stand in the way. Where the
-limits contradict each other, so that no velocity is within all of them, the arm stops. A program that has
-a solution which the network missed is answered by the reference solver, whatever the policy.
+limits contradict each other, so that no velocity is within all of them, the arm stops. A program
+that has a solution which the network missed is answered by the reference solver, whatever the
+policy.
 
 Source: slowing down along the path is dynamic scaling, J. M. Hollerbach, "Dynamic scaling of
 manipulator trajectories", Journal of Dynamic Systems, Measurement, and Control 106 (1984); for
@@ -227,7 +230,7 @@ def least_violation(
         Fraction 1, since the clock runs on; the point; the bounds and rows that stand in the way.
         None where no point is within the limits.
     """
-    n, m, _ = qp.sizes
+    n = qp.sizes[0]
     weights = np.ones(qp.b.size) if weights is None else weights
     rows, rhs = weights[:, np.newaxis] * qp.A, weights * qp.b
     if damping is None:

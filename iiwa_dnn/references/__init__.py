@@ -5,6 +5,7 @@ from iiwa_dnn.references.circle import Circle
 from iiwa_dnn.references.heart import Heart
 from iiwa_dnn.references.line import Line
 from iiwa_dnn.references.lissajous import Lissajous
+from iiwa_dnn.references.moving_target import MovingTarget
 from iiwa_dnn.references.targets import Target, Targets
 from iiwa_dnn.references.waypoints import Waypoints
 
@@ -13,6 +14,7 @@ __all__ = [
     "Heart",
     "Line",
     "Lissajous",
+    "MovingTarget",
     "Reference",
     "Target",
     "Targets",

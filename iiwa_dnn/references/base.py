@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite_array
+from iiwa_dnn.checks import finite, finite_array
 from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
@@ -33,27 +33,41 @@ def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
     return array
 
 
-_AT_REST = _read_only(np.zeros(3))
+_AT_REST = _read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
+
+Array = NDArray[np.float64]
 
 
 class Reference(ABC):
-    """A path for the tip, with a fixed orientation.
+    """A path for a frame, with a fixed orientation.
 
-    A subclass says how far the path is from its own origin and how fast it runs; where the origin
-    lies, :meth:`anchored` says: until then at position 0 with orientation identity. References are
-    immutable, and a subclass is a frozen dataclass of the path's parameters.
+    A subclass says how far the path is from its own origin and how fast it runs, by `displacement`
+    and `velocity`; where the origin lies, :meth:`anchored` says: until then at position 0 with
+    orientation identity. References are immutable, and a subclass is a frozen dataclass of the
+    path's parameters. The package's own paths have a compiled form instead, `path`.
 
     Attributes:
-        name: What the path is called in settings and on the command line.
-        origin: Position that displacement 0 stands for [m], shape (3,), read-only.
+        name: Name of the path in settings and on the command line.
+        path: Compiled form of the path, where it has one: it adds displacement and velocity at
+            times (k,), with the path's `numbers`, to targets (k, 18).
+        numbers: Constants of the compiled form.
+        origin: Position of displacement 0 [m], shape (3,), read-only.
         orientation: Orientation at all times, shape (3, 3), read-only.
     """
 
     name: ClassVar[str]
-    origin: NDArray[np.float64] = _read_only(np.zeros(3))
-    orientation: NDArray[np.float64] = _read_only(np.eye(3))
+    path: ClassVar[Any] = None
+    numbers: NDArray[np.float64] = _read_only(np.zeros(0))
+    _base: NDArray[np.float64] = _AT_REST  # the target at the origin, at rest
 
-    @abstractmethod
+    @property
+    def origin(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
+        return _read_only(self._base[:3].copy())
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:  # noqa: D102
+        return _read_only(self._base[3:12].reshape(3, 3).copy())
+
     def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
         """Displacement from the path's origin along the world's axes, zero at t = 0.
 
@@ -63,8 +77,8 @@ class Reference(ABC):
         Returns:
             Displacements [m], shape (..., 3).
         """
+        return self._along(t)[..., :3]
 
-    @abstractmethod
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """Time derivative of :meth:`displacement`, exact.
 
@@ -74,6 +88,17 @@ class Reference(ABC):
         Returns:
             Velocities [m/s], shape (..., 3).
         """
+        return self._along(t)[..., 12:15]
+
+    def _along(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Displacements and velocities in the places that targets have them, (..., 18)."""
+        path = type(self).path
+        if path is None:
+            raise TypeError(f"{type(self).__name__} overrides neither displacement nor path")
+        times = np.asarray(t, dtype=np.float64)
+        moved = np.zeros((times.size, _AT_REST.size))
+        path(np.ascontiguousarray(times.ravel()), self.numbers, moved)
+        return moved.reshape(*times.shape, _AT_REST.size)
 
     @property
     @abstractmethod
@@ -100,12 +125,14 @@ class Reference(ABC):
             InvalidInputError: If the pose is not finite or has wrong shapes.
         """
         clone = copy.copy(self)
-        object.__setattr__(clone, "origin", finite_array("position", pose.position, (3,)))
-        object.__setattr__(clone, "orientation", finite_array("rotation", pose.rotation, (3, 3)))
+        position = finite_array("position", pose.position, (3,))
+        rotation = finite_array("rotation", pose.rotation, (3, 3))
+        base = np.concatenate([position, rotation.ravel(), np.zeros(6)])
+        object.__setattr__(clone, "_base", _read_only(base))
         return clone
 
     def at(self, t: float) -> Target:
-        """The target at one time. For many times, :meth:`sample` is far faster.
+        """Compute the target at one time.
 
         Args:
             t: Time [s].
@@ -116,15 +143,11 @@ class Reference(ABC):
         Raises:
             InvalidInputError: If ``t`` is not a finite number.
         """
-        now = finite_array("t", t, ())
-        return Target(
-            position=self.origin + self.displacement(now),
-            rotation=self.orientation,
-            linear_velocity=self.velocity(now),
-        )
+        finite("t", t)
+        return Target.from_data(self._targets(np.array([t], dtype=np.float64))[0])
 
     def sample(self, times: ArrayLike) -> Targets:
-        """The targets at many times.
+        """Compute the targets at many times.
 
         Args:
             times: Times [s], shape (k,).
@@ -135,13 +158,19 @@ class Reference(ABC):
         Raises:
             InvalidInputError: If ``times`` is not a list of finite numbers.
         """
-        t = finite_array("times", times, (-1,))
-        return Targets(
-            position=self.origin + self.displacement(t),
-            rotation=self.orientation,
-            linear_velocity=self.velocity(t),
-            angular_velocity=_AT_REST,
-        )
+        return Targets.from_data(self._targets(finite_array("times", times, (-1,)).copy()))
+
+    def _targets(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """`Target.data` at times (k,), one a row."""
+        targets = np.empty((times.size, _AT_REST.size))
+        targets[:] = self._base
+        cls = type(self)
+        if cls.path is not None and cls.displacement is Reference.displacement:
+            cls.path(times, self.numbers, targets)
+        else:
+            targets[:, :3] += self.displacement(times)
+            targets[:, 12:15] = self.velocity(times)
+        return targets
 
     def settings(self) -> dict[str, Any]:
         """Name and parameters of the path, in values that JSON knows; not where it is anchored.
@@ -155,16 +184,3 @@ class Reference(ABC):
             name: np.asarray(value).tolist() if isinstance(value, np.ndarray | tuple) else value
             for name, value in values.items()
         }
-
-
-def phase(t: ArrayLike, period: float) -> NDArray[np.float64]:
-    """Phase of a periodic path, 2 pi t / period [rad], with an axis for x, y, z to broadcast along.
-
-    Args:
-        t: Times [s], shape (...,).
-        period: The period [s].
-
-    Returns:
-        The phase [rad], shape (..., 1).
-    """
-    return (2.0 * np.pi / period) * np.asarray(t, dtype=np.float64)[..., np.newaxis]

@@ -3,14 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numba import njit
 
 from iiwa_dnn.checks import Vector3, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Reference, phase
+from iiwa_dnn.references.base import Array, Reference
+
+
+@njit(cache=True, error_model="numpy")
+def _path(times: Array, numbers: Array, out: Array) -> None:
+    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+    radius, rate = numbers[0], numbers[1]
+    for k in range(times.size):
+        p = rate * times[k]
+        # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
+        along_u, along_v = -2.0 * np.sin(0.5 * p) ** 2, np.sin(p)
+        for i in range(3):
+            u, v = numbers[2 + i], numbers[5 + i]
+            out[k, i] += radius * (along_u * u + along_v * v)
+            out[k, 12 + i] += rate * radius * (np.cos(p) * v - np.sin(p) * u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +49,7 @@ class Circle(Reference):
     """
 
     name: ClassVar[str] = "circle"
+    path: ClassVar[Any] = staticmethod(_path)
     radius: float = 0.05
     period: float = 10.0
     normal: Vector3 = (0.0, 0.0, 1.0)
@@ -45,21 +60,10 @@ class Circle(Reference):
         object.__setattr__(self, "normal", vector3("normal", self.normal))
         if not any(self.normal):
             raise InvalidInputError("normal", "must not be zero", self.normal)
+        numbers = np.concatenate([[self.radius, 2.0 * np.pi / self.period], *self._plane()])
+        object.__setattr__(self, "numbers", numbers)
 
-    def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.displacement`."""
-        u, v = self._plane()
-        p = phase(t, self.period)
-        # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-        return self.radius * (-2.0 * np.sin(p / 2.0) ** 2 * u + np.sin(p) * v)
-
-    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.velocity`."""
-        u, v = self._plane()
-        p = phase(t, self.period)
-        return (2.0 * np.pi / self.period) * self.radius * (np.cos(p) * v - np.sin(p) * u)
-
-    def _plane(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _plane(self) -> tuple[Array, Array]:
         """Orthonormal u and v, each of shape (3,), with u x v along the normal."""
         normal = np.array(self.normal) / np.abs(self.normal).max()  # its square may not underflow
         normal /= np.linalg.norm(normal)

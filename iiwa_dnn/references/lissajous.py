@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numba import njit
 
 from iiwa_dnn.checks import Vector3, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Reference, phase
+from iiwa_dnn.references.base import Array, Reference
+
+
+@njit(cache=True, error_model="numpy")
+def _path(times: Array, numbers: Array, out: Array) -> None:
+    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+    for k in range(times.size):
+        for i in range(3):
+            amplitude, rate, shift = numbers[i], numbers[3 + i], numbers[6 + i]
+            angle = rate * times[k] + shift
+            out[k, i] += amplitude * (np.sin(angle) - np.sin(shift))
+            out[k, 12 + i] += amplitude * rate * np.cos(angle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +46,7 @@ class Lissajous(Reference):
     """
 
     name: ClassVar[str] = "lissajous"
+    path: ClassVar[Any] = staticmethod(_path)
     amplitudes: Vector3 = (0.05, 0.05, 0.0)
     turns: Vector3 = (1.0, 2.0, 1.0)
     phases: Vector3 = (0.0, 0.0, 0.0)
@@ -48,20 +60,6 @@ class Lissajous(Reference):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
         if not any(a * k for a, k in zip(self.amplitudes, self.turns, strict=True)):
             raise InvalidInputError("amplitudes", "nothing moves", self.amplitudes)
-
-    def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.displacement`."""
-        amplitudes, turns, phases = self._parameters()
-        moved: NDArray[np.float64] = np.sin(turns * phase(t, self.period) + phases) - np.sin(phases)
-        return amplitudes * moved
-
-    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.velocity`."""
-        amplitudes, turns, phases = self._parameters()
-        rates = (2.0 * np.pi / self.period) * turns
-        moved: NDArray[np.float64] = np.cos(turns * phase(t, self.period) + phases)
-        return amplitudes * rates * moved
-
-    def _parameters(self) -> list[NDArray[np.float64]]:
-        """Amplitudes, turns and phases, each of shape (3,)."""
-        return [np.array(v, np.float64) for v in (self.amplitudes, self.turns, self.phases)]
+        rates = (2.0 * np.pi / self.period) * np.array(self.turns)
+        numbers = np.concatenate([self.amplitudes, rates, self.phases])
+        object.__setattr__(self, "numbers", numbers)

@@ -106,6 +106,13 @@ class Targets:
         data[:, 15:] = angular_velocity
         self.data: NDArray[np.float64] = data
 
+    @classmethod
+    def from_data(cls, data: NDArray[np.float64]) -> Targets:
+        """Return targets over an existing `data` array (k, 18), neither copied nor checked."""
+        targets = cls.__new__(cls)
+        targets.data = data
+        return targets
+
     @property
     def position(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
         return read_only(self.data[:, :3])

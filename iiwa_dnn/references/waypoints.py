@@ -6,16 +6,16 @@ import csv
 import math
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numba import njit
 
 from iiwa_dnn.checks import finite_array
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.references.base import Reference
+from iiwa_dnn.references.base import Array, Reference
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -25,6 +25,23 @@ Ends = Literal["clamped", "natural", "closed"]
 _SCIPY_ENDS = {"clamped": "clamped", "natural": "natural", "closed": "periodic"}
 _COLUMNS = ["t", "x", "y", "z"]
 _CLOSED_WITHIN = 1e-9  # [m]
+
+
+@njit(cache=True, error_model="numpy")
+def _path(times: Array, numbers: Array, out: Array) -> None:
+    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+    closed, pieces = numbers[0] != 0.0, int(numbers[1])
+    knots, end = numbers[2 : 3 + pieces], numbers[2 + pieces]
+    for k in range(times.size):
+        t = times[k] % end if closed else min(max(times[k], 0.0), end)
+        piece = min(max(np.searchsorted(knots, t, "right") - 1, 0), pieces - 1)
+        x = t - knots[piece]
+        moves = 1.0 if closed or t == times[k] else 0.0
+        for i in range(3):
+            at = 3 + pieces + 12 * piece + i
+            a, b, c, d = numbers[at], numbers[at + 3], numbers[at + 6], numbers[at + 9]
+            out[k, i] += ((a * x + b) * x + c) * x + d
+            out[k, 12 + i] += moves * ((3.0 * a * x + 2.0 * b) * x + c)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -46,10 +63,10 @@ class Waypoints(Reference):
     """
 
     name: ClassVar[str] = "waypoints"
-    times: NDArray[np.float64]
-    points: NDArray[np.float64]
+    path: ClassVar[Any] = staticmethod(_path)
+    times: Array
+    points: Array
     ends: Ends = "clamped"
-    _spline: CubicSpline = field(init=False)
 
     def __post_init__(self) -> None:
         times = finite_array("times", self.times, (-1,))
@@ -63,7 +80,11 @@ class Waypoints(Reference):
             raise InvalidInputError("times", "must increase from point to point", times)
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "points", points)
-        object.__setattr__(self, "_spline", self._fit())
+        spline = self._fit()
+        head = [float(self.ends == "closed"), len(spline.x) - 1]
+        # Of each piece the coefficients of every power, of each power x, y and z.
+        pieces = spline.c.transpose(1, 0, 2).ravel()
+        object.__setattr__(self, "numbers", np.concatenate([head, spline.x, pieces]))
 
     def _fit(self) -> CubicSpline:
         from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
@@ -134,24 +155,6 @@ class Waypoints(Reference):
     def duration(self) -> float:
         """Time from the first point to the last [s]."""
         return float(self.times[-1] - self.times[0])
-
-    def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.displacement`."""
-        inside, _ = self._inside(t)
-        return np.asarray(self._spline(inside))
-
-    def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """See :meth:`Reference.velocity`. Zero where the path rests, before and after."""
-        inside, moving = self._inside(t)
-        return np.asarray(self._spline(inside, 1)) * moving[..., np.newaxis]
-
-    def _inside(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Times folded or clipped into the spline's, and whether the path moves at them."""
-        t = np.asarray(t, dtype=np.float64)
-        if self.ends == "closed":
-            return np.mod(t, self.duration), np.ones(t.shape, dtype=np.bool_)
-        inside = np.clip(t, 0.0, self.duration)
-        return inside, inside == t
 
 
 def _rows(path: Path, file: Iterator[str]) -> Iterator[list[float]]:

@@ -1,4 +1,4 @@
-"""Joint Jacobian, frame placements and inertia of a robot, in arrays that a control loop holds once.
+"""Joint Jacobian, frame placements and inertia of a robot, in arrays that a loop holds once.
 
 Pinocchio computes them; what it leaves in its own memory is seen here through views, so that a
 control step converts nothing. `iiwa_dnn.Configuration` is the safe form for everyone else.
@@ -48,7 +48,7 @@ class Kinematics:
 
     @property
     def pinocchio(self) -> tuple[pin.Model, pin.Data, int, tuple[int, ...]]:
-        """Model, data, the tip's frame index and the other frames', for a loop that calls itself."""
+        """Model, data, the tip's frame index and the others', for a loop that calls them itself."""
         return self._model, self._data, self.frame_ids[0], self.frame_ids[1:]
 
     def update(self, q: _Array) -> None:
@@ -60,16 +60,15 @@ class Kinematics:
         for index in self.frame_ids:
             pin.updateFramePlacement(model, data, index)
 
-    def frame(self, index: int) -> tuple[_Array, _Array, _Array]:
-        """Return position (3,), rotation (3, 3) and Jacobian (6, n) of a frame, copies.
+    def frame(self, index: int) -> tuple[_Array, _Array]:
+        """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.
 
         The Jacobian's rows are [linear; angular] at the frame's origin, along the world's axes.
         """
         model, data = self._model, self._data
-        pin.updateFramePlacement(model, data, index)
-        place = data.oMf[index]
+        place = pin.updateFramePlacement(model, data, index)
         jacobian = pin.getFrameJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)
-        return place.translation.copy(), place.rotation.copy(), jacobian
+        return place.homogeneous, jacobian
 
     def support(self, index: int) -> NDArray[np.int64]:
         """Return 1 for each joint that moves a frame and 0 for the others, (n,)."""

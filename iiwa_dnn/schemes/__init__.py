@@ -1,10 +1,10 @@
-"""Redundancy-resolution schemes: costs, tasks and limits that make the program of a control step."""
+"""Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy
 from iiwa_dnn.schemes.double_indicator import DoubleIndicator
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.parts import Cost, FrameState, Limit, Part, Step, Task
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
@@ -12,7 +12,6 @@ __all__ = [
     "Cost",
     "CyclicMotion",
     "DoubleIndicator",
-    "FrameState",
     "JointLimits",
     "KineticEnergy",
     "Limit",

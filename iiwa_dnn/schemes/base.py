@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import QP
+from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -148,9 +148,7 @@ class Scheme:
 _LISTS = ("costs", "tasks", "limits")
 
 
-def targets_of(
-    layout: Layout, target: Target | Mapping[str, Target]
-) -> dict[str, np.ndarray[Any, Any]]:
+def targets_of(layout: Layout, target: Target | Mapping[str, Target]) -> dict[str, Vector]:
     """Return `Target.data` of each frame that tasks track, in the layout's order.
 
     Raises:

@@ -5,8 +5,8 @@ With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numba import njit
@@ -37,9 +37,9 @@ class KineticEnergy(Cost):
             matrix, which makes the cost w times the true kinetic energy [J].
     """
 
-    kind: ClassVar[int] = KINETIC_ENERGY
     weight: float = 1.0
     kinetic: Kinetic = "identity"
+    kind: int = field(default=KINETIC_ENERGY, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
@@ -81,10 +81,10 @@ class CyclicMotion(Cost):
             nothing draws it; `simulate` and `Controller` anchor it where they begin.
     """
 
-    kind: ClassVar[int] = CYCLIC_MOTION
     weight: float = 1.0
     gain: float = 10.2
     home: tuple[float, ...] | None = None
+    kind: int = field(default=CYCLIC_MOTION, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""

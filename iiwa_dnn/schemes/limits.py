@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
@@ -37,8 +36,8 @@ class JointLimits(Limit):
         gain: The paper's kappa [1/s], above 0.
     """
 
-    kind: ClassVar[int] = JOINT_LIMITS
     gain: float = 20.0
+    kind: int = field(default=JOINT_LIMITS, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the gain; raises InvalidInputError."""

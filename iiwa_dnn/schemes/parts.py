@@ -1,15 +1,14 @@
-"""Parts of a program: costs, tasks and limits, each a block of rows, and the step they are asked with.
+"""Parts of a program: costs, tasks and limits, each a block of rows.
 
-A part of one's own overrides one method, written with numpy. The package's own parts name a compiled
-form instead (`Part.kind`, `Part.numbers`), which stands beside the equation in `costs`, `tasks` and
-`limits` and is chosen by its number in `iiwa_dnn.schemes.assembly`.
+A part of one's own overrides one method, written with numpy. The package's own parts name a
+compiled form instead (`Part.kind`, `Part.numbers`), which stands beside the equation in `costs`,
+`tasks` and `limits` and is chosen by its number in `iiwa_dnn.schemes.assembly`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
-from typing import Any, ClassVar, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from iiwa_dnn.checks import read_only
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.configuration import FrameState
 from iiwa_dnn.robot.kinematics import Kinematics
 
 PartT = TypeVar("PartT", bound="Part")
@@ -27,20 +27,6 @@ CUSTOM = 0
 
 TARGET_SIZE = 18
 """Numbers of a target, `Target.data`."""
-
-
-class FrameState(NamedTuple):
-    """Pose and Jacobian of a frame.
-
-    Attributes:
-        position: Position in the world [m], (3,).
-        rotation: Orientation, (3, 3): columns are the frame's axes in the world.
-        jacobian: (6, n): J dq = [linear; angular velocity] at the frame's origin, world axes.
-    """
-
-    position: Vector
-    rotation: Matrix
-    jacobian: Matrix
 
 
 class Step:
@@ -92,9 +78,11 @@ class Part:
 
     Attributes:
         kind: Number of the compiled form; ``CUSTOM`` for a part written with numpy.
+        rows: Number of rows; none for a cost.
     """
 
-    kind: ClassVar[int] = CUSTOM
+    kind: int = CUSTOM
+    rows: int = 0
 
     def numbers(self, robot: Robot) -> Vector:
         """Return the constants that the compiled form takes, (k,).
@@ -105,7 +93,7 @@ class Part:
         return np.zeros(0)
 
     def frame_name(self, robot: Robot) -> str:
-        """Return the name of the frame that the part is about; the tip's unless it names another."""
+        """Return the name of the frame that the part is about, the tip's by default."""
         name = getattr(self, "frame", None)
         return robot.tip if name is None else str(name)
 
@@ -115,10 +103,9 @@ class Part:
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
-        parameters = fields(self) if is_dataclass(self) else ()
-        return {"name": type(self).__name__} | {
-            field.name: getattr(self, field.name) for field in parameters if field.init
-        }
+        fields = getattr(type(self), "__dataclass_fields__", {})
+        names = [name for name, field in fields.items() if field.init]
+        return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
 
 class Cost(Part):
@@ -136,13 +123,11 @@ class Task(Part):
     """Equality rows A x = b, or with a `weight` the cost 1/2 weight |A x - b|^2.
 
     Attributes:
-        rows: How many rows it has.
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
             the task yield (`iiwa_dnn.control.policies`).
         weight: None for hard rows, else the weight of the soft task.
     """
 
-    rows: int = 0
     row_weight: float = 1.0
     weight: float | None = None
 
@@ -154,18 +139,15 @@ class Task(Part):
 class Limit(Part):
     """Bounds lb <= x <= ub, inequality rows G x <= h, or both.
 
-    Attributes:
-        rows: How many inequality rows it has, the same at every step: an idle one has h = inf.
+    The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
     """
-
-    rows: int = 0
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,); asked where `rows` is above 0."""
         raise TypeError(f"{type(self).__name__} has rows but does not override inequalities")
 
     def bounds(self, step: Step) -> tuple[Vector, Vector] | None:
-        """Return lb (n,) and ub (n,), or None for no bounds; those of all limits are intersected."""
+        """Return lb (n,) and ub (n,), or None; the bounds of all limits are intersected."""
         return None
 
 

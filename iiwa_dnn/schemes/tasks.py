@@ -7,8 +7,8 @@ cost :math:`\tfrac12 w\,\|A \dot q - b\|^2` instead.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar, Literal
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numba import njit
@@ -42,11 +42,11 @@ class PositionTask(Task):
         weight: None for hard rows, else the weight of the soft task, at least 0.
     """
 
-    kind: ClassVar[int] = POSITION
-    rows: ClassVar[int] = 3
     gain: float = 10.2
     frame: str | None = None
     weight: float | None = None
+    kind: int = field(default=POSITION, init=False, repr=False)
+    rows: int = field(default=3, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
@@ -121,28 +121,23 @@ class OrientationTask(Task):
         weight: None for hard rows, else the weight of the soft task, at least 0.
     """
 
-    row_weight: ClassVar[float] = ROTATION_LENGTH
     gain: float = 10.2
     form: Form = "so3"
     frame: str | None = None
     weight: float | None = None
+    kind: int = field(default=ORIENTATION_SO3, init=False, repr=False)
+    rows: int = field(default=3, init=False, repr=False)
+    row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         checks.not_negative("orientation_gain", self.gain)
         checks.one_of("form", self.form, ("so3", "block"))
+        if self.form == "block":
+            object.__setattr__(self, "kind", ORIENTATION_BLOCK)
+            object.__setattr__(self, "rows", 4)
         if self.weight is not None:
             checks.not_negative("weight", self.weight)
-
-    @property
-    def kind(self) -> int:  # type: ignore[override]
-        """Number of the compiled form."""
-        return ORIENTATION_SO3 if self.form == "so3" else ORIENTATION_BLOCK
-
-    @property
-    def rows(self) -> int:  # type: ignore[override]
-        """Three rows in the form so3, four in the form block."""
-        return 3 if self.form == "so3" else 4
 
     def numbers(self, robot: Robot) -> Vector:
         """Return the gain, (1,)."""

@@ -8,13 +8,18 @@ import pytest
 from helpers_physics import START, distance, heart_in_physics, papers_robot
 from iiwa_dnn import (
     Configuration,
+    CrossCheck,
     DoubleIndicator,
     Heart,
     InvalidInputError,
     Record,
+    Simulation,
     compute_metrics,
     failures,
+    simulate,
 )
+from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.control.policies import Action
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
@@ -134,13 +139,10 @@ def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
 
 
 def test_a_run_can_be_repeated_by_one_object(robot):
-    from iiwa_dnn import CrossCheck
-    from iiwa_dnn.simulation.physics import PhysicsSimulation
-
     heart = Heart().anchored(Configuration(robot, START))
-    simulation = PhysicsSimulation(
-        robot, DoubleIndicator(), heart, START, duration=0.1, check=CrossCheck(()),
-        disturbances=Disturbances.typical(),
+    simulation = Simulation(
+        robot, DoubleIndicator(), heart, START, dt=1e-3, duration=0.1, check=CrossCheck(()),
+        plant=MujocoPlant(Disturbances.typical()),
     )  # fmt: skip
     seen: list[int] = []
     first, second = simulation.run(seen.append), simulation.run()
@@ -148,18 +150,40 @@ def test_a_run_can_be_repeated_by_one_object(robot):
     assert sum(seen) == 100
 
 
-def test_an_unsolvable_step_ends_the_run_there(robot):
+@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
+def test_policies_decide_in_physics_too(robot, policy):
     far = Heart(scale=10.0).anchored(Configuration(robot, START))
-    from iiwa_dnn import CrossCheck
-    from iiwa_dnn.simulation.physics import simulate_physics
-
-    record = simulate_physics(
-        robot, DoubleIndicator(), far, START, duration=5.0, check=CrossCheck(())
-    )
-    assert record.steps < 5000
-    assert "did not settle" in record.settings["status"]
-    assert not record.dq[-1].any()
+    record = simulate(
+        robot, DoubleIndicator(), far, START, plant=MujocoPlant(), dt=1e-3, duration=0.1,
+        policy=policy, check=CrossCheck(()),
+    )  # fmt: skip
+    action = {"slow": Action.SLOW, "relax": Action.RELAX, "stop": Action.STOP}[policy]
+    assert action in record.action
     assert failures(record)
+    assert (np.abs(record.dq_solver) <= robot.dq_max).all()
+    if policy == "stop":
+        assert record.steps < 100
+        assert "no solution" in record.settings["status"]
+        assert not record.dq[-1].any()
+    else:
+        assert record.settings["status"] == "completed"
+    if policy == "slow":
+        assert record.fraction.min() < 1.0
+
+
+def test_noise_filter_and_estimator_act_in_physics_too(robot):
+    # Measured through a filter that knows the encoders' noise, the command is calmer.
+    noisy = {"disturbances": Disturbances(encoder_noise=1e-4), "duration": 0.5, "seed": 2}
+    plain = heart_in_physics(robot, **noisy)
+    filtered = heart_in_physics(
+        robot, estimator=NoiseModel(velocity=1e-3, measurement=1e-4), **noisy
+    )
+    averaged = heart_in_physics(robot, noise=0.01, filter_window=20, **noisy)
+    unfiltered = heart_in_physics(robot, noise=0.01, **noisy)
+    rough = [np.abs(np.diff(r.dq_solver, axis=0)).mean() for r in (plain, filtered)]
+    assert rough[1] < 0.5 * rough[0]
+    shaken = [np.abs(np.diff(r.torque, axis=0)).mean() for r in (unfiltered, averaged)]
+    assert shaken[1] < 0.5 * shaken[0]
 
 
 def test_physics_that_blows_up_is_noticed(robot):

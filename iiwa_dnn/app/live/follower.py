@@ -16,7 +16,6 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.control.controller import Command, Controller
-from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Target
@@ -83,7 +82,7 @@ class Follower:
         start = Configuration(robot, q0, self._scratch)
         self._q = start.q
         scheme = DoubleIndicator() if scheme is None else scheme
-        self._controller = Controller(scheme.anchored(start), DNNSolver(), "converged", dt)
+        self._controller = Controller(robot, scheme.anchored(start), dt=dt, policy="stop")
         self._command: Command | None = None
         self._level = 0  # which share of the error to try first
 
@@ -128,9 +127,9 @@ class Follower:
             share = _SHARES[level]
             near = pin.exp3(share * turn) @ conf.rotation
             target = Target(conf.position + share * shift, near, _AT_REST, _AT_REST)
-            command = self._controller.step(conf, target)
+            command = self._controller.step(self._q, 0.0, target)
             residual = command.solution.residuals.largest
-            if not command.solution.found:
+            if not command.ok:
                 # The multipliers of a program without a solution grow and grow: a bad start.
                 self._controller.solver.reset()
                 continue

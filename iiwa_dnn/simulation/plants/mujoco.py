@@ -113,11 +113,12 @@ class MujocoPlant(Plant):
 
     @property
     def diverged(self) -> bool:
-        """True if MuJoCo has met a state that is not a number or too large, and reset the arm."""
+        """True if MuJoCo has met a state that is too large and reset the arm, or the loop has."""
         warnings = self._data.warning
         kinds = self._mj.mjtWarning
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
-        return any(warnings[int(kind)].number > 0 for kind in bad)
+        in_arm = any(warnings[int(kind)].number > 0 for kind in bad)
+        return in_arm or self._torques.diverged
 
     def read(self) -> Vector:
         """Measure the joint angles [rad], (n,); every call is a new reading."""

@@ -36,6 +36,9 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot.mujoco_model import JointDynamics, torque_limits
 from iiwa_dnn.robot.robot import Robot
 
+FASTEST = 1e6
+"""Observed joint velocity from which on the loop counts as diverged [rad/s]."""
+
 
 @dataclass(frozen=True)
 class TorqueGains:
@@ -129,6 +132,11 @@ class TorqueController:
         self._v_desired = self._v_desired + h * self._a_desired
         limited: Vector = np.clip(torque, -self.limit, self.limit)
         return limited
+
+    @property
+    def diverged(self) -> bool:
+        """True if the observer's velocity is far beyond any joint's, or not a number."""
+        return not float(np.abs(self._v).max()) < FASTEST
 
     def settings(self) -> dict[str, Any]:
         """Its gains, as values that JSON can hold."""
