@@ -1,0 +1,306 @@
+"""Programs composed of parts: built-in ones, parts of one's own, slack variables, other frames."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from helpers_kinematics import PAPER_Q0, Array, dh_pose
+from helpers_simulation import UNCHECKED, heart, near_target, paper_robot, paper_start, run
+from iiwa_dnn import (
+    Configuration,
+    Controller,
+    Cost,
+    CrossCheck,
+    CyclicMotion,
+    DoubleIndicator,
+    InvalidInputError,
+    JointLimits,
+    KineticEnergy,
+    Limit,
+    NotFoundError,
+    OrientationTask,
+    PositionTask,
+    PseudoInverse,
+    Scheme,
+    Step,
+    Target,
+    Task,
+    failures,
+    load_robot,
+    simulate,
+)
+
+ELBOW = "iiwa7_link_4"
+
+
+def composed(**gains: Any) -> Scheme:
+    return Scheme(
+        costs=[KineticEnergy(weight=0.2), CyclicMotion(weight=0.8, gain=10.2, home=PAPER_Q0)],
+        tasks=[PositionTask(), OrientationTask()],
+        limits=[JointLimits(gain=20.0)],
+    )
+
+
+@dataclass(frozen=True)
+class NumpyPosition(Task):
+    """The position task once more, with numpy."""
+
+    rows: int = 3
+    gain: float = 10.2
+    weight: float | None = None
+
+    def equations(self, step: Step) -> tuple[Array, Array]:
+        tip, target = step.frame(), step.target()
+        error = target.position - tip.position
+        return tip.jacobian[:3], target.linear_velocity + self.gain * error
+
+
+class NumpyEnergy(Cost):
+    def quadratic(self, step: Step) -> tuple[Array, Array]:
+        return 0.7 * step.inertia, np.zeros(step.q.size)
+
+
+class NumpyBounds(Limit):
+    """Bounds alone: no joint is faster than 0.1 rad/s."""
+
+    def bounds(self, step: Step) -> tuple[Array, Array]:
+        return np.full(step.q.size, -0.1), np.full(step.q.size, 0.1)
+
+
+class Clearance(Limit):
+    """Keep the elbow away from a point, as a velocity damper: -n' J dq <= gain (d - distance)."""
+
+    rows = 1
+
+    def __init__(self, point: Array, distance: float, gain: float = 20.0) -> None:
+        self.point, self.distance, self.gain = point, distance, gain
+
+    def inequalities(self, step: Step) -> tuple[Array, Array]:
+        elbow = step.frame(ELBOW)
+        away = elbow.position - self.point
+        distance = np.linalg.norm(away)
+        row = -(away / distance) @ elbow.jacobian[:3]
+        return row[np.newaxis], np.array([self.gain * (distance - self.distance)])
+
+
+def elbow_distance(q: Array, point: Array) -> Array:
+    robot = paper_robot()
+    places = [Configuration(robot, posture).frame(ELBOW).position for posture in q]
+    return np.linalg.norm(np.array(places) - point, axis=1)
+
+
+def test_the_papers_scheme_is_its_parts() -> None:
+    conf, target = paper_start(), near_target(PAPER_Q0, 1)
+    whole = DoubleIndicator(home=PAPER_Q0).build_qp(conf, target)
+    parts = composed().build_qp(conf, target)
+    assert_array_equal(parts.data, whole.data)
+    assert parts.sizes == whole.sizes == (7, 0, 6)
+    pinv = Scheme([KineticEnergy()], [PositionTask(), OrientationTask()]).build_qp(conf, target)
+    assert_array_equal(pinv.data, PseudoInverse().build_qp(conf, target).data)
+
+
+def test_the_order_of_the_tasks_is_the_order_of_the_rows() -> None:
+    conf, target = paper_start(), near_target(PAPER_Q0, 1)
+    one = Scheme([KineticEnergy()], [PositionTask(), OrientationTask(form="block")])
+    other = Scheme([KineticEnergy()], [OrientationTask(form="block"), PositionTask()])
+    first, second = one.build_qp(conf, target), other.build_qp(conf, target)
+    assert_array_equal(first.A[:3], second.A[4:])
+    assert_array_equal(first.b[3:], second.b[:4])
+
+
+def test_a_numpy_task_says_the_same_as_the_compiled_one() -> None:
+    conf, target = paper_start(), near_target(PAPER_Q0, 1)
+    compiled = Scheme([KineticEnergy()], [PositionTask(), OrientationTask()], [JointLimits()])
+    own = Scheme([KineticEnergy()], [NumpyPosition(), OrientationTask()], [JointLimits()])
+    assert_allclose(
+        own.build_qp(conf, target).data, compiled.build_qp(conf, target).data, rtol=0, atol=1e-14
+    )
+
+
+@pytest.mark.parametrize("task", [PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
+def test_a_soft_task_is_a_term_of_the_cost(task: Task) -> None:
+    conf, target = paper_start(), near_target(PAPER_Q0, 1)
+    qp = Scheme([KineticEnergy(0.5)], [task]).build_qp(conf, target)
+    hard = Scheme([KineticEnergy(0.5)], [PositionTask()]).build_qp(conf, target)
+    assert qp.sizes == (7, 0, 0)
+    assert_allclose(qp.P, 0.5 * np.eye(7) + 3.0 * hard.A.T @ hard.A, rtol=0, atol=1e-14)
+    assert_allclose(qp.q, -3.0 * hard.A.T @ hard.b, rtol=0, atol=1e-14)
+
+
+def test_costs_and_bounds_of_ones_own_join_the_others() -> None:
+    conf, target = paper_start(), near_target(PAPER_Q0, 1)
+    scheme = Scheme(
+        [CyclicMotion(0.3, home=PAPER_Q0), NumpyEnergy()],
+        [PositionTask()],
+        [JointLimits(), NumpyBounds()],
+    )
+    qp = scheme.build_qp(conf, target)
+    assert_allclose(qp.P, 0.3 * np.eye(7) + 0.7 * conf.inertia, rtol=0, atol=1e-13)
+    assert_array_equal(qp.ub, np.full(7, 0.1))
+    assert_array_equal(qp.lb, np.full(7, -0.1))
+
+
+@pytest.mark.parametrize("frame", ["iiwa7_link_3", ELBOW, "iiwa7_link_6"])
+def test_a_task_of_another_frame_is_that_frames_jacobian(frame: str) -> None:
+    q = np.array(PAPER_Q0) + 0.1
+    conf = Configuration(paper_robot(), q)
+    state = conf.frame(frame)
+    target = Target(state.position + 0.01, state.rotation, np.ones(3))
+    scheme = Scheme(
+        [KineticEnergy()], [PositionTask(2.0, frame=frame), OrientationTask(frame=frame)]
+    )
+    qp = scheme.build_qp(conf, {frame: target})
+    assert_allclose(qp.A, state.jacobian, rtol=0, atol=1e-15)
+    assert_allclose(qp.b, np.concatenate([np.full(3, 1.02), np.zeros(3)]), rtol=0, atol=1e-9)
+    with pytest.raises(InvalidInputError, match=f"target.*{frame}"):
+        scheme.build_qp(conf, target)
+
+
+def test_two_frames_follow_two_references() -> None:
+    robot, start = paper_robot(), paper_start()
+    scheme = Scheme(
+        [KineticEnergy(), CyclicMotion(0.1)],
+        [PositionTask(), PositionTask(frame=ELBOW, weight=50.0)],
+        [JointLimits()],
+    )
+    references = {
+        robot.tip: heart(period=2.0),
+        ELBOW: heart(period=2.0).anchored(start.frame(ELBOW)),
+    }
+    controller = Controller(robot, scheme, references, dt=1e-3)
+    q = start.q.copy()
+    for k in range(300):
+        command = controller.step(q, 1e-3 * k)
+        assert command.ok
+        q = q + 1e-3 * command.dq
+    assert_allclose(dh_pose(q)[0], heart(period=2.0).at(0.3).position, rtol=0, atol=1e-4)
+
+
+def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
+    with pytest.raises(NotFoundError, match="iiwa7_link_44"):
+        Scheme(tasks=[PositionTask(frame="iiwa7_link_44")]).build_qp(
+            paper_start(), near_target(PAPER_Q0, 1)
+        )
+    with pytest.raises(InvalidInputError, match=r"^tasks: must hold iiwa_dnn.Task"):
+        Scheme(tasks=[JointLimits()])
+    with pytest.raises(InvalidInputError, match=r"^slack"):
+        Scheme(slack=-1)
+
+
+class Misshaped(Limit):
+    rows = 2
+
+    def inequalities(self, step: Step) -> tuple[Array, Array]:
+        return np.zeros((1, 7)), np.zeros(1)
+
+
+def test_rows_of_a_wrong_shape_are_named_with_their_part() -> None:
+    scheme = Scheme([KineticEnergy()], [PositionTask()], [Misshaped()])
+    with pytest.raises(InvalidInputError, match=r"^Misshaped: G has shape \(1, 7\), not \(2, 7\)"):
+        scheme.build_qp(paper_start(), near_target(PAPER_Q0, 1))
+
+
+class SmallestLargest(Limit):
+    """-s <= dq_i <= s for the slack variable s: the infinity norm of the joint velocity."""
+
+    rows = 14
+
+    def inequalities(self, step: Step) -> tuple[Array, Array]:
+        eye, ones = np.eye(7), np.ones((7, 1))
+        return np.block([[eye, -ones], [-eye, -ones]]), np.zeros(14)
+
+
+class SlackCost(Cost):
+    def quadratic(self, step: Step) -> tuple[Array, Array]:
+        P = 1e-6 * np.eye(8)
+        return P, np.append(np.zeros(7), 1.0)
+
+
+def test_a_slack_variable_works() -> None:
+    # A program in more variables than joints corrupted the heap.
+    scheme = Scheme([SlackCost()], [PositionTask()], [SmallestLargest(), JointLimits()], slack=1)
+    record = run(scheme, reference=heart(period=2.0), duration=0.3, check=CrossCheck())
+    assert failures(record) == []
+    assert record.q.shape == (301, 7)
+    even = run(PseudoInverse(orientation="none"), reference=heart(period=2.0), duration=0.3)
+    largest = [np.abs(r.dq[100:]).max(axis=1).mean() for r in (record, even)]
+    assert largest[0] < 0.8 * largest[1]
+    assert record.row_multiplier is not None
+    assert record.row_multiplier.shape == (300, 14)
+
+
+class TooMany:
+    """A scheme in eight variables that says nothing of a slack."""
+
+    def build_qp(self, conf: Configuration, target: Target) -> Any:
+        from iiwa_dnn import QP
+
+        return QP(np.eye(8), np.zeros(8))
+
+    def settings(self) -> dict[str, Any]:
+        return {"name": "too many"}
+
+
+def test_more_variables_than_the_scheme_states_are_refused() -> None:
+    with pytest.raises(InvalidInputError, match=r"^scheme: .*8 variables for 7 joints"):
+        simulate(paper_robot(), TooMany(), heart(), PAPER_Q0, dt=1e-3, duration=0.01)
+
+
+def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> None:
+    point = paper_start().frame(ELBOW).position + [0.08, 0.06, 0.0]
+    nearest = float(np.linalg.norm(paper_start().frame(ELBOW).position - point))
+    limit = Clearance(point, nearest - 0.004)
+    base = composed()
+    scheme = Scheme(base.costs, base.tasks, [*base.limits, limit])
+    free = run(base, reference=heart(period=4.0), duration=4.0, dt=2e-3)
+    assert elbow_distance(free.q, point).min() < limit.distance - 1e-3
+    record = run(scheme, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=CrossCheck())
+    assert failures(record) == []
+    assert elbow_distance(record.q, point).min() > limit.distance - 1e-6
+    active = record.row_multiplier[:, 0] > 0.0
+    assert 50 < active.sum() < 2000
+    assert record.settings["rows"] == [{"part": "Clearance", "row": 1}]
+
+
+def test_noise_does_not_carry_the_arm_through_a_row() -> None:
+    point = paper_start().frame(ELBOW).position + [0.08, 0.06, 0.0]
+    limit = Clearance(point, 0.0999, gain=50.0)
+    base = composed()
+    scheme = Scheme(base.costs, base.tasks, [*base.limits, limit])
+    record = run(
+        scheme, reference=heart(period=4.0), duration=1.0, noise=0.2, seed=3, check=UNCHECKED
+    )
+    assert record.clipped is not None
+    # Of second order in a step: dt^2 v^2 / (2 d) is 2e-8 m here.
+    assert elbow_distance(record.q, point).min() > limit.distance - 1e-6
+
+
+def test_parts_serve_another_robot() -> None:
+    robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
+    q0 = np.delete(PAPER_Q0, 2)
+    conf = Configuration(robot, q0)
+    scheme = Scheme([KineticEnergy()], [PositionTask(), NumpyPosition(weight=0.1)], [JointLimits()])
+    qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
+    assert qp.sizes == (6, 0, 3)
+    assert_allclose(qp.A, conf.jacobian[:3], rtol=0, atol=1e-15)
+
+
+def test_a_home_of_the_wrong_length_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^home\b"):
+        Scheme([CyclicMotion(home=(0.0,))]).build_qp(paper_start(), near_target(PAPER_Q0, 1))
+
+
+def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> None:
+    scheme = Scheme([KineticEnergy(), CyclicMotion()], [PositionTask()])
+    anchored = scheme.anchored(paper_start())
+    assert anchored.costs[1].home == PAPER_Q0
+    assert scheme.costs[1].home is None
+    assert anchored.anchored(paper_start()) is anchored
+    assert anchored.settings()["costs"][1] == {
+        "name": "CyclicMotion", "weight": 1.0, "gain": 10.2, "home": PAPER_Q0
+    }  # fmt: skip
