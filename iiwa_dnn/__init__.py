@@ -18,7 +18,8 @@ from iiwa_dnn.networks.solver import DNNSolver, solve_problem
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.qp.program import QP, Residuals, Solution, Status
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Target, Waypoints
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot, available_robots, load_robot

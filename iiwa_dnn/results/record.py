@@ -1,4 +1,4 @@
-"""The record of one run: what was asked, what came out, and how each step was judged."""
+"""The record of one run: its settings, its samples, and the judgement of each step."""
 
 from __future__ import annotations
 
@@ -25,8 +25,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MODES = ("converged", "continuous")
+LIMITS = ("q_lower", "q_upper", "dq_max")
 
-# N steps, n joints, k reference solvers. `t`, `q` and `solution_gap` set these sizes.
+# N steps, n joints, k reference solvers, m inequality rows. `t`, `q`, `solution_gap` and
+# the first array over m set these sizes.
 _SHAPES: dict[str, tuple[str | int, ...]] = {
     "t": ("N+1",),
     "q": ("N+1", "n"),
@@ -43,7 +45,7 @@ _SHAPES: dict[str, tuple[str | int, ...]] = {
     "objective_gap": ("N", "k"),
     "reference_residual": ("N", "k"),
 }
-# Only runs that have them; a file without them is whole.
+# Only in runs that have them; a file without them is whole.
 _OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
     "torque": ("N", "n"),
     "bound_multiplier": ("N", "n"),
@@ -51,28 +53,29 @@ _OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
     "action": ("N",),
     "fraction": ("N",),
     "blocking": ("N", "n"),
+    "row_multiplier": ("N", "m"),
+    "blocking_rows": ("N", "m"),
 }
 _WHOLE: dict[str, type[np.signedinteger[Any]]] = {
     "iterations": np.int64,
-    "clipped": np.int8,
-    "action": np.int8,
-    "blocking": np.int8,
+    **dict.fromkeys(("clipped", "action", "blocking", "blocking_rows"), np.int8),
 }
 
-# What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
+# Errors of NumPy, zip and JSON on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
     NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
 )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Record:
     """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
 
     The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
-    sample i to sample i + 1. In the last three arrays NaN means that the reference was not asked
-    at that step and inf that it gave no answer.
+    sample i to sample i + 1. In the gaps and in ``reference_residual`` NaN means that the
+    reference was not asked at that step and inf that it gave no answer. Optional arrays are None
+    in a run without them; files of older versions lack some and are read all the same.
 
     Attributes:
         t: Time [s], (N+1,), increasing.
@@ -90,21 +93,22 @@ class Record:
         solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
         objective_gap: Difference in the objective to each reference, (N, k).
         reference_residual: Largest KKT residual of each reference's own answer, (N, k).
-        settings: What was asked for, in JSON types; an infinite limit reads None.
-        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
-            run that has no masses.
+        settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
+        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step.
         bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
-            one, negative at a lower one, 0 where the bound does not act; by how much the
-            objective falls for each rad/s that the bound gives way. None where none ever acted.
-        clipped: Which joints' commands were clipped to their bounds on leaving the controller,
-            (N, n), 1 or 0; None where none ever was.
-        action: What was done at each step in place of the network's answer, (N,): codes of
-            `iiwa_dnn.control.policies.Action`. None where its answer was always taken, as in the
-            next two.
+            one, negative at a lower one, 0 at an inactive one; the decrease of the objective per
+            rad/s by which the bound is relaxed. None where none was ever active.
+        clipped: 1 where a joint's command was clipped to its bounds on leaving the controller,
+            else 0, (N, n).
+        action: Action of the policy at each step, (N,): codes of
+            `iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken.
         fraction: Share of a control period by which the reference's clock advanced, (N,).
         blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
-            1 for a position limit's, 2 for a velocity limit, 0 where none is in the way.
-        wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
+            1 for a position limit, 2 for a velocity limit, 0 where none is in the way.
+        row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
+            (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
+        blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
+        wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
     """
@@ -130,6 +134,8 @@ class Record:
     action: NDArray[np.int8] | None = None
     fraction: FloatArray | None = None
     blocking: NDArray[np.int8] | None = None
+    row_multiplier: FloatArray | None = None
+    blocking_rows: NDArray[np.int8] | None = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
@@ -138,21 +144,33 @@ class Record:
         for name, shape in shapes.items():
             array = _read_only(name, getattr(self, name), len(shape))
             object.__setattr__(self, name, array)
-        sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
+        sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
+        rows = [getattr(self, name).shape[1] for name, shape in shapes.items() if "m" in shape]
+        sizes["m"] = rows[0] if rows else 0
         for name, shape in shapes.items():
+            array = getattr(self, name)
             expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
-            if getattr(self, name).shape != expected:
+            if array.shape != expected:
                 symbols = ", ".join(str(size) for size in shape)
-                raise InvalidInputError(
-                    name,
-                    f"shape {getattr(self, name).shape}, expected ({symbols}) = {expected}",
-                    getattr(self, name),
-                )
-        if sizes["N"] < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+                problem = f"shape {array.shape}, expected ({symbols}) = {expected}"
+                raise InvalidInputError(name, problem, array)
+        if self.steps < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        checked = _checked(self.settings, self.dof, self.references, self.torque is not None)
-        object.__setattr__(self, "settings", checked)
-        object.__setattr__(self, "crosscheck_gap", _largest_gap(self.solution_gap))
+        limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
+        settings = _checked(self.settings, limits, sizes | ({} if rows else {"m": None}))
+        object.__setattr__(self, "settings", settings)
+        # One solver's NaN does not hide another's answer.
+        gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
+        gap.flags.writeable = False
+        object.__setattr__(self, "crosscheck_gap", gap)
+
+    def __repr__(self) -> str:
+        error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
+        text = (
+            f"Record({self.settings['robot']}, {self.steps:,} steps of {self.settings['dt']:g} s, "
+            f"{self.settings['status']}, position error max {error:.4g} m)"
+        )
+        return " ".join(text.split())
 
     @property
     def steps(self) -> int:
@@ -206,18 +224,15 @@ class Record:
         """
         try:
             with Path(path).open("rb") as file, warnings.catch_warnings():
-                # Of a head that is not quite right NumPy warns before it gives up.
+                # NumPy warns of a slightly wrong head before it gives up.
                 warnings.simplefilter("ignore", UserWarning)
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
-                stored: dict[str, Any] = {
-                    key: arrays[key] for key in (*_SHAPES, "crosscheck_gap", "settings")
-                }
-                stored |= {key: arrays[key] for key in _OPTIONAL_SHAPES if key in arrays.files}
-            stored_gap = stored.pop("crosscheck_gap")
-            settings = json.loads(str(stored.pop("settings")))
-            record = cls(settings=settings, **stored)
+                optional = [key for key in _OPTIONAL_SHAPES if key in arrays.files]
+                stored: dict[str, Any] = {key: arrays[key] for key in (*_SHAPES, *optional)}
+                stored_gap, text = arrays["crosscheck_gap"], str(arrays["settings"])
+            record = cls(settings=json.loads(text), **stored)
             same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
         except FileError:
             raise
@@ -236,7 +251,7 @@ def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
     """Copy an array, unless it is protected: nothing done to it later can change the record."""
     array = np.asarray(value)
     kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
-    # An empty list is an array of floats to NumPy, whatever it was meant to hold.
+    # NumPy takes any empty list for an array of floats.
     if array.dtype.kind not in kinds and array.size:
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
     if array.ndim != dimensions:
@@ -249,7 +264,7 @@ def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
 
 
 def _is_protected(array: NDArray[Any]) -> bool:
-    """Whether neither the array nor any that it is a view of can be written into."""
+    """Tell whether neither the array nor any that it is a view of can be written into."""
     view: Any = array
     while isinstance(view, np.ndarray):
         if view.flags.writeable:
@@ -258,28 +273,15 @@ def _is_protected(array: NDArray[Any]) -> bool:
     return view is None
 
 
-def _largest_gap(solution_gap: FloatArray) -> FloatArray:
-    """Largest gap of each step, (N,): one solver's NaN does not hide another's answer."""
-    gap: FloatArray = np.fmax.reduce(solution_gap, axis=1, initial=np.nan)
-    gap.flags.writeable = False
-    return gap
-
-
-def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict[str, Any]:
-    """Return the settings in JSON types, once all that the metrics need is seen to be there."""
-    limits = ("q_lower", "q_upper", "dq_max") + (("torque_max",) if torques else ())
+def _checked(
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int | None]
+) -> dict[str, Any]:
+    """Return the settings in JSON types after a check of all keys that the metrics need."""
     if not isinstance(settings, Mapping):
         raise InvalidInputError("settings", "must be a dict", settings)
     try:
         checked: dict[str, Any] = plain(settings)
-        for key in limits:
-            values = checked[key]
-            if len(values) != n or not all(value is None or _is_number(value) for value in values):
-                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
-        names = checked["check"]["solvers"]
-        if len(names) != k or not all(isinstance(name, str) for name in names):
-            problem = f"must name {k} solvers, one for each column of solution_gap"
-            raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
+        _check_lists(checked, limits, sizes)
         check, times = checked["check"], (checked["dt"], checked["duration"])
         tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
         numbers = all(map(_is_number, (*times, *tolerances)))
@@ -299,8 +301,36 @@ def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict
     return checked
 
 
+def _check_lists(
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int | None]
+) -> None:
+    """Check that limits, solvers and rows are as many as the arrays have columns."""
+    for key in limits:
+        values, n = settings[key], sizes["n"]
+        if len(values) != n or not all(value is None or _is_number(value) for value in values):
+            raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
+    names, k = settings["check"]["solvers"], sizes["k"]
+    if len(names) != k or not all(isinstance(name, str) for name in names):
+        problem = f"must name {k} solvers, one for each column of solution_gap"
+        raise InvalidInputError("settings['check']['solvers']", problem, settings["check"])
+    m = sizes["m"]
+    rows = settings.get("rows") or [] if m is None else settings["rows"]
+    if (m is not None and len(rows) != m) or not all(map(_names_a_row, rows)):
+        count = "the inequality rows" if m is None else f"{m} inequality rows"
+        problem = f'must name {count} as {{"part": text, "row": number from 1}}'
+        raise InvalidInputError("settings['rows']", problem, rows)
+
+
+def _names_a_row(row: object) -> bool:
+    """Tell whether a value out of JSON is the name of an inequality row."""
+    if not isinstance(row, Mapping) or not isinstance(row.get("part"), str):
+        return False
+    number = row.get("row")
+    return isinstance(number, int) and number >= 1
+
+
 def _is_number(value: object) -> bool:
-    """Whether a value out of JSON is a number that a float can hold; its integers know no end."""
+    """Tell whether a value out of JSON is a number within the range of a float."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return abs(value) <= sys.float_info.max
