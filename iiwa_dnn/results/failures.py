@@ -48,26 +48,15 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
 
 def describe(limit: Mapping[str, Any]) -> str:
-    """Name a bound as ``joint 1 lower position limit``, a row as ``row 3 of CollisionAvoidance``.
-
-    Args:
-        limit: An entry of one of the lists in the metrics' ``incidents``.
-    """
+    """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
     if "row" in limit:
         return f"row {limit['row']} of {limit['part']}"
     return f"joint {limit['joint']} {limit['side']} {limit['limit']} limit"
 
 
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
-    """Say as ``path completed 12.3 %`` that a path is incomplete; never 100.0 of one that is.
-
-    Args:
-        metrics: The metrics of the run; those of older versions do not tell.
-
-    Returns:
-        One line, or none for a completed path.
-    """
-    share = metrics.get("path_completed", 1.0)
+    """Say that a path is incomplete, as ``path completed 12.3 %``; no line for a completed one."""
+    share = metrics.get("path_completed", 1.0)  # older metrics do not tell
     return [f"path completed {min(100.0 * share, 99.9):.1f} %"] if share < 1.0 else []
 
 

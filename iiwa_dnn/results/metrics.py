@@ -116,11 +116,11 @@ def compute_metrics(record: Record) -> dict[str, Any]:
 def _path_completed(record: Record) -> float:
     """Compute the share of the asked path time that the reference's clock covered, 0 to 1."""
     planned = max(1, round(record.settings["duration"] / record.settings["dt"]))
-    return float(min(1.0, _path_steps(record) / planned))
+    return float(np.nan_to_num(np.clip(_path_steps(record) / planned, 0.0, 1.0)))
 
 
 def _path_steps(record: Record) -> float:
-    """Count the control periods by which the reference's clock advanced."""
+    """Sum up the control periods by which the reference's clock advanced."""
     return float(record.steps if record.fraction is None else record.fraction.sum())
 
 
@@ -177,17 +177,15 @@ def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
     if record.torque is None:
         return {}
     largest = np.abs(record.torque).max(axis=0, initial=0.0)
-    settled = distance[record.t >= record.t[0] + SETTLED_AFTER]
-    return {
-        "physics": {
-            "settled_after_s": SETTLED_AFTER,
-            "max_position_error_settled_m": _max(settled),
-            "max_torque_n_m": largest,
-            "torque_limit_n_m": record.settings["torque_max"],
-            "max_torque_share": (largest / limits(record, "torque_max")).max(),
-            "push": _push(record, distance),
-        }
+    physics = {
+        "settled_after_s": SETTLED_AFTER,
+        "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
+        "max_torque_n_m": largest,
+        "torque_limit_n_m": record.settings["torque_max"],
+        "max_torque_share": (largest / limits(record, "torque_max")).max(),
+        "push": _push(record, distance),
     }
+    return {"physics": physics}
 
 
 def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:

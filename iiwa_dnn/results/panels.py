@@ -29,12 +29,7 @@ _LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1
 def envelope(
     t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Cut a curve into stretches of equal length and sum up each, so that no spike is lost.
-
-    Args:
-        t: Times [s], (M,).
-        curve: Values, (M,).
-        buckets: Largest number of stretches.
+    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
 
     Returns:
         Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
@@ -84,10 +79,7 @@ def draw_path(axes: Any, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
-    Args:
-        axes: The axes.
-        record: The run.
-        name: ``"q"``, ``"dq"`` or ``"torque"``; the first two with those limits that are near.
+    The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them.
     """
     import matplotlib
 

@@ -34,15 +34,7 @@ _MARGIN = 12
 
 
 def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``moments.png`` and ``moments.pdf``: the arm at five moments and the path so far.
-
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-        folder: The folder to write into; made if need be.
-
-    Returns:
-        The files written.
+    """Write ``moments.png`` and ``moments.pdf`` into a folder, made if need be; return the files.
 
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -54,10 +46,7 @@ def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -
 def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     """Draw the arm at five moments, and below each the path so far, face on.
 
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-        pixels: Width and height of each picture.
+    Each picture is `pixels` wide and high.
 
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -91,14 +80,7 @@ def save_video(
 ) -> Path:
     """Write a video of the run in real time: MP4 (H.264), which browsers play.
 
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-        path: The file; the old one stays until the new one is whole.
-        progress: Called after each picture with 1.
-
-    Returns:
-        The file written.
+    The old file stays until the new one is whole. `progress` is called after each picture with 1.
 
     Raises:
         MissingDependencyError: MuJoCo, an OpenGL library or the encoder is not installed.
@@ -150,15 +132,7 @@ def frame_times(record: Record) -> list[float]:
 
 
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
-    """Draw the pictures of the video: the arm, the path face on in a corner, and the time.
-
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-
-    Yields:
-        Pictures, (HEIGHT, WIDTH, 3).
-    """
+    """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, in a corner the path, the time."""
     with ExitStack() as stack:
         arm = stack.enter_context(ArmRenderer(robot, record, WIDTH, HEIGHT, "arm", smooth=False))
         path = stack.enter_context(ArmRenderer(robot, record, INSET, INSET, "path"))

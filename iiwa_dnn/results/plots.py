@@ -30,21 +30,11 @@ STYLE = Path(__file__).with_name("style.mplstyle")
 
 
 def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
-    """Draw all figures of a run and write each as PNG and PDF, atomically.
+    """Draw all figures of a run and write them with `write_figures`.
 
     The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
     ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
     and of a run in physics ``torques``. The same record gives the same bytes.
-
-    Args:
-        record: The run.
-        folder: The folder to write into; made if need be.
-
-    Returns:
-        The files written, each PNG followed by its PDF.
-
-    Raises:
-        FileError: If the folder cannot be written.
     """
     figures = {name: partial(draw, record) for name, draw in FIGURES.items()}
     if record.torque is not None:
@@ -58,8 +48,8 @@ def write_figures(
     """Draw figures in the style of the package and write each as PNG and PDF, atomically.
 
     Args:
-        figures: A function that draws each figure, by the name of its files.
-        folder: The folder to write into; made if need be.
+        figures: Functions that draw them, by the names of the files.
+        folder: The folder; made if need be.
 
     Returns:
         The files written, each PNG followed by its PDF.
@@ -112,13 +102,14 @@ def convergence_figure(record: Record) -> Figure:
     rows = 2 if record.references else 1
     figure = new_figure(COLUMN, 1.9 * rows)
     panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    settings, check, t = record.settings, record.settings["check"], record.t[:-1]
+    check, t = record.settings["check"], record.t[:-1]
     # In continuous mode both are a lag, which no tolerance is meant for.
-    judged = settings["mode"] == "converged"
-    draw_log(panels[0], t, record.kkt_residual[:, None], ["network"], judged * settings["tol"])
+    judged = record.settings["mode"] == "converged"
+    tolerances = judged * record.settings["tol"], judged * check["tolerance"]
+    draw_log(panels[0], t, record.kkt_residual[:, None], ["network"], tolerances[0])
     panels[0].set_ylabel("KKT residual")
     if record.references:
-        draw_log(panels[1], t, record.solution_gap, check["solvers"], judged * check["tolerance"])
+        draw_log(panels[1], t, record.solution_gap, check["solvers"], tolerances[1])
         panels[1].set_ylabel("Gap to reference [rad/s]")
     time_axis(panels[-1], record)
     return figure

@@ -11,9 +11,9 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,40 +27,6 @@ IntArray = NDArray[np.int64]
 MODES = ("converged", "continuous")
 LIMITS = ("q_lower", "q_upper", "dq_max")
 
-# N steps, n joints, k reference solvers, m inequality rows. `t`, `q`, `solution_gap` and
-# the first array over m set these sizes.
-_SHAPES: dict[str, tuple[str | int, ...]] = {
-    "t": ("N+1",),
-    "q": ("N+1", "n"),
-    "dq": ("N", "n"),
-    "dq_solver": ("N", "n"),
-    "position": ("N+1", 3),
-    "rotation": ("N+1", 3, 3),
-    "position_desired": ("N+1", 3),
-    "rotation_desired": ("N+1", 3, 3),
-    "kinetic_index": ("N",),
-    "kkt_residual": ("N",),
-    "iterations": ("N",),
-    "solution_gap": ("N", "k"),
-    "objective_gap": ("N", "k"),
-    "reference_residual": ("N", "k"),
-}
-# Only in runs that have them; a file without them is whole.
-_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
-    "torque": ("N", "n"),
-    "bound_multiplier": ("N", "n"),
-    "clipped": ("N", "n"),
-    "action": ("N",),
-    "fraction": ("N",),
-    "blocking": ("N", "n"),
-    "row_multiplier": ("N", "m"),
-    "blocking_rows": ("N", "m"),
-}
-_WHOLE: dict[str, type[np.signedinteger[Any]]] = {
-    "iterations": np.int64,
-    **dict.fromkeys(("clipped", "action", "blocking", "blocking_rows"), np.int8),
-}
-
 # Errors of NumPy, zip and JSON on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
@@ -73,9 +39,10 @@ class Record:
     """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
 
     The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
-    sample i to sample i + 1. In the gaps and in ``reference_residual`` NaN means that the
-    reference was not asked at that step and inf that it gave no answer. Optional arrays are None
-    in a run without them; files of older versions lack some and are read all the same.
+    sample i to sample i + 1. The fields state shape and kind of the arrays, with m for the number
+    of inequality rows. In the gaps and in ``reference_residual`` NaN means that the reference was
+    not asked at that step and inf that it gave no answer. Optional arrays are None in a run without
+    them; files of older versions lack some and are read all the same.
 
     Attributes:
         t: Time [s], (N+1,), increasing.
@@ -113,41 +80,41 @@ class Record:
             was asked.
     """
 
-    t: FloatArray
-    q: FloatArray
-    dq: FloatArray
-    dq_solver: FloatArray
-    position: FloatArray
-    rotation: FloatArray
-    position_desired: FloatArray
-    rotation_desired: FloatArray
-    kinetic_index: FloatArray
-    kkt_residual: FloatArray
-    iterations: IntArray
-    solution_gap: FloatArray
-    objective_gap: FloatArray
-    reference_residual: FloatArray
+    t: Annotated[FloatArray, ("N+1",), np.float64]
+    q: Annotated[FloatArray, ("N+1", "n"), np.float64]
+    dq: Annotated[FloatArray, ("N", "n"), np.float64]
+    dq_solver: Annotated[FloatArray, ("N", "n"), np.float64]
+    position: Annotated[FloatArray, ("N+1", 3), np.float64]
+    rotation: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
+    position_desired: Annotated[FloatArray, ("N+1", 3), np.float64]
+    rotation_desired: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
+    kinetic_index: Annotated[FloatArray, ("N",), np.float64]
+    kkt_residual: Annotated[FloatArray, ("N",), np.float64]
+    iterations: Annotated[IntArray, ("N",), np.int64]
+    solution_gap: Annotated[FloatArray, ("N", "k"), np.float64]
+    objective_gap: Annotated[FloatArray, ("N", "k"), np.float64]
+    reference_residual: Annotated[FloatArray, ("N", "k"), np.float64]
     settings: dict[str, Any]
-    torque: FloatArray | None = None
-    bound_multiplier: FloatArray | None = None
-    clipped: NDArray[np.int8] | None = None
-    action: NDArray[np.int8] | None = None
-    fraction: FloatArray | None = None
-    blocking: NDArray[np.int8] | None = None
-    row_multiplier: FloatArray | None = None
-    blocking_rows: NDArray[np.int8] | None = None
+    torque: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
+    bound_multiplier: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
+    clipped: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
+    action: Annotated[NDArray[np.int8] | None, ("N",), np.int8] = None
+    fraction: Annotated[FloatArray | None, ("N",), np.float64] = None
+    blocking: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
+    row_multiplier: Annotated[FloatArray | None, ("N", "m"), np.float64] = None
+    blocking_rows: Annotated[NDArray[np.int8] | None, ("N", "m"), np.int8] = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        shapes = self._shapes
-        for name, shape in shapes.items():
-            array = _read_only(name, getattr(self, name), len(shape))
+        arrays = self._arrays
+        for name, (shape, kind) in arrays.items():
+            array = _read_only(name, getattr(self, name), len(shape), kind)
             object.__setattr__(self, name, array)
         sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
-        rows = [getattr(self, name).shape[1] for name, shape in shapes.items() if "m" in shape]
-        sizes["m"] = rows[0] if rows else 0
-        for name, shape in shapes.items():
+        for rows in (self.blocking_rows, self.row_multiplier):
+            sizes |= {} if rows is None else {"m": rows.shape[1]}
+        for name, (shape, _) in arrays.items():
             array = getattr(self, name)
             expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
             if array.shape != expected:
@@ -157,8 +124,7 @@ class Record:
         if self.steps < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
         limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
-        settings = _checked(self.settings, limits, sizes | ({} if rows else {"m": None}))
-        object.__setattr__(self, "settings", settings)
+        object.__setattr__(self, "settings", _checked(self.settings, limits, sizes))
         # One solver's NaN does not hide another's answer.
         gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
         gap.flags.writeable = False
@@ -188,10 +154,9 @@ class Record:
         return int(self.solution_gap.shape[1])
 
     @property
-    def _shapes(self) -> dict[str, tuple[str | int, ...]]:
-        """Shapes of the arrays that this record has, by name."""
-        present = {k: v for k, v in _OPTIONAL_SHAPES.items() if getattr(self, k) is not None}
-        return _SHAPES | present
+    def _arrays(self) -> dict[str, tuple[Any, ...]]:
+        """Shape and kind of the arrays that this record has, by name."""
+        return {name: about for name, about in _ARRAYS.items() if getattr(self, name) is not None}
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
@@ -204,7 +169,7 @@ class Record:
         Raises:
             FileError: If the file cannot be written.
         """
-        arrays = {name: getattr(self, name) for name in (*self._shapes, "crosscheck_gap")}
+        arrays = {name: getattr(self, name) for name in (*self._arrays, "crosscheck_gap")}
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
@@ -229,8 +194,8 @@ class Record:
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
-                optional = [key for key in _OPTIONAL_SHAPES if key in arrays.files]
-                stored: dict[str, Any] = {key: arrays[key] for key in (*_SHAPES, *optional)}
+                needed = (name for name in _ARRAYS if name in arrays or name not in _OPTIONAL)
+                stored: dict[str, Any] = {name: arrays[name] for name in needed}
                 stored_gap, text = arrays["crosscheck_gap"], str(arrays["settings"])
             record = cls(settings=json.loads(text), **stored)
             same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
@@ -247,18 +212,25 @@ class Record:
         return record
 
 
-def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
+_ARRAYS = {
+    name: hint.__metadata__
+    for name, hint in get_type_hints(Record, include_extras=True).items()
+    if get_origin(hint) is Annotated
+}
+_OPTIONAL = {item.name for item in fields(Record) if item.default is None}
+
+
+def _read_only(name: str, value: ArrayLike, dimensions: int, kind: type[Any]) -> NDArray[Any]:
     """Copy an array, unless it is protected: nothing done to it later can change the record."""
     array = np.asarray(value)
-    kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
     # NumPy takes any empty list for an array of floats.
-    if array.dtype.kind not in kinds and array.size:
+    if array.dtype.kind not in ("fiu" if kind is np.float64 else "iu") and array.size:
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
     if array.ndim != dimensions:
         raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
-    if array.dtype == target and array.flags.c_contiguous and _is_protected(array):
+    if array.dtype == kind and array.flags.c_contiguous and _is_protected(array):
         return array
-    copy = np.array(array, dtype=target, order="C")
+    copy = np.array(array, dtype=kind, order="C")
     copy.flags.writeable = False
     return copy
 
@@ -274,7 +246,7 @@ def _is_protected(array: NDArray[Any]) -> bool:
 
 
 def _checked(
-    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int | None]
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
 ) -> dict[str, Any]:
     """Return the settings in JSON types after a check of all keys that the metrics need."""
     if not isinstance(settings, Mapping):
@@ -302,7 +274,7 @@ def _checked(
 
 
 def _check_lists(
-    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int | None]
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
 ) -> None:
     """Check that limits, solvers and rows are as many as the arrays have columns."""
     for key in limits:
@@ -313,20 +285,11 @@ def _check_lists(
     if len(names) != k or not all(isinstance(name, str) for name in names):
         problem = f"must name {k} solvers, one for each column of solution_gap"
         raise InvalidInputError("settings['check']['solvers']", problem, settings["check"])
-    m = sizes["m"]
-    rows = settings.get("rows") or [] if m is None else settings["rows"]
-    if (m is not None and len(rows) != m) or not all(map(_names_a_row, rows)):
-        count = "the inequality rows" if m is None else f"{m} inequality rows"
-        problem = f'must name {count} as {{"part": text, "row": number from 1}}'
+    rows = settings.get("rows") or []
+    named = all(isinstance(row["part"], str) and row["row"] >= 1 for row in rows)
+    if not named or len(rows) != sizes.get("m", len(rows)):
+        problem = f'must name {sizes.get("m", "the")} rows as {{"part": text, "row": from 1}}'
         raise InvalidInputError("settings['rows']", problem, rows)
-
-
-def _names_a_row(row: object) -> bool:
-    """Tell whether a value out of JSON is the name of an inequality row."""
-    if not isinstance(row, Mapping) or not isinstance(row.get("part"), str):
-        return False
-    number = row.get("row")
-    return isinstance(number, int) and number >= 1
 
 
 def _is_number(value: object) -> bool:

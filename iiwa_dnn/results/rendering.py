@@ -28,7 +28,6 @@ DRAWN_COLOUR = (0.86, 0.0, 0.1, 1.0)
 
 _SCENERY_GROUP = 2
 _PIECES = 400  # straight ones that a path is drawn with
-_PAPER_MARGIN, _PAPER_GAP = 0.03, 3e-3  # around and below a path in a horizontal plane [m]
 
 
 class ArmRenderer(AbstractContextManager["ArmRenderer"]):
@@ -50,8 +49,7 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
             record: The run.
             width: Width of the pictures [pixel].
             height: Their height [pixel].
-            view: ``"arm"``: the whole arm; ``"path"``: the path face on, the arm translucent over
-                it.
+            view: ``"arm"``, all of it, or ``"path"``, face on under a translucent arm.
             smooth: Whether edges are smoothed; in software that doubles the time.
 
         Raises:
@@ -72,10 +70,9 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
-        azimuth, elevation = np.radians([self._camera.azimuth, self._camera.elevation])
-        level = np.cos(elevation)
-        sight = (level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation))
-        self._behind = 2e-3 * self._camera.distance * np.array(sight)
+        turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
+        sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
+        self._behind = 2e-3 * self._camera.distance * sight
         self._options = mj.MjvOption()
         self._options.geomgroup[:] = 0
         self._options.geomgroup[[VISUAL_GROUP, _SCENERY_GROUP]] = 1
@@ -95,14 +92,7 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._opengl.free()
 
     def draw(self, sample: int) -> Image:
-        """Draw the arm at one sample of the record.
-
-        Args:
-            sample: Index of the sample, 0 to N.
-
-        Returns:
-            The picture, (height, width, 3), red, green and blue from 0 to 255.
-        """
+        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colours to 255."""
         mj = self._mj
         self._data.qpos[:] = self._record.q[sample]
         mj.mj_kinematics(self._model, self._data)
@@ -116,8 +106,9 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._line(self._desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
         passed = [*self._corners[self._corners < sample], sample]
         self._line(self._record.position[passed], wide, DRAWN_COLOUR)
-        if self._view == "path":
-            self._mark(self._record.position[sample])
+        if self._view == "path":  # a dot at the tip, since the arm is translucent
+            size, at = 0.008 * self._camera.distance, self._record.position[sample]
+            self._geom(mj.mjtGeom.mjGEOM_SPHERE, (0.0, 0.0, 0.0, 1.0), size, at)
         frame = mj.MjrRect(0, 0, self._width, self._height)
         image: Image = np.empty((self._height, self._width, 3), dtype=np.uint8)
         self._opengl.make_current()  # another renderer may have drawn since
@@ -125,25 +116,19 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         mj.mjr_readPixels(image, None, frame, self._drawing)
         return image[::-1]  # OpenGL counts rows from below
 
-    def _mark(self, point: FloatArray) -> None:
-        """Add a dot where the tip is, in a picture in which the arm is translucent."""
-        mj, scene = self._mj, self._scene
-        size = np.full(3, 0.008 * self._camera.distance)
-        black = np.array((0.0, 0.0, 0.0, 1.0), dtype=np.float32)
-        geom = scene.geoms[scene.ngeom]
-        mj.mjv_initGeom(geom, mj.mjtGeom.mjGEOM_SPHERE, size, point, np.eye(3).ravel(), black)
-        scene.ngeom += 1
-
     def _line(self, points: FloatArray, width: float, colour: tuple[float, ...]) -> None:
         """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
-        mj, scene = self._mj, self._scene
-        kind, rgba = mj.mjtGeom.mjGEOM_LINE, np.array(colour, dtype=np.float32)
         for start, end in pairwise(points):
-            geom = scene.geoms[scene.ngeom]
-            mj.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), rgba)
-            mj.mjv_connector(geom, kind, width, start, end)
+            geom = self._geom(self._mj.mjtGeom.mjGEOM_LINE, colour, 0.0, start)
+            self._mj.mjv_connector(geom, self._mj.mjtGeom.mjGEOM_LINE, width, start, end)
             geom.emission = 1.0  # the colour as it is, whatever the light
-            scene.ngeom += 1
+
+    def _geom(self, kind: Any, colour: tuple[float, ...], size: float, at: FloatArray) -> Any:
+        """Add a shape to the scene."""
+        geom, rgba = self._scene.geoms[self._scene.ngeom], np.array(colour, dtype=np.float32)
+        self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
+        self._scene.ngeom += 1
+        return geom
 
 
 def sample_at(record: Record, t: float) -> int:
@@ -180,11 +165,10 @@ def _add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
     )  # fmt: skip
     low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
     if high[2] - low[2] < 1e-3 < high[0] - low[0]:
-        size = 0.5 * (high - low)[:2] + _PAPER_MARGIN
-        middle = 0.5 * (high + low)
-        world.add_geom(
+        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
+        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
             type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
-            pos=[middle[0], middle[1], low[2] - _PAPER_GAP], **scenery,
+            pos=[*middle, low[2] - 3e-3], **scenery,
         )  # fmt: skip
 
 

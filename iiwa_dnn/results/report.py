@@ -37,7 +37,6 @@ _SETTINGS = {
 _CAPTIONS = {
     "overview": "Path, joint angles, joint velocities and position error.",
     "path": "Desired and actual path.",
-    "joint_angles": "Joint angles.",
     "joint_velocities": "Joint velocities that moved the robot.",
     "torques": "Joint torques: of each step the largest.",
     "moments": "The arm, and below it the path so far, face on.",
@@ -46,6 +45,25 @@ _CAPTIONS = {
     "value, the band the range, of each short stretch of time.",
 }
 _KINETIC_UNITS = {"identity": "rad²/s²", "inertia": "J"}
+_SUMMARY = {
+    "run": "{robot}, {mode}, {steps} steps of {dt_s} s ({duration_s} s)",
+    "position error": "max {max_position_error_m} m, mean square {mse_position_error_m2} m^2",
+    "orientation error": "max {max_orientation_error_rad} rad",
+    "joint drift": "max {joint_drift_rad} rad",
+    "kinetic index": "max {max_kinetic_index} {kinetic_unit}",
+    "beyond limits": "{position_limit_violation_rad} rad, {velocity_limit_violation_rad_s} rad/s",
+    "KKT residual": "max {max_kkt_residual}, tolerance {tol}",
+    "cross-check": "{solver}, {steps_checked} steps checked, {disagreements} disagreements, "
+    "{reference_failures} failures\n"
+    "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
+    "wall time": "{wall_time_s} s, {realtime_factor} x real time",
+}
+_ACTED = {
+    "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
+    "active_rows": "{name} active for {time_s} s, multiplier up to {max_multiplier}",
+}
+_ON_AVERAGE = ", {mean_multiplier} on average ({steps} steps, from {first_s} s on)"
+_BLOCKED = "{name} in the way for {time_s} s ({steps} steps, from {first_s} s on)"
 _RESULTS: Table = (
     ("share of the path completed", "path_completed", ""),
     ("largest position error", "max_position_error_m", "m"),
@@ -77,12 +95,7 @@ _INCIDENTS: Table = (
     *((f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()),
     ("path time reached", "path_time_s", "s"),
 )
-_SPELLS = {
-    "active_bounds": "active bound",
-    "active_rows": "active row",
-    "blocking": "in the way",
-    "blocking_rows": "row in the way",
-}
+_HEAD = ("quantity", "value", "unit")
 
 
 def save_run(
@@ -91,13 +104,10 @@ def save_run(
     plots: bool = True,
     more: Callable[[Record, Path], list[Path]] | None = None,
 ) -> dict[str, Any]:
-    """Write record.npz, metrics.json, figures and report.md, each atomically, the record first.
+    """Write record.npz, metrics.json, figures and report.md into a folder, made if need be.
 
-    Args:
-        record: The run.
-        folder: The folder to write into; made if need be.
-        plots: Whether to draw the figures.
-        more: Draws more figures into the folder and returns their files.
+    Each file is written atomically, the record first; figures only with `plots`. `more` draws
+    further figures into the folder and returns their files.
 
     Returns:
         The metrics, as in metrics.json.
@@ -121,16 +131,10 @@ def write_report(
     folder: str | os.PathLike[str],
     figures: Iterable[Path] = (),
 ) -> Path:
-    """Write report.md: verdict, results, cross-check, settings, versions and figures.
+    """Write report.md into a folder that exists, and return the file.
 
-    Args:
-        record: The run.
-        metrics: Its metrics; every number in the report is one of them.
-        folder: The folder to write into; it must exist.
-        figures: The figures' files in that folder; the PNG ones are shown.
-
-    Returns:
-        The file written.
+    Every number in it is one of the metrics. Of the figures, files in that folder, the PNG ones are
+    shown.
 
     Raises:
         FileError: If it cannot be written.
@@ -138,79 +142,52 @@ def write_report(
     settings = metrics["settings"]
     results = _rows(metrics, _RESULTS) + _physics(metrics.get("physics"))
     versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
+    lag = "Continuous mode: the gap is the network's lag, reported and not judged."
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
         "## Verdict",
         bullets(failures(record) or [_success(metrics)]),
         "## Results",
-        markdown_table(("quantity", "value", "unit"), results),
+        markdown_table(_HEAD, results),
         "## Cross-check",
-        markdown_table(("quantity", "value", "unit"), _rows(metrics["crosscheck"], _CROSSCHECK)),
+        markdown_table(_HEAD, _rows(metrics["crosscheck"], _CROSSCHECK)),
         *_incidents(metrics.get("incidents")),
-        *(["Continuous mode: the gap is the network's lag, reported and not judged."]
-          if settings["mode"] == "continuous" else []),
+        *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
         "## Versions",
         markdown_table(("package", "version"), versions),
         *show_figures(figures, _CAPTIONS),
-    ]  # fmt: skip
+    ]
     path = Path(folder) / "report.md"
     write_text(path, "\n\n".join(parts) + "\n")
     return path
 
 
 def settings_lines(metrics: Mapping[str, Any]) -> str:
-    """List the settings of a run, one a line, in the words of its report.
-
-    Args:
-        metrics: The metrics of the run.
-    """
+    """List the settings among the metrics of a run, one a line, in the words of its report."""
     return "\n".join(f"{name}: {value}" for name, value in _named(metrics["settings"]))
 
 
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
     """Sum up a run in about ten aligned lines of ASCII, for the terminal.
 
-    Args:
-        metrics: The metrics of the run.
-        reasons: Reasons of its failure where more is known than the metrics tell: `failures` of
-            the record itself.
-
-    Returns:
-        The text, without a newline at its end. An incomplete path is its first line.
+    An incomplete path is its first line. The reasons of a failure are those that the metrics tell,
+    or more detailed ones: `failures` of the record itself.
     """
-    m, settings, check = metrics, metrics["settings"], metrics["crosscheck"]
+    settings, check = metrics["settings"], metrics["crosscheck"]
     reasons = failures(metrics) if reasons is None else reasons
-    checked = "not asked for"
-    if check["solver"] != "none":
-        gap = f"largest {'gap' if check['judged'] else 'lag (not judged)'}"
-        checked = (
-            f"{check['solver']}, {check['steps_checked']:,} steps checked, "
-            f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures\n"
-            f"{gap} {_short(check['max_solution_gap'])} rad/s, "
-            f"tolerance {_short(check['tolerance'])} rad/s"
-        )
-    lines = {
-        "run": f"{settings['robot']}, {settings['mode']}, {m['steps']:,} steps of "
-        f"{_short(m['dt_s'])} s ({_short(m['duration_s'])} s)",
-        "position error": f"max {_short(m['max_position_error_m'])} m, "
-        f"mean square {_short(m['mse_position_error_m2'])} m^2",
-        "orientation error": f"max {_short(m['max_orientation_error_rad'])} rad",
-        "joint drift": f"max {_short(m['joint_drift_rad'])} rad",
-        "kinetic index": f"max {_short(m['max_kinetic_index'])} "
-        f"{_kinetic_unit(settings).replace('²', '^2')}",
-        "beyond limits": f"{_short(m['position_limit_violation_rad'])} rad, "
-        f"{_short(m['velocity_limit_violation_rad_s'])} rad/s",
-        **_physics_lines(m.get("physics")),
-        **_incident_lines(m.get("incidents")),
-        "KKT residual": f"max {_short(m['max_kkt_residual'])}, "
-        f"tolerance {_short(settings['tol'])}",
-        "cross-check": checked,
-        "wall time": f"{_short(m['wall_time_s'])} s, "
-        f"{_short(m['realtime_factor'])} x real time",
-        "verdict": "\n".join(reasons) or _success(metrics),
-    }  # fmt: skip
+    more = {
+        "gap": "gap" if check["judged"] else "lag (not judged)",
+        "kinetic_unit": _kinetic_unit(settings).replace("²", "^2"),
+    }
+    lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
+    if check["solver"] == "none":
+        lines["cross-check"] = "not asked for"
+    lines |= _physics_lines(metrics.get("physics"))
+    lines |= _incident_lines(metrics.get("incidents", {}))
+    lines["wall time"] = lines.pop("wall time")
+    lines["verdict"] = "\n".join(reasons) or _success(metrics)
     width = max(map(len, lines)) + 2
     aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
@@ -232,7 +209,8 @@ def bullets(lines: Iterable[str]) -> str:
 def show_figures(figures: Iterable[Path], captions: Mapping[str, str]) -> list[str]:
     """Show the PNG files among some figures in Markdown, with captions by the files' stems."""
     shown = [path for path in figures if path.suffix == ".png"]
-    pictures = [f"![{captions.get(path.stem, path.stem)}]({path.name})" for path in shown]
+    named = ((path.stem.replace("_", " ").capitalize() + ".", path) for path in shown)
+    pictures = [f"![{captions.get(path.stem, name)}]({path.name})" for name, path in named]
     return ["## Figures", *pictures] if shown else []
 
 
@@ -249,92 +227,71 @@ def _success(metrics: Mapping[str, Any]) -> str:
     return f"all {steps} steps solved, within all limits and in agreement with {check['solver']}"
 
 
+def _fill(text: str, *values: Mapping[str, Any]) -> str:
+    """Fill a text's fields from mappings, numbers in four digits; later mappings come first."""
+    return text.format_map({key: _short(value) for part in values for key, value in part.items()})
+
+
 def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
     """Lay out the summary's lines on torques and recovery."""
     if physics is None:
         return {}
+    settled = "max {max_position_error_settled_m} m from {settled_after_s} s on"
     lines = {
-        "settled error": f"max {_short(physics['max_position_error_settled_m'])} m "
-        f"from {_short(physics['settled_after_s'])} s on",
+        "settled error": _fill(settled, physics),
         "torque": f"max {physics['max_torque_share']:.0%} of a joint's limit",
     }
-    push = physics["push"]
-    if push is not None:
-        recovery = push["recovery_s"]
-        back = "never" if recovery is None else f"after {_short(recovery)} s"
-        lines["push"] = (
-            f"error max {_short(push['max_position_error_m'])} m, "
-            f"back within {_short(push['recovered_below_m'])} m {back}"
-        )
+    if (push := physics["push"]) is not None:
+        back = "never" if push["recovery_s"] is None else "after {recovery_s} s"
+        text = f"error max {{max_position_error_m}} m, back within {{recovered_below_m}} m {back}"
+        lines["push"] = _fill(text, push)
     return lines
 
 
-def _incident_lines(incidents: Mapping[str, Any] | None) -> dict[str, str]:
+def _incident_lines(incidents: Mapping[str, Any]) -> dict[str, str]:
     """Lay out the summary's lines on active bounds, active rows and clipping."""
-    if incidents is None:
-        return {}
-    found = {
-        "active bounds": [_acted(spell, "") for spell in incidents["active_bounds"]],
-        "active rows": [_acted(spell, "active ") for spell in incidents["active_rows"]],
-    }
-    lines = {name: "\n".join(spells) for name, spells in found.items() if spells}
-    if incidents["clipped_steps"]:
+    found = {key: _spells(incidents, key, text) for key, text in _ACTED.items()}
+    lines = {key.replace("_", " "): "\n".join(spells) for key, spells in found.items() if spells}
+    if incidents.get("clipped_steps"):
         lines["clipped commands"] = f"at {incidents['clipped_steps']:,} steps"
     return lines
 
 
-def _acted(spell: Mapping[str, Any], word: str) -> str:
-    time, largest = _short(spell["time_s"]), _short(spell["max_multiplier"])
-    return f"{describe(spell)} {word}for {time} s, multiplier up to {largest}"
+def _spells(incidents: Mapping[str, Any], key: str, text: str) -> list[str]:
+    return [_fill(text, spell, {"name": describe(spell)}) for spell in incidents.get(key, ())]
 
 
 def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
     """Lay out the report's part on limits and policies."""
     if incidents is None:
         return []
-    counts = markdown_table(("quantity", "value", "unit"), _rows(incidents, _INCIDENTS))
-    parts = ["## Limits and policies", counts]
-    parts += [bullets(text.split("\n")) for text in _incident_lines(incidents).values()]
-    for key, title in _SPELLS.items():
-        columns = {"steps": "steps", "time_s": "time [s]", "first_s": "from [s]"}
-        if key.startswith("active"):
-            columns |= {
-                "max_multiplier": "largest multiplier",
-                "mean_multiplier": "mean multiplier",
-            }
-        rows = [
-            [describe(spell), *(_number(spell[column]) for column in columns)]
-            for spell in incidents[key]
-        ]
-        parts += [markdown_table((title, *columns.values()), rows)] if rows else []
-    return parts
+    texts = {key: text + _ON_AVERAGE for key, text in _ACTED.items()}
+    texts |= {"blocking": _BLOCKED, "blocking_rows": _BLOCKED}
+    lines = [line for key, text in texts.items() for line in _spells(incidents, key, text)]
+    counts = markdown_table(_HEAD, _rows(incidents, _INCIDENTS))
+    return ["## Limits and policies", counts, *([bullets(lines)] if lines else [])]
 
 
-def _physics(physics: Mapping[str, Any] | None) -> list[Sequence[str]]:
+def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str, str]]:
     """Lay out the report's rows on torques and recovery."""
     if physics is None:
         return []
-    since = f"largest position error from {physics['settled_after_s']:g} s on"
     torques = zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True)
-    rows: list[Sequence[str]] = [
-        (since, _number(physics["max_position_error_settled_m"]), "m"),
-        *(
-            (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
-            for joint, (torque, limit) in enumerate(torques, 1)
-        ),
+    since = f"largest position error from {physics['settled_after_s']:g} s on"
+    rows = [(since, _number(physics["max_position_error_settled_m"]), "m")]
+    rows += [
+        (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
+        for joint, (torque, limit) in enumerate(torques, 1)
     ]
-    push = physics["push"]
-    if push is not None:
+    if (push := physics["push"]) is not None:
         back = f"time from the push's end until back within {push['recovered_below_m']:g} m"
         recovery = "never" if push["recovery_s"] is None else _number(push["recovery_s"])
-        rows += [
-            ("largest position error since the push", _number(push["max_position_error_m"]), "m"),
-            (back, recovery, "s"),
-        ]
+        largest = _number(push["max_position_error_m"])
+        rows += [("largest position error since the push", largest, "m"), (back, recovery, "s")]
     return rows
 
 
-def _rows(values: Mapping[str, Any], table: Table) -> list[Sequence[str]]:
+def _rows(values: Mapping[str, Any], table: Table) -> list[tuple[str, str, str]]:
     """Look up the numbers of a table; the unit of the kinetic index depends on the scheme."""
     units = {"kinetic": _kinetic_unit(values.get("settings", {}))}
     return [(name, _number(values[key]), units.get(unit, unit)) for name, key, unit in table]
@@ -366,8 +323,10 @@ def _number(value: float | str | None) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
-def _short(value: float | None) -> str:
-    return _number(value) if value is None else f"{value:.4g}"
+def _short(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "unknown" if value is None else _text(value)
 
 
 def _text(value: object) -> str:

@@ -106,11 +106,11 @@ def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        (None, "settings"),
+        (None, r"settings\['rows'\]: must name 3"),
         (ROWS[:2], r"settings\['rows'\]: must name 3"),
         ([*ROWS[:2], {"part": "x", "row": 0}], r"settings\['rows'\]: must name 3"),
-        ([*ROWS[:2], {"row": 1}], r"settings\['rows'\]"),
-        ([*ROWS[:2], "row 3"], r"settings\['rows'\]"),
+        ([*ROWS[:2], {"row": 1}], "settings: 'part' is missing"),
+        ([*ROWS[:2], "row 3"], "settings: "),
         (3, "settings"),
     ],
 )
@@ -124,7 +124,7 @@ def test_wrong_names_of_rows(rows, words):
 
 
 def test_multipliers_of_rows_without_names_are_refused_and_names_alone_are_not():
-    with pytest.raises(InvalidInputError, match="'rows' is missing"):
+    with pytest.raises(InvalidInputError, match=r"settings\['rows'\]: must name 3"):
         make_record(row_multiplier=np.zeros((10, 3)))
     assert make_record(settings={"rows": ROWS}).row_multiplier is None
     with pytest.raises(InvalidInputError, match=r"blocking_rows: shape \(10, 2\), .* \(N, m\)"):
