@@ -27,7 +27,8 @@ from iiwa_dnn.references import (
     Target,
     Waypoints,
 )
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.schemes import (

@@ -25,7 +25,8 @@ import numpy as np
 from helpers_records import make_record
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.references import Waypoints
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import summary
 from iiwa_dnn.robot import load_robot

@@ -13,7 +13,7 @@ from iiwa_dnn.app.track import CHECKS, limited, report_run, start_posture
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart
-from iiwa_dnn.results.metrics import failures
+from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.pictures import frame_times, import_encoder, save_moments, save_video
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run

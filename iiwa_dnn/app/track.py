@@ -21,7 +21,7 @@ from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
-from iiwa_dnn.results.metrics import failures
+from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.arms import ARMS
@@ -70,7 +70,7 @@ def report_run(
 
     Args:
         metrics: As in metrics.json.
-        reasons: Why it failed (`iiwa_dnn.results.metrics.failures`).
+        reasons: Why it failed (`iiwa_dnn.results.failures.failures`).
         folder: Where it was written.
         quiet: Print no summary; the reasons go to standard error.
         verbose: Name the settings and the files too.

@@ -1,31 +1,39 @@
-"""The numbers that sum up a run, and the reasons why it failed: pure functions of its record."""
+"""The numbers that sum up a run: pure functions of its record."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.files import plain
-from iiwa_dnn.results.incidents import incident_failures, incident_metrics
 from iiwa_dnn.results.record import FloatArray, Record
-from iiwa_dnn.results.torques import physics_failures, physics_metrics
 
-# Rounding of the integrator may carry a joint this far past a limit that the QP kept exactly.
-LIMIT_SLACK = 1e-9
+ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop"}
+"""Codes in `Record.action`; 0 is the network's own answer."""
+
+SETTLED_AFTER = 0.5
+"""Time until an arm in physics has settled [s]; it starts at rest, its weight unknown."""
+
+RECOVERED_BELOW = 1e-3
+"""Largest distance to the path of a tip that has recovered from a push [m]."""
+
+_AT_LIMIT = 1.0 - 1e-9
 
 BoolArray = NDArray[np.bool_]
+Codes = NDArray[Any]
 
 
 def position_error(record: Record) -> FloatArray:
-    """Tip position minus desired tip position [m], (N+1, 3)."""
+    """Compute the tip position minus the desired tip position [m], (N+1, 3)."""
     return record.position - record.position_desired
 
 
 def orientation_error(record: Record) -> FloatArray:
-    """Angle between the tip's orientation and the desired one [rad], (N+1,), in [0, π].
+    """Compute the angle between the tip's orientation and the desired one [rad], (N+1,), in [0, π].
 
     With R_e = R_desiredᵀ R the angle is atan2(‖vee((R_e − R_eᵀ)/2)‖, (tr R_e − 1)/2). The usual
     arccos of the second argument alone cannot tell angles below 1e-8 rad from zero.
@@ -39,29 +47,35 @@ def orientation_error(record: Record) -> FloatArray:
 
 
 def position_limit_excess(record: Record) -> FloatArray:
-    """How far each joint is outside its position limits [rad], (N+1, n); 0 inside."""
-    lower = _limits(record, "q_lower", -np.inf)
-    upper = _limits(record, "q_upper", np.inf)
+    """Compute the distance of each joint beyond its position limits [rad], (N+1, n); 0 inside."""
+    lower, upper = limits(record, "q_lower", -np.inf), limits(record, "q_upper")
     # np.maximum, unlike max(), lets a NaN through.
     excess: FloatArray = np.maximum(np.maximum(lower - record.q, record.q - upper), 0.0)
     return excess
 
 
 def velocity_limit_excess(record: Record) -> FloatArray:
-    """How far each joint's speed is above its limit [rad/s], (N, n); 0 below."""
-    excess: FloatArray = np.maximum(np.abs(record.dq) - _limits(record, "dq_max", np.inf), 0.0)
+    """Compute the excess of each joint's speed over its limit [rad/s], (N, n); 0 below."""
+    excess: FloatArray = np.maximum(np.abs(record.dq) - limits(record, "dq_max"), 0.0)
     return excess
 
 
-@np.errstate(over="ignore", invalid="ignore")  # an overflow reads None
+def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
+    """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
+    values = record.settings[key]
+    return np.array([unlimited if value is None else value for value in values], dtype=float)
+
+
 def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 
-    The mean squared error ``mse_position_error_m2`` is the mean over the N+1 samples *and* the
-    three axes, which is what the paper's MSE most likely is: a third of the mean squared distance.
-    ``duration_s`` is the time simulated; what was asked for is ``settings["duration"]``. A run in
-    physics also has ``physics`` (`iiwa_dnn.results.torques.physics_metrics`), one in which a bound
-    or a policy acted ``incidents`` (`iiwa_dnn.results.incidents.incident_metrics`).
+    ``path_completed`` is the share of the asked path time that the reference's clock covered. Below
+    1 the errors say little: they are measured against the slowed target. The mean squared error
+    ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
+    likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
+    simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
+    (torques, settled error, recovery from a push), a run in which a bound, an inequality row, a
+    policy or clipping acted ``incidents``.
 
     Args:
         record: The run.
@@ -72,17 +86,17 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     """
     error = position_error(record)
     duration = float(record.t[-1] - record.t[0])
-    wall = record.wall_time_s
-    settings = {key: value for key, value in record.settings.items() if key != "versions"}
+    wall, settings = record.wall_time_s, record.settings
     metrics: dict[str, Any] = plain(
         {
+            "path_completed": _path_completed(record),
             "max_position_error_m": np.linalg.norm(error, axis=1).max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),
             "joint_drift_rad": np.abs(record.q[-1] - record.q[0]).max(),
             "max_kinetic_index": _max(record.kinetic_index),
             "steps": record.steps,
-            "dt_s": record.settings["dt"],
+            "dt_s": settings["dt"],
             "duration_s": duration,
             "wall_time_s": wall,
             "realtime_factor": duration / wall if wall else None,
@@ -90,47 +104,28 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "velocity_limit_violation_rad_s": velocity_limit_excess(record).max(initial=0.0),
             "max_kkt_residual": _max(record.kkt_residual),
             "crosscheck": _crosscheck(record),
-            **physics_metrics(record),
-            **incident_metrics(record),
-            "settings": settings,
-            "versions": record.settings.get("versions", {}),
+            **_physics(record, np.linalg.norm(error, axis=1)),
+            **_incidents(record),
+            "settings": {key: value for key, value in settings.items() if key != "versions"},
+            "versions": settings.get("versions", {}),
         }
     )
     return metrics
 
 
-def failures(run: Record | Mapping[str, Any]) -> list[str]:
-    """Say in plain words why a run is not a success; its exit code is then 1.
-
-    A run fails if it ended early, if a step was not solved, had no solution or broke a limit, and,
-    in converged mode, if a reference disagreed, gave no answer to be believed, or was not asked.
-
-    Args:
-        run: The record, or its metrics. From the record the reasons also say which joint and when.
-
-    Returns:
-        The reasons, the gravest first; empty if there is none.
-    """
-    record = run if isinstance(run, Record) else None
-    metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
-    return [
-        *_early_end(metrics),
-        *incident_failures(metrics),
-        *_unsolved(metrics, record),
-        *_crosscheck_failures(metrics["crosscheck"], metrics["steps"]),
-        *_broken_limits(metrics, record),
-        *physics_failures(metrics, record),
-    ]
+def _path_completed(record: Record) -> float:
+    """Compute the share of the asked path time that the reference's clock covered, 0 to 1."""
+    planned = max(1, round(record.settings["duration"] / record.settings["dt"]))
+    return float(np.nan_to_num(np.clip(_path_steps(record) / planned, 0.0, 1.0)))
 
 
-def _limits(record: Record, key: str, unlimited: float) -> FloatArray:
-    """A limit of each joint, (n,); settings hold None where there is no limit."""
-    values = record.settings[key]
-    return np.array([unlimited if value is None else value for value in values], dtype=float)
+def _path_steps(record: Record) -> float:
+    """Sum up the control periods by which the reference's clock advanced."""
+    return float(record.steps if record.fraction is None else record.fraction.sum())
 
 
 def _max(values: FloatArray) -> float | None:
-    """Largest value (NaN if there is one), None if there are no values."""
+    """Return the largest value (NaN if there is one), None of no values."""
     return float(values.max()) if values.size else None
 
 
@@ -158,12 +153,12 @@ def _crosscheck(record: Record) -> dict[str, Any]:
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
         "judged": judged,
         "tolerance": check["tolerance"],
-        "first_disagreement": _first(record, disagrees),
+        "first_disagreement": _first_disagreement(record, disagrees),
     }
 
 
-def _first(record: Record, disagrees: BoolArray) -> dict[str, Any] | None:
-    """The first step that disagrees, and there the solver that differs most."""
+def _first_disagreement(record: Record, disagrees: BoolArray) -> dict[str, Any] | None:
+    """Name the first step that disagrees, and the solver that differs most there."""
     steps = np.flatnonzero(disagrees.any(axis=1))
     if not steps.size:
         return None
@@ -177,82 +172,104 @@ def _first(record: Record, disagrees: BoolArray) -> dict[str, Any] | None:
     }
 
 
-def _early_end(metrics: Mapping[str, Any]) -> list[str]:
-    settings = metrics["settings"]
-    if settings["status"] == "completed":
+def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
+    """Sum up torques, settled error and recovery, given the distance to the path [m], (N+1,)."""
+    if record.torque is None:
+        return {}
+    largest = np.abs(record.torque).max(axis=0, initial=0.0)
+    physics = {
+        "settled_after_s": SETTLED_AFTER,
+        "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
+        "max_torque_n_m": largest,
+        "torque_limit_n_m": record.settings["torque_max"],
+        "max_torque_share": (largest / limits(record, "torque_max")).max(),
+        "push": _push(record, distance),
+    }
+    return {"physics": physics}
+
+
+def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
+    """Measure the recovery from a push; its time is None where the tip never came back for good."""
+    push = record.settings.get("physics", {}).get("disturbances", {}).get("push")
+    if push is None:
+        return None
+    end = push["start"] + push["duration"]
+    after = record.t >= end
+    far = record.t[after & ~(distance <= RECOVERED_BELOW)]
+    # The first sample after the last one that is too far away.
+    recovered = record.t[after & (record.t > (far[-1] if far.size else -np.inf))]
+    return {
+        **push,
+        "max_position_error_m": _max(distance[record.t >= push["start"]]),
+        "recovered_below_m": RECOVERED_BELOW,
+        "recovery_s": max(0.0, recovered[0] - end) if recovered.size else None,
+    }
+
+
+def _incidents(record: Record) -> dict[str, Any]:
+    """Count active bounds and rows, clipped commands, and steps that a policy decided."""
+    arrays = (record.bound_multiplier, record.row_multiplier, record.clipped, record.action)
+    if all(array is None for array in arrays):
+        return {}
+    action = np.zeros(record.steps, np.int8) if record.action is None else record.action
+    taken, dt = np.flatnonzero(action), float(record.settings["dt"])
+    first = None
+    if taken.size:
+        name = ACTIONS.get(int(action[taken[0]]), "unknown")
+        first = {"step": int(taken[0]), "time_s": float(record.t[taken[0]]), "action": name}
+    # A bound is the velocity limit itself, or the tighter one near a position limit.
+    fast = np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max")
+    blocking, multiplier = record.blocking, record.bound_multiplier
+    blocked = [] if blocking is None else _bounds(record, blocking, np.abs(blocking) == 2)
+    return {
+        "incidents": {
+            "clipped_steps": 0 if record.clipped is None else int(record.clipped.any(axis=1).sum()),
+            **{f"{name}_steps": int((action == code).sum()) for code, name in ACTIONS.items()},
+            "path_time_s": dt * _path_steps(record),
+            "first": first,
+            "blocking": blocked,
+            "blocking_rows": _rows(record, record.blocking_rows),
+            "active_bounds": [] if multiplier is None else _bounds(record, multiplier, fast, True),
+            "active_rows": _rows(record, record.row_multiplier, True),
+        }
+    }
+
+
+def _bounds(
+    record: Record, signed: Codes, at_velocity: BoolArray, sized: bool = False
+) -> list[dict[str, Any]]:
+    """List the bounds whose entries are signed: positive at an upper one, negative at a lower."""
+    found = []
+    sides, kinds = (("lower", -1), ("upper", 1)), (("position", False), ("velocity", True))
+    for joint, (side, sign), (limit, fast) in product(range(record.dof), sides, kinds):
+        column = signed[:, joint]
+        at = (np.sign(column) == sign) & (at_velocity[:, joint] == fast)
+        name = {"joint": joint + 1, "side": side, "limit": limit}
+        found += _spell(record, name, at, np.abs(column) if sized else None)
+    return found
+
+
+def _rows(record: Record, values: Codes | None, sized: bool = False) -> list[dict[str, Any]]:
+    """List the inequality rows with a value above zero, (N, m)."""
+    found: list[dict[str, Any]] = []
+    if values is None:
+        return found
+    for row, column in zip(record.settings["rows"], values.T, strict=True):
+        name = {"part": row["part"], "row": row["row"]}
+        found += _spell(record, name, column > 0, column if sized else None)
+    return found
+
+
+def _spell(
+    record: Record, name: Mapping[str, Any], at: BoolArray, multiplier: Codes | None
+) -> list[dict[str, Any]]:
+    """Count the steps at which a bound or row acted, (N,); an empty list where it never did."""
+    steps = np.flatnonzero(at)
+    if not steps.size:
         return []
-    planned = round(settings["duration"] / settings["dt"])
-    return [f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"]
-
-
-def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
-    reasons = []
-    if metrics["max_position_error_m"] is None:
-        reasons.append("the tip position is not finite at every step")
-    worst, tolerance = metrics["max_kkt_residual"], metrics["settings"]["tol"]
-    if metrics["settings"]["mode"] != "converged" or not metrics["steps"]:
-        return reasons
-    if worst is not None and worst <= tolerance:
-        return reasons
-    if record is None:
-        return [*reasons, f"largest KKT residual {_show(worst)}, tolerance {_show(tolerance)}"]
-    steps = np.flatnonzero(~(record.kkt_residual <= tolerance))
-    reasons.append(
-        f"{_at(record, steps[0])}: KKT residual {_show(record.kkt_residual[steps[0]])}, "
-        f"tolerance {_show(tolerance)}; {_count(len(steps))} unsolved in all"
-    )
-    return reasons
-
-
-def _crosscheck_failures(check: Mapping[str, Any], steps: int) -> list[str]:
-    reasons = []
-    first = check["first_disagreement"]
-    if first is not None:
-        disagree = "disagrees" if check["disagreements"] == 1 else "disagree"
-        reasons.append(
-            f"step {first['step']} (t = {first['time_s']:.6g} s): {first['solver']} differs by "
-            f"{_show(first['gap'])} rad/s, tolerance {_show(check['tolerance'])}; "
-            f"{_count(check['disagreements'])} {disagree} in all"
-        )
-    # What is not judged cannot fail: in continuous mode the gap is a lag.
-    if check["judged"] and check["reference_failures"]:
-        reasons.append(
-            f"{check['reference_failures']:,} reference answers missing or not accurate enough "
-            f"to judge by ({check['solver']})"
-        )
-    if check["judged"] and check["steps_checked"] < steps:
-        reasons.append(f"only {check['steps_checked']:,} of {_count(steps)} were checked")
-    return reasons
-
-
-def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
-    reasons = []
-    for kind, key, unit in (
-        ("position", "position_limit_violation_rad", "rad"),
-        ("velocity", "velocity_limit_violation_rad_s", "rad/s"),
-    ):
-        worst = metrics[key]
-        if worst is None:
-            reasons.append(f"a joint {kind} is not finite")
-        elif worst > LIMIT_SLACK:
-            where = f"; {_worst_joint(record, kind)}" if record is not None else ""
-            reasons.append(f"joint {kind} limit broken by {_show(worst)} {unit}{where}")
-    return reasons
-
-
-def _worst_joint(record: Record, kind: str) -> str:
-    excess = position_limit_excess(record) if kind == "position" else velocity_limit_excess(record)
-    step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
-    return f"joint {joint + 1} at {_at(record, step)}"
-
-
-def _at(record: Record, step: np.integer[Any] | int) -> str:
-    return f"step {int(step)} (t = {record.t[step]:.6g} s)"
-
-
-def _count(steps: int) -> str:
-    return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
-
-
-def _show(value: float | None) -> str:
-    return "not a number" if value is None else f"{value:.3g}"
+    time, first = float(record.settings["dt"]) * steps.size, float(record.t[steps[0]])
+    spell = {**name, "steps": int(steps.size), "time_s": time, "first_s": first}
+    if multiplier is not None:
+        held = multiplier[at]
+        spell |= {"max_multiplier": float(held.max()), "mean_multiplier": float(held.mean())}
+    return [spell]

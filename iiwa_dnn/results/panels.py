@@ -1,4 +1,4 @@
-"""What is drawn in one pair of axes; `plots` puts them together into figures."""
+"""The contents of one pair of axes; `plots` puts them together into figures."""
 
 from __future__ import annotations
 
@@ -7,20 +7,43 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from iiwa_dnn.results.decimation import BUCKETS, decimate, envelope
 from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+BUCKETS = 700
+"""Stretches that a curve is cut into: one for each pixel across a column at 200 dots an inch."""
+
+_JOINTS = {
+    "q": (r"$q_{}$", "Joint angle [rad]"),
+    "dq": (r"$\dot{{q}}_{}$", "Joint velocity [rad/s]"),
+    "torque": (r"$\tau_{}$", "Joint torque [N m]"),
+}
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
 _LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 
 
+def envelope(
+    t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
+
+    Returns:
+        Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
+    """
+    if len(curve) <= buckets:
+        return t, curve, curve, curve
+    starts = np.linspace(0, len(curve), buckets, endpoint=False).astype(int)
+    counts = np.diff(starts, append=len(curve))
+    times, mean = (np.add.reduceat(values, starts) / counts for values in (t, curve))
+    return times, mean, np.minimum.reduceat(curve, starts), np.maximum.reduceat(curve, starts)
+
+
 def plane_of(position: FloatArray) -> tuple[int, int] | None:
-    """The two axes that a path (N, 3) [m] spans, None if it spans three or is a single point."""
+    """Return the two axes that a path (N, 3) [m] spans, None for three or for a single point."""
     spread = np.ptp(position, axis=0)
     flat = int(spread.argmin())
     if not spread[flat] <= 1e-3 * spread.max():
@@ -30,14 +53,14 @@ def plane_of(position: FloatArray) -> tuple[int, int] | None:
 
 
 def draw_path(axes: Any, record: Record) -> None:
-    """Draw the desired and the actual path [m], in axes made for what `plane_of` says."""
+    """Draw the desired and the actual path [m], in axes made for the answer of `plane_of`."""
     plane = plane_of(record.position_desired)
     columns = list(plane or (0, 1, 2))
-    desired, actual = record.position_desired[:, columns], record.position[:, columns]
+    desired, actual = record.position_desired[:, columns].T, record.position[:, columns].T
     # Wide and pale under thin and dark: both stay visible where they coincide.
-    axes.plot(*desired[decimate(desired)].T, color="0.72", linewidth=3.2, label="desired")
-    axes.plot(*actual[decimate(actual)].T, color="0.0", linestyle="--", label="actual")
-    axes.plot(*actual[:1].T, color="0.0", marker="o", linestyle="", markersize=4, label="start")
+    axes.plot(*desired, color="0.72", linewidth=3.2, label="desired")
+    axes.plot(*actual, color="0.0", linestyle="--", label="actual")
+    axes.plot(*actual[:, :1], color="0.0", marker="o", linestyle="", markersize=4, label="start")
     labels = [f"${'xyz'[column]}$ [m]" for column in columns]
     axes.set_xlabel(labels[0])
     axes.set_ylabel(labels[1])
@@ -53,54 +76,32 @@ def draw_path(axes: Any, record: Record) -> None:
     legend_above(axes, columns=3)
 
 
-def draw_angles(axes: Axes, record: Record) -> None:
-    """Draw the joint positions [rad] over time, and those limits that are near."""
-    _draw_joints(axes, record.t, record.q, r"$q_{}$")
-    time_axis(axes, record)
-    _draw_limits(axes, record.settings["q_lower"] + record.settings["q_upper"])
-    axes.set_ylabel("Joint angle [rad]")
-    legend_above(axes, columns=4)
+def draw_joints(axes: Axes, record: Record, name: str) -> None:
+    """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
-
-def draw_velocities(axes: Axes, record: Record) -> None:
-    """Draw the joint velocities [rad/s] over time, and those limits that are near."""
-    _draw_joints(axes, record.t[:-1], record.dq, r"$\dot{{q}}_{}$")
-    time_axis(axes, record)
-    speeds = [speed for speed in record.settings["dq_max"] if speed is not None]
-    _draw_limits(axes, [*speeds, *(-speed for speed in speeds)])
-    axes.set_ylabel("Joint velocity [rad/s]")
-    legend_above(axes, columns=4)
-
-
-def draw_torques(axes: Axes, record: Record) -> None:
-    """Draw the joint torques [N m] over time, if there are any; each joint has its own limit."""
-    if record.torque is None:
-        return
-    _draw_joints(axes, record.t[:-1], record.torque, r"$\tau_{}$")
-    time_axis(axes, record)
-    axes.set_ylabel("Joint torque [N m]")
-    legend_above(axes, columns=4)
-
-
-def _draw_joints(axes: Axes, t: FloatArray, values: FloatArray, label: str) -> None:
-    """Draw one curve a joint, told apart by luminance, dashes and markers."""
+    The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them.
+    """
     import matplotlib
 
-    joints = values.shape[1]
+    values, (label, quantity) = getattr(record, name), _JOINTS[name]
+    t, joints = record.t[: len(values)], record.dof
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, joints))
+    every = max(min(len(t), BUCKETS) // 7, 1)
     for joint, curve in enumerate(values.T):
-        every = max(min(len(t), BUCKETS) // 7, 1)
         _draw_curve(
-            axes,
-            t,
-            curve,
-            color=colours[joint],
-            linestyle=_DASHES[joint % len(_DASHES)],
+            axes, t, curve, color=colours[joint], linestyle=_DASHES[joint % len(_DASHES)],
             marker=_MARKERS[joint % len(_MARKERS)],
             # Each joint's markers start elsewhere, lest they lie on top of each other.
-            markevery=(every * joint // joints, every),
-            label=label.format(joint + 1),
-        )
+            markevery=(every * joint // joints, every), label=label.format(joint + 1),
+        )  # fmt: skip
+    time_axis(axes, record)
+    if name == "q":
+        _draw_limits(axes, record.settings["q_lower"] + record.settings["q_upper"])
+    elif name == "dq":
+        speeds = [speed for speed in record.settings["dq_max"] if speed is not None]
+        _draw_limits(axes, [*speeds, *(-speed for speed in speeds)])
+    axes.set_ylabel(quantity)
+    legend_above(axes, columns=4)
 
 
 def _draw_curve(axes: Axes, t: FloatArray, curve: FloatArray, **line: Any) -> None:
@@ -134,7 +135,9 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     """
     error = position_error(record)
     norm = np.linalg.norm(error, axis=1)
-    unit, scale = _length_unit(float(np.nanmax(norm, initial=0.0)) if largest is None else largest)
+    size = float(np.nanmax(norm, initial=0.0)) if largest is None else largest
+    fits = (pair for pair in _LENGTH_UNITS if size >= pair[1])
+    unit, scale = next(fits, _LENGTH_UNITS[0] if size == 0.0 else _LENGTH_UNITS[-1])
     styles = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
     for (label, colour, dashes), curve in zip(styles, error.T, strict=True):
         _draw_curve(axes, record.t, curve / scale, color=colour, linestyle=dashes, label=label)
@@ -146,19 +149,13 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     legend_above(axes, columns=4)
 
 
-def _length_unit(largest: float) -> tuple[str, float]:
-    """The unit in which a length reads between 1 and 1000, and its size [m]."""
-    for unit, scale in _LENGTH_UNITS:
-        if largest >= scale:
-            return unit, scale
-    return _LENGTH_UNITS[0] if largest == 0.0 else _LENGTH_UNITS[-1]
-
-
-def draw_log(axes: Axes, t: FloatArray, values: FloatArray, names: list[str]) -> None:
+def draw_log(
+    axes: Axes, t: FloatArray, values: FloatArray, names: list[str], tolerance: float = 0.0
+) -> None:
     """Draw positive values on a log scale: each stretch's largest as a line, its range as a band.
 
     The times (N,) are in [s], the values (N, k) have k names. Answers that never came (inf) are
-    crosses at the top.
+    crosses at the top, a tolerance above zero is a dashed line.
     """
     axes.set_yscale("log")
     for name, curve, colour in zip(names, values.T, cycle(("0.15", "0.55", "0.35"))):
@@ -174,17 +171,12 @@ def draw_log(axes: Axes, t: FloatArray, values: FloatArray, names: list[str]) ->
         if missing.any():
             times = t[missing][:: max(int(missing.sum()) // 100, 1)]
             top = axes.get_xaxis_transform()
-            label = f"{name} failed"
-            axes.plot(
-                times, np.full_like(times, 0.96), "x", color="0.0", transform=top, label=label
-            )
-
-
-def draw_level(axes: Axes, tolerance: float) -> None:
-    """Draw a tolerance as a dashed line; zero has no place on a log scale."""
+            height = np.full_like(times, 0.96)
+            axes.plot(times, height, "x", color="0.0", transform=top, label=f"{name} failed")
     if tolerance > 0.0:
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
         _make_room(axes, tolerance, tolerance)
+    legend_above(axes, columns=3)
 
 
 def _make_room(axes: Axes, low: float, high: float) -> None:

@@ -17,7 +17,7 @@ from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.rendering import ArmRenderer, Image, sample_at
+from iiwa_dnn.results.rendering import ArmRenderer, Image, View, sample_at
 from iiwa_dnn.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -32,19 +32,9 @@ FRAME_RATE = 25
 WIDTH, HEIGHT, INSET = 960, 540, 208  # of the video [pixel]
 _MARGIN = 12
 
-Progress = Callable[[int], object]
-
 
 def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -> list[Path]:
-    """Write ``moments.png`` and ``moments.pdf``: the arm at five moments and the path so far.
-
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-        folder: Where to; made if need be.
-
-    Returns:
-        The files written.
+    """Write ``moments.png`` and ``moments.pdf`` into a folder, made if need be; return the files.
 
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -54,15 +44,9 @@ def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -
 
 
 def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
-    """The arm at five moments, and below each the path so far, face on.
+    """Draw the arm at five moments, and below each the path so far, face on.
 
-    Args:
-        robot: The robot of the record.
-        record: The run.
-        pixels: Width and height of each picture.
-
-    Returns:
-        The figure.
+    Each picture is `pixels` wide and high.
 
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -71,10 +55,10 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     figure = new_figure(DOUBLE_COLUMN, 2.0 * DOUBLE_COLUMN / MOMENTS + 0.2)
     layout: Any = figure.get_layout_engine()
     layout.set(w_pad=0.02, h_pad=0.02, wspace=0.0, hspace=0.0)
-    panels = figure.subplots(2, MOMENTS)
-    for row, view in enumerate(("arm", "path")):
-        with ArmRenderer(robot, record, pixels, pixels, "arm" if row == 0 else "path") as renderer:
-            for panel, sample in zip(panels[row], samples, strict=True):
+    views: tuple[View, View] = ("arm", "path")
+    for panels, view in zip(figure.subplots(2, MOMENTS), views, strict=True):
+        with ArmRenderer(robot, record, pixels, pixels, view) as renderer:
+            for panel, sample in zip(panels, samples, strict=True):
                 panel.imshow(renderer.draw(sample), interpolation="lanczos")
                 panel.set_axis_off()
                 if view == "arm":
@@ -83,27 +67,20 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
 
 
 def moments(record: Record) -> list[float]:
-    """The times that the figure shows [s]."""
-    length = float(record.t[-1] - record.t[0])
-    return [float(record.t[0]) + length * part / MOMENTS for part in range(1, MOMENTS + 1)]
+    """Return the times that the figure shows [s]."""
+    times: list[float] = np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:].tolist()
+    return times
 
 
 def save_video(
     robot: Robot,
     record: Record,
     path: str | os.PathLike[str],
-    progress: Progress | None = None,
+    progress: Callable[[int], object] | None = None,
 ) -> Path:
     """Write a video of the run in real time: MP4 (H.264), which browsers play.
 
-    Args:
-        robot: The robot of the record, from its URDF file.
-        record: The run.
-        path: The file; the old one stays until the new one is whole.
-        progress: Called after each picture with 1.
-
-    Returns:
-        The file written.
+    The old file stays until the new one is whole. `progress` is called after each picture with 1.
 
     Raises:
         MissingDependencyError: MuJoCo, an OpenGL library or the encoder is not installed.
@@ -135,7 +112,7 @@ def save_video(
 
 
 def import_encoder() -> Any:
-    """The package that brings ffmpeg in its wheel.
+    """Import imageio-ffmpeg, which brings ffmpeg in its wheel.
 
     Raises:
         MissingDependencyError: If it is not installed.
@@ -148,22 +125,14 @@ def import_encoder() -> Any:
 
 
 def frame_times(record: Record) -> list[float]:
-    """The times of the video's pictures [s], the first and the last of the run among them."""
-    length = float(record.t[-1] - record.t[0])
-    count = max(1, round(length * FRAME_RATE)) + 1
-    return [float(t) for t in np.linspace(record.t[0], record.t[-1], count)]
+    """Return the times of the video's pictures [s], the run's first and last among them."""
+    count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
+    times: list[float] = np.linspace(record.t[0], record.t[-1], count).tolist()
+    return times
 
 
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
-    """The pictures of the video: the arm, the path face on in a corner, and the time.
-
-    Args:
-        robot: The robot of the record.
-        record: The run.
-
-    Yields:
-        Pictures, (HEIGHT, WIDTH, 3).
-    """
+    """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, in a corner the path, the time."""
     with ExitStack() as stack:
         arm = stack.enter_context(ArmRenderer(robot, record, WIDTH, HEIGHT, "arm", smooth=False))
         path = stack.enter_context(ArmRenderer(robot, record, INSET, INSET, "path"))

@@ -1,4 +1,4 @@
-"""The record of one run: what was asked, what came out, and how each step was judged."""
+"""The record of one run: its settings, its samples, and the judgement of each step."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,54 +25,24 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MODES = ("converged", "continuous")
+LIMITS = ("q_lower", "q_upper", "dq_max")
 
-# N steps, n joints, k reference solvers. `t`, `q` and `solution_gap` set these sizes.
-_SHAPES: dict[str, tuple[str | int, ...]] = {
-    "t": ("N+1",),
-    "q": ("N+1", "n"),
-    "dq": ("N", "n"),
-    "dq_solver": ("N", "n"),
-    "position": ("N+1", 3),
-    "rotation": ("N+1", 3, 3),
-    "position_desired": ("N+1", 3),
-    "rotation_desired": ("N+1", 3, 3),
-    "kinetic_index": ("N",),
-    "kkt_residual": ("N",),
-    "iterations": ("N",),
-    "solution_gap": ("N", "k"),
-    "objective_gap": ("N", "k"),
-    "reference_residual": ("N", "k"),
-}
-# Only runs that have them; a file without them is whole.
-_OPTIONAL_SHAPES: dict[str, tuple[str | int, ...]] = {
-    "torque": ("N", "n"),
-    "bound_multiplier": ("N", "n"),
-    "clipped": ("N", "n"),
-    "action": ("N",),
-    "fraction": ("N",),
-    "blocking": ("N", "n"),
-}
-_WHOLE: dict[str, type[np.signedinteger[Any]]] = {
-    "iterations": np.int64,
-    "clipped": np.int8,
-    "action": np.int8,
-    "blocking": np.int8,
-}
-
-# What NumPy, zip and JSON raise on a damaged file; InvalidInputError is a ValueError.
+# Errors of NumPy, zip and JSON on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (
     ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
     NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
 )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Record:
     """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
 
     The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
-    sample i to sample i + 1. In the last three arrays NaN means that the reference was not asked
-    at that step and inf that it gave no answer.
+    sample i to sample i + 1. The fields state shape and kind of the arrays, with m for the number
+    of inequality rows. In the gaps and in ``reference_residual`` NaN means that the reference was
+    not asked at that step and inf that it gave no answer. Optional arrays are None in a run without
+    them; files of older versions lack some and are read all the same.
 
     Attributes:
         t: Time [s], (N+1,), increasing.
@@ -90,69 +60,83 @@ class Record:
         solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
         objective_gap: Difference in the objective to each reference, (N, k).
         reference_residual: Largest KKT residual of each reference's own answer, (N, k).
-        settings: What was asked for, in JSON types; an infinite limit reads None.
-        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step; None of a
-            run that has no masses.
+        settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
+        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step.
         bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
-            one, negative at a lower one, 0 where the bound does not act; by how much the
-            objective falls for each rad/s that the bound gives way. None where none ever acted.
-        clipped: Which joints' commands were clipped to their bounds on leaving the controller,
-            (N, n), 1 or 0; None where none ever was.
-        action: What was done at each step in place of the network's answer, (N,): codes of
-            `iiwa_dnn.control.policies.Action`. None where its answer was always taken, as in the
-            next two.
+            one, negative at a lower one, 0 at an inactive one; the decrease of the objective per
+            rad/s by which the bound is relaxed. None where none was ever active.
+        clipped: 1 where a joint's command was clipped to its bounds on leaving the controller,
+            else 0, (N, n).
+        action: Action of the policy at each step, (N,): codes of
+            `iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken.
         fraction: Share of a control period by which the reference's clock advanced, (N,).
         blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
-            1 for a position limit's, 2 for a velocity limit, 0 where none is in the way.
-        wall_time_s: How long the run took [s]. Not saved: the same seed gives the same file.
+            1 for a position limit, 2 for a velocity limit, 0 where none is in the way.
+        row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
+            (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
+        blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
+        wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
     """
 
-    t: FloatArray
-    q: FloatArray
-    dq: FloatArray
-    dq_solver: FloatArray
-    position: FloatArray
-    rotation: FloatArray
-    position_desired: FloatArray
-    rotation_desired: FloatArray
-    kinetic_index: FloatArray
-    kkt_residual: FloatArray
-    iterations: IntArray
-    solution_gap: FloatArray
-    objective_gap: FloatArray
-    reference_residual: FloatArray
+    t: Annotated[FloatArray, ("N+1",), np.float64]
+    q: Annotated[FloatArray, ("N+1", "n"), np.float64]
+    dq: Annotated[FloatArray, ("N", "n"), np.float64]
+    dq_solver: Annotated[FloatArray, ("N", "n"), np.float64]
+    position: Annotated[FloatArray, ("N+1", 3), np.float64]
+    rotation: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
+    position_desired: Annotated[FloatArray, ("N+1", 3), np.float64]
+    rotation_desired: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
+    kinetic_index: Annotated[FloatArray, ("N",), np.float64]
+    kkt_residual: Annotated[FloatArray, ("N",), np.float64]
+    iterations: Annotated[IntArray, ("N",), np.int64]
+    solution_gap: Annotated[FloatArray, ("N", "k"), np.float64]
+    objective_gap: Annotated[FloatArray, ("N", "k"), np.float64]
+    reference_residual: Annotated[FloatArray, ("N", "k"), np.float64]
     settings: dict[str, Any]
-    torque: FloatArray | None = None
-    bound_multiplier: FloatArray | None = None
-    clipped: NDArray[np.int8] | None = None
-    action: NDArray[np.int8] | None = None
-    fraction: FloatArray | None = None
-    blocking: NDArray[np.int8] | None = None
+    torque: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
+    bound_multiplier: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
+    clipped: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
+    action: Annotated[NDArray[np.int8] | None, ("N",), np.int8] = None
+    fraction: Annotated[FloatArray | None, ("N",), np.float64] = None
+    blocking: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
+    row_multiplier: Annotated[FloatArray | None, ("N", "m"), np.float64] = None
+    blocking_rows: Annotated[NDArray[np.int8] | None, ("N", "m"), np.int8] = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        shapes = self._shapes
-        for name, shape in shapes.items():
-            array = _read_only(name, getattr(self, name), len(shape))
+        arrays = self._arrays
+        for name, (shape, kind) in arrays.items():
+            array = _read_only(name, getattr(self, name), len(shape), kind)
             object.__setattr__(self, name, array)
-        sizes = {"N": len(self.t) - 1, "N+1": len(self.t), "n": self.dof, "k": self.references}
-        for name, shape in shapes.items():
+        sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
+        for rows in (self.blocking_rows, self.row_multiplier):
+            sizes |= {} if rows is None else {"m": rows.shape[1]}
+        for name, (shape, _) in arrays.items():
+            array = getattr(self, name)
             expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
-            if getattr(self, name).shape != expected:
+            if array.shape != expected:
                 symbols = ", ".join(str(size) for size in shape)
-                raise InvalidInputError(
-                    name,
-                    f"shape {getattr(self, name).shape}, expected ({symbols}) = {expected}",
-                    getattr(self, name),
-                )
-        if sizes["N"] < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+                problem = f"shape {array.shape}, expected ({symbols}) = {expected}"
+                raise InvalidInputError(name, problem, array)
+        if self.steps < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        checked = _checked(self.settings, self.dof, self.references, self.torque is not None)
-        object.__setattr__(self, "settings", checked)
-        object.__setattr__(self, "crosscheck_gap", _largest_gap(self.solution_gap))
+        limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
+        object.__setattr__(self, "settings", _checked(self.settings, limits, sizes))
+        # One solver's NaN does not hide another's answer.
+        gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
+        gap.flags.writeable = False
+        object.__setattr__(self, "crosscheck_gap", gap)
+
+    def __repr__(self) -> str:
+        error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
+        text = (
+            f"Record({self.settings['robot']}, {self.steps:,} steps of {self.settings['dt']:g} s, "
+            f"{self.settings['status']}, position error max {error:.4g} m)"
+        )
+        return " ".join(text.split())
 
     @property
     def steps(self) -> int:
@@ -170,10 +154,9 @@ class Record:
         return int(self.solution_gap.shape[1])
 
     @property
-    def _shapes(self) -> dict[str, tuple[str | int, ...]]:
-        """Shapes of the arrays that this record has, by name."""
-        present = {k: v for k, v in _OPTIONAL_SHAPES.items() if getattr(self, k) is not None}
-        return _SHAPES | present
+    def _arrays(self) -> dict[str, tuple[Any, ...]]:
+        """Shape and kind of the arrays that this record has, by name."""
+        return {name: about for name, about in _ARRAYS.items() if getattr(self, name) is not None}
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
@@ -186,7 +169,7 @@ class Record:
         Raises:
             FileError: If the file cannot be written.
         """
-        arrays = {name: getattr(self, name) for name in (*self._shapes, "crosscheck_gap")}
+        arrays = {name: getattr(self, name) for name in (*self._arrays, "crosscheck_gap")}
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
@@ -206,18 +189,15 @@ class Record:
         """
         try:
             with Path(path).open("rb") as file, warnings.catch_warnings():
-                # Of a head that is not quite right NumPy warns before it gives up.
+                # NumPy warns of a slightly wrong head before it gives up.
                 warnings.simplefilter("ignore", UserWarning)
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
-                stored: dict[str, Any] = {
-                    key: arrays[key] for key in (*_SHAPES, "crosscheck_gap", "settings")
-                }
-                stored |= {key: arrays[key] for key in _OPTIONAL_SHAPES if key in arrays.files}
-            stored_gap = stored.pop("crosscheck_gap")
-            settings = json.loads(str(stored.pop("settings")))
-            record = cls(settings=settings, **stored)
+                needed = (name for name in _ARRAYS if name in arrays or name not in _OPTIONAL)
+                stored: dict[str, Any] = {name: arrays[name] for name in needed}
+                stored_gap, text = arrays["crosscheck_gap"], str(arrays["settings"])
+            record = cls(settings=json.loads(text), **stored)
             same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
         except FileError:
             raise
@@ -232,24 +212,31 @@ class Record:
         return record
 
 
-def _read_only(name: str, value: ArrayLike, dimensions: int) -> NDArray[Any]:
+_ARRAYS = {
+    name: hint.__metadata__
+    for name, hint in get_type_hints(Record, include_extras=True).items()
+    if get_origin(hint) is Annotated
+}
+_OPTIONAL = {item.name for item in fields(Record) if item.default is None}
+
+
+def _read_only(name: str, value: ArrayLike, dimensions: int, kind: type[Any]) -> NDArray[Any]:
     """Copy an array, unless it is protected: nothing done to it later can change the record."""
     array = np.asarray(value)
-    kinds, target = ("iu", _WHOLE[name]) if name in _WHOLE else ("fiu", np.float64)
-    # An empty list is an array of floats to NumPy, whatever it was meant to hold.
-    if array.dtype.kind not in kinds and array.size:
+    # NumPy takes any empty list for an array of floats.
+    if array.dtype.kind not in ("fiu" if kind is np.float64 else "iu") and array.size:
         raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
     if array.ndim != dimensions:
         raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
-    if array.dtype == target and array.flags.c_contiguous and _is_protected(array):
+    if array.dtype == kind and array.flags.c_contiguous and _is_protected(array):
         return array
-    copy = np.array(array, dtype=target, order="C")
+    copy = np.array(array, dtype=kind, order="C")
     copy.flags.writeable = False
     return copy
 
 
 def _is_protected(array: NDArray[Any]) -> bool:
-    """Whether neither the array nor any that it is a view of can be written into."""
+    """Tell whether neither the array nor any that it is a view of can be written into."""
     view: Any = array
     while isinstance(view, np.ndarray):
         if view.flags.writeable:
@@ -258,28 +245,15 @@ def _is_protected(array: NDArray[Any]) -> bool:
     return view is None
 
 
-def _largest_gap(solution_gap: FloatArray) -> FloatArray:
-    """Largest gap of each step, (N,): one solver's NaN does not hide another's answer."""
-    gap: FloatArray = np.fmax.reduce(solution_gap, axis=1, initial=np.nan)
-    gap.flags.writeable = False
-    return gap
-
-
-def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict[str, Any]:
-    """Return the settings in JSON types, once all that the metrics need is seen to be there."""
-    limits = ("q_lower", "q_upper", "dq_max") + (("torque_max",) if torques else ())
+def _checked(
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
+) -> dict[str, Any]:
+    """Return the settings in JSON types after a check of all keys that the metrics need."""
     if not isinstance(settings, Mapping):
         raise InvalidInputError("settings", "must be a dict", settings)
     try:
         checked: dict[str, Any] = plain(settings)
-        for key in limits:
-            values = checked[key]
-            if len(values) != n or not all(value is None or _is_number(value) for value in values):
-                raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
-        names = checked["check"]["solvers"]
-        if len(names) != k or not all(isinstance(name, str) for name in names):
-            problem = f"must name {k} solvers, one for each column of solution_gap"
-            raise InvalidInputError("settings['check']['solvers']", problem, checked["check"])
+        _check_lists(checked, limits, sizes)
         check, times = checked["check"], (checked["dt"], checked["duration"])
         tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
         numbers = all(map(_is_number, (*times, *tolerances)))
@@ -299,8 +273,27 @@ def _checked(settings: Mapping[str, Any], n: int, k: int, torques: bool) -> dict
     return checked
 
 
+def _check_lists(
+    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
+) -> None:
+    """Check that limits, solvers and rows are as many as the arrays have columns."""
+    for key in limits:
+        values, n = settings[key], sizes["n"]
+        if len(values) != n or not all(value is None or _is_number(value) for value in values):
+            raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
+    names, k = settings["check"]["solvers"], sizes["k"]
+    if len(names) != k or not all(isinstance(name, str) for name in names):
+        problem = f"must name {k} solvers, one for each column of solution_gap"
+        raise InvalidInputError("settings['check']['solvers']", problem, settings["check"])
+    rows = settings.get("rows") or []
+    named = all(isinstance(row["part"], str) and row["row"] >= 1 for row in rows)
+    if not named or len(rows) != sizes.get("m", len(rows)):
+        problem = f'must name {sizes.get("m", "the")} rows as {{"part": text, "row": from 1}}'
+        raise InvalidInputError("settings['rows']", problem, rows)
+
+
 def _is_number(value: object) -> bool:
-    """Whether a value out of JSON is a number that a float can hold; its integers know no end."""
+    """Tell whether a value out of JSON is a number within the range of a float."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return abs(value) <= sys.float_info.max

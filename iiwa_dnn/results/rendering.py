@@ -1,18 +1,17 @@
-"""Pictures of an arm and of what it has drawn, by MuJoCo's renderer; no display is needed.
+"""Pictures of an arm and of the path it has drawn, by MuJoCo's renderer; no display is needed.
 
 Only shapes are drawn: joint angles come from a record, nothing is simulated.
 """
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from itertools import pairwise
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.results.decimation import decimate
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
 from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
@@ -28,19 +27,11 @@ DESIRED_COLOUR = (0.2, 0.25, 0.35, 1.0)
 DRAWN_COLOUR = (0.86, 0.0, 0.1, 1.0)
 
 _SCENERY_GROUP = 2
-_CORNERS = 200  # straight pieces that a path is drawn with, about
-_PAPER_MARGIN, _PAPER_GAP = 0.03, 3e-3  # around and below a path in a horizontal plane [m]
+_PIECES = 400  # straight ones that a path is drawn with
 
 
-class ArmRenderer:
-    """Draws an arm that follows a record, with the path so far; a context manager.
-
-    Attributes:
-        record: The run.
-        width: Width of the pictures [pixel].
-        height: Their height [pixel].
-        view: ``"arm"``: the whole arm; ``"path"``: the path face on, the arm translucent over it.
-    """
+class ArmRenderer(AbstractContextManager["ArmRenderer"]):
+    """A renderer of an arm that follows a record, with the path so far; a context manager."""
 
     def __init__(
         self,
@@ -58,7 +49,7 @@ class ArmRenderer:
             record: The run.
             width: Width of the pictures [pixel].
             height: Their height [pixel].
-            view: What the camera looks at.
+            view: ``"arm"``, all of it, or ``"path"``, face on under a translucent arm.
             smooth: Whether edges are smoothed; in software that doubles the time.
 
         Raises:
@@ -67,10 +58,10 @@ class ArmRenderer:
         """
         self._mj = mj = import_mujoco()
         opengl_library()  # before the slow part
-        self.record, self.width, self.height, self.view = record, width, height, view
-        # What to draw of the paths: both may have 100,000 samples.
-        self._desired = record.position_desired[_corners(record.position_desired)]
-        self._drawn = _corners(record.position)
+        self._record, self._width, self._height, self._view = record, width, height, view
+        # Both paths may have 100,000 samples.
+        self._corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
+        self._desired = record.position_desired[self._corners]
         spec = build_spec(robot)
         spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
         spec.visual.quality.offsamples = 4 if smooth else 0
@@ -79,104 +70,70 @@ class ArmRenderer:
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
-        azimuth, elevation = np.radians([self._camera.azimuth, self._camera.elevation])
-        level = np.cos(elevation)
-        sight = (level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation))
-        self._behind = 2e-3 * self._camera.distance * np.array(sight)
+        turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
+        sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
+        self._behind = 2e-3 * self._camera.distance * sight
         self._options = mj.MjvOption()
         self._options.geomgroup[:] = 0
         self._options.geomgroup[[VISUAL_GROUP, _SCENERY_GROUP]] = 1
         self._options.sitegroup[:] = 0
         self._options.flags[mj.mjtVisFlag.mjVIS_TRANSPARENT] = view == "path"
-        pieces = len(self._desired) + len(self._drawn)
-        self._scene = mj.MjvScene(self._model, maxgeom=self._model.ngeom + pieces + 10)
+        self._scene = mj.MjvScene(self._model, maxgeom=self._model.ngeom + 2 * _PIECES + 10)
         self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
         # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
         self._opengl = open_context(width, height)
         self._drawing = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
 
-    def __enter__(self) -> ArmRenderer:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def close(self) -> None:
+    def __exit__(self, *_: object) -> None:
         """Give the OpenGL context back."""
         self._opengl.make_current()
         self._drawing.free()
         self._opengl.free()
 
     def draw(self, sample: int) -> Image:
-        """Draw the arm at one sample of the record.
-
-        Args:
-            sample: Index of the sample, 0 to N.
-
-        Returns:
-            The picture, (height, width, 3), red, green and blue from 0 to 255.
-        """
+        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colours to 255."""
         mj = self._mj
-        self._data.qpos[:] = self.record.q[sample]
+        self._data.qpos[:] = self._record.q[sample]
         mj.mj_kinematics(self._model, self._data)
         mj.mj_camlight(self._model, self._data)
         mj.mjv_updateScene(
             self._model, self._data, self._options, None, self._camera,
             mj.mjtCatBit.mjCAT_ALL.value, self._scene,
         )  # fmt: skip
-        wide = max(3.0, self.height / 130.0)
+        wide = max(3.0, self._height / 130.0)
         # A little farther off than what is drawn, so that it never shows through that.
         self._line(self._desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
-        passed = self._drawn[self._drawn <= sample]
-        drawn = np.vstack([self.record.position[passed], self.record.position[sample]])
-        self._line(drawn, wide, DRAWN_COLOUR)
-        if self.view == "path":
-            self._mark(self.record.position[sample])
-        frame = mj.MjrRect(0, 0, self.width, self.height)
-        image: Image = np.empty((self.height, self.width, 3), dtype=np.uint8)
+        passed = [*self._corners[self._corners < sample], sample]
+        self._line(self._record.position[passed], wide, DRAWN_COLOUR)
+        if self._view == "path":  # a dot at the tip, since the arm is translucent
+            size, at = 0.008 * self._camera.distance, self._record.position[sample]
+            self._geom(mj.mjtGeom.mjGEOM_SPHERE, (0.0, 0.0, 0.0, 1.0), size, at)
+        frame = mj.MjrRect(0, 0, self._width, self._height)
+        image: Image = np.empty((self._height, self._width, 3), dtype=np.uint8)
         self._opengl.make_current()  # another renderer may have drawn since
         mj.mjr_render(frame, self._scene, self._drawing)
         mj.mjr_readPixels(image, None, frame, self._drawing)
         return image[::-1]  # OpenGL counts rows from below
 
-    def _mark(self, point: FloatArray) -> None:
-        """Add a dot where the tip is, in a picture in which the arm is translucent."""
-        mj, scene = self._mj, self._scene
-        size = np.full(3, 0.008 * self._camera.distance)
-        black = np.array((0.0, 0.0, 0.0, 1.0), dtype=np.float32)
-        geom = scene.geoms[scene.ngeom]
-        mj.mjv_initGeom(geom, mj.mjtGeom.mjGEOM_SPHERE, size, point, np.eye(3).ravel(), black)
-        scene.ngeom += 1
-
     def _line(self, points: FloatArray, width: float, colour: tuple[float, ...]) -> None:
         """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
-        mj, scene = self._mj, self._scene
-        kind, rgba = mj.mjtGeom.mjGEOM_LINE, np.array(colour, dtype=np.float32)
         for start, end in pairwise(points):
-            geom = scene.geoms[scene.ngeom]
-            mj.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), rgba)
-            mj.mjv_connector(geom, kind, width, start, end)
+            geom = self._geom(self._mj.mjtGeom.mjGEOM_LINE, colour, 0.0, start)
+            self._mj.mjv_connector(geom, self._mj.mjtGeom.mjGEOM_LINE, width, start, end)
             geom.emission = 1.0  # the colour as it is, whatever the light
-            scene.ngeom += 1
+
+    def _geom(self, kind: Any, colour: tuple[float, ...], size: float, at: FloatArray) -> Any:
+        """Add a shape to the scene."""
+        geom, rgba = self._scene.geoms[self._scene.ngeom], np.array(colour, dtype=np.float32)
+        self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
+        self._scene.ngeom += 1
+        return geom
 
 
 def sample_at(record: Record, t: float) -> int:
-    """Index of the record's sample nearest to a time [s]."""
+    """Return the index of the record's sample nearest to a time [s]."""
     return int(np.abs(record.t - t).argmin())
-
-
-def _corners(path: FloatArray) -> NDArray[np.int64]:
-    """Samples of a path to draw straight pieces between: evenly spaced, and every extreme."""
-    even = np.linspace(0, len(path) - 1, min(len(path), _CORNERS)).astype(np.int64)
-    extreme = decimate(path, buckets=8) if len(path) > _CORNERS else even
-    corners: NDArray[np.int64] = np.union1d(even, extreme)
-    return corners
 
 
 def _add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
@@ -208,16 +165,15 @@ def _add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
     )  # fmt: skip
     low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
     if high[2] - low[2] < 1e-3 < high[0] - low[0]:
-        size = 0.5 * (high - low)[:2] + _PAPER_MARGIN
-        middle = 0.5 * (high + low)
-        world.add_geom(
+        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
+        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
             type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
-            pos=[middle[0], middle[1], low[2] - _PAPER_GAP], **scenery,
+            pos=[*middle, low[2] - 3e-3], **scenery,
         )  # fmt: skip
 
 
 def _arm_camera(mj: Any, record: Record) -> Any:
-    """A camera that has the whole arm in view, from beside the path."""
+    """Place a camera that has the whole arm in view, from beside the path."""
     camera = mj.MjvCamera()
     path = record.position_desired.mean(axis=0)
     reach = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
@@ -230,7 +186,7 @@ def _arm_camera(mj: Any, record: Record) -> Any:
 
 
 def _path_camera(mj: Any, record: Record) -> Any:
-    """A camera that looks at the path's own plane, from above where it can."""
+    """Place a camera that looks at the path's own plane, from above where it can."""
     camera = mj.MjvCamera()
     path = record.position_desired
     camera.lookat[:] = 0.5 * (path.min(axis=0) + path.max(axis=0))

@@ -1,19 +1,22 @@
-"""What a person reads of a run: the summary on the terminal, and a folder with its report."""
+"""The texts about a run: the summary on the terminal, and a folder with its report."""
 
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
-from iiwa_dnn.results.incidents import ACTIONS, describe
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import describe, failures, path_completed
+from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
 
-# How the settings read in the report; one that is not named here keeps its own name.
+Table = Sequence[tuple[str, str, str]]
+
+# Names of the settings in the report; one that is not here keeps its own.
 _SETTINGS = {
     "q_lower": "lower joint limits [rad]",
     "q_upper": "upper joint limits [rad]",
@@ -24,6 +27,9 @@ _SETTINGS = {
     "check": "cross-check",
     "tol": "KKT tolerance",
     "rho": "network time constant [s]",
+    "settler": "integrator, converged mode",
+    "follower": "integrator, continuous mode",
+    "rows": "inequality rows",
     "noise": "noise, standard deviation [rad/s, or rad if at measurement]",
     "noise_at": "noise enters at",
     "filter_window": "filter window [steps]",
@@ -31,7 +37,6 @@ _SETTINGS = {
 _CAPTIONS = {
     "overview": "Path, joint angles, joint velocities and position error.",
     "path": "Desired and actual path.",
-    "joint_angles": "Joint angles.",
     "joint_velocities": "Joint velocities that moved the robot.",
     "torques": "Joint torques: of each step the largest.",
     "moments": "The arm, and below it the path so far, face on.",
@@ -40,6 +45,57 @@ _CAPTIONS = {
     "value, the band the range, of each short stretch of time.",
 }
 _KINETIC_UNITS = {"identity": "rad²/s²", "inertia": "J"}
+_SUMMARY = {
+    "run": "{robot}, {mode}, {steps} steps of {dt_s} s ({duration_s} s)",
+    "position error": "max {max_position_error_m} m, mean square {mse_position_error_m2} m^2",
+    "orientation error": "max {max_orientation_error_rad} rad",
+    "joint drift": "max {joint_drift_rad} rad",
+    "kinetic index": "max {max_kinetic_index} {kinetic_unit}",
+    "beyond limits": "{position_limit_violation_rad} rad, {velocity_limit_violation_rad_s} rad/s",
+    "KKT residual": "max {max_kkt_residual}, tolerance {tol}",
+    "cross-check": "{solver}, {steps_checked} steps checked, {disagreements} disagreements, "
+    "{reference_failures} failures\n"
+    "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
+    "wall time": "{wall_time_s} s, {realtime_factor} x real time",
+}
+_ACTED = {
+    "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
+    "active_rows": "{name} active for {time_s} s, multiplier up to {max_multiplier}",
+}
+_ON_AVERAGE = ", {mean_multiplier} on average ({steps} steps, from {first_s} s on)"
+_BLOCKED = "{name} in the way for {time_s} s ({steps} steps, from {first_s} s on)"
+_RESULTS: Table = (
+    ("share of the path completed", "path_completed", ""),
+    ("largest position error", "max_position_error_m", "m"),
+    ("mean squared position error, over samples and axes", "mse_position_error_m2", "m²"),
+    ("largest orientation error", "max_orientation_error_rad", "rad"),
+    ("joint drift, start to end", "joint_drift_rad", "rad"),
+    ("largest kinetic index", "max_kinetic_index", "kinetic"),
+    ("largest KKT residual", "max_kkt_residual", ""),
+    ("beyond position limits", "position_limit_violation_rad", "rad"),
+    ("beyond velocity limits", "velocity_limit_violation_rad_s", "rad/s"),
+    ("steps", "steps", ""),
+    ("time step", "dt_s", "s"),
+    ("time simulated", "duration_s", "s"),
+    ("wall time", "wall_time_s", "s"),
+    ("time simulated / wall time", "realtime_factor", ""),
+)
+_CROSSCHECK: Table = (
+    ("reference solver", "solver", ""),
+    ("steps checked", "steps_checked", ""),
+    ("steps that disagree", "disagreements", ""),
+    ("reference answers not to be believed", "reference_failures", ""),
+    ("largest gap in the solution", "max_solution_gap", "rad/s"),
+    ("tolerance on it", "tolerance", "rad/s"),
+    ("largest gap in the objective", "max_objective_gap", ""),
+    ("largest residual of a reference", "max_reference_residual", ""),
+)
+_INCIDENTS: Table = (
+    ("steps with a clipped command", "clipped_steps", ""),
+    *((f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()),
+    ("path time reached", "path_time_s", "s"),
+)
+_HEAD = ("quantity", "value", "unit")
 
 
 def save_run(
@@ -48,15 +104,10 @@ def save_run(
     plots: bool = True,
     more: Callable[[Record, Path], list[Path]] | None = None,
 ) -> dict[str, Any]:
-    """Write all that a run leaves: record.npz, metrics.json, figures and report.md.
+    """Write record.npz, metrics.json, figures and report.md into a folder, made if need be.
 
-    Each file is written atomically, the record first.
-
-    Args:
-        record: The run.
-        folder: Where to; made if need be.
-        plots: Whether to draw the figures.
-        more: Draws more figures into the folder and returns their files.
+    Each file is written atomically, the record first; figures only with `plots`. `more` draws
+    further figures into the folder and returns their files.
 
     Returns:
         The metrics, as in metrics.json.
@@ -80,149 +131,91 @@ def write_report(
     folder: str | os.PathLike[str],
     figures: Iterable[Path] = (),
 ) -> Path:
-    """Write report.md: verdict, results, cross-check, settings, versions and figures.
+    """Write report.md into a folder that exists, and return the file.
 
-    Args:
-        record: The run.
-        metrics: Its metrics; every number in the report is one of them.
-        folder: Where to; it must exist.
-        figures: The figures' files in that folder; the PNG ones are shown.
-
-    Returns:
-        The file written.
+    Every number in it is one of the metrics. Of the figures, files in that folder, the PNG ones are
+    shown.
 
     Raises:
         FileError: If it cannot be written.
     """
-    settings, check = metrics["settings"], metrics["crosscheck"]
+    settings = metrics["settings"]
+    results = _rows(metrics, _RESULTS) + _physics(metrics.get("physics"))
+    versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
+    lag = "Continuous mode: the gap is the network's lag, reported and not judged."
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
         "## Verdict",
-        "\n".join(f"- {line}" for line in (failures(record) or [_success(metrics)])),
+        bullets(failures(record) or [_success(metrics)]),
         "## Results",
-        markdown_table(("quantity", "value", "unit"), _results(metrics)),
+        markdown_table(_HEAD, results),
         "## Cross-check",
-        markdown_table(("quantity", "value", "unit"), _crosscheck(check)),
+        markdown_table(_HEAD, _rows(metrics["crosscheck"], _CROSSCHECK)),
         *_incidents(metrics.get("incidents")),
-        *(["Continuous mode: the gap is the network's lag, reported and not judged."]
-          if settings["mode"] == "continuous" else []),
+        *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
-        markdown_table(
-            ("setting", "value"), [(name, _text(value)) for name, value in _named(settings)]
-        ),
+        markdown_table(("setting", "value"), _named(settings)),
         "## Versions",
-        markdown_table(
-            ("package", "version"), [(k, _text(v)) for k, v in metrics["versions"].items()]
-        ),
-    ]  # fmt: skip
-    shown = [path for path in figures if path.suffix == ".png"]
-    if shown:
-        parts.append("## Figures")
-        parts += [f"![{_CAPTIONS.get(path.stem, path.stem)}]({path.name})" for path in shown]
+        markdown_table(("package", "version"), versions),
+        *show_figures(figures, _CAPTIONS),
+    ]
     path = Path(folder) / "report.md"
     write_text(path, "\n\n".join(parts) + "\n")
     return path
 
 
 def settings_lines(metrics: Mapping[str, Any]) -> str:
-    """The settings of a run, one a line, as its report has them.
-
-    Args:
-        metrics: The metrics of the run.
-    """
-    return "\n".join(f"{name}: {_text(value)}" for name, value in _named(metrics["settings"]))
-
-
-def _named(settings: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    return [(_SETTINGS.get(key, key.replace("_", " ")), value) for key, value in settings.items()]
+    """List the settings among the metrics of a run, one a line, in the words of its report."""
+    return "\n".join(f"{name}: {value}" for name, value in _named(metrics["settings"]))
 
 
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
     """Sum up a run in about ten aligned lines of ASCII, for the terminal.
 
-    Args:
-        metrics: The metrics of the run.
-        reasons: Why it failed, if that is known in more detail than the metrics tell: what
-            `failures` says of the record itself.
-
-    Returns:
-        The text, without a newline at its end.
+    An incomplete path is its first line. The reasons of a failure are those that the metrics tell,
+    or more detailed ones: `failures` of the record itself.
     """
-    m, settings, check = metrics, metrics["settings"], metrics["crosscheck"]
+    settings, check = metrics["settings"], metrics["crosscheck"]
     reasons = failures(metrics) if reasons is None else reasons
-    kinetic_unit = _kinetic_unit(settings).replace("²", "^2")
-    checked = "not asked for"
-    if check["solver"] != "none":
-        gap = f"largest {'gap' if check['judged'] else 'lag (not judged)'}"
-        checked = (
-            f"{check['solver']}, {check['steps_checked']:,} steps checked, "
-            f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures\n"
-            f"{gap} {_short(check['max_solution_gap'])} rad/s, "
-            f"tolerance {_short(check['tolerance'])} rad/s"
-        )
-    lines = {
-        "run": f"{settings['robot']}, {settings['mode']}, {m['steps']:,} steps of "
-        f"{_short(m['dt_s'])} s ({_short(m['duration_s'])} s)",
-        "position error": f"max {_short(m['max_position_error_m'])} m, "
-        f"mean square {_short(m['mse_position_error_m2'])} m^2",
-        "orientation error": f"max {_short(m['max_orientation_error_rad'])} rad",
-        "joint drift": f"max {_short(m['joint_drift_rad'])} rad",
-        "kinetic index": f"max {_short(m['max_kinetic_index'])} {kinetic_unit}",
-        "beyond limits": f"{_short(m['position_limit_violation_rad'])} rad, "
-        f"{_short(m['velocity_limit_violation_rad_s'])} rad/s",
-        **_physics_lines(m.get("physics")),
-        **_incident_lines(m.get("incidents")),
-        "KKT residual": f"max {_short(m['max_kkt_residual'])}, "
-        f"tolerance {_short(settings['tol'])}",
-        "cross-check": checked,
-        "wall time": f"{_short(m['wall_time_s'])} s, "
-        f"{_short(m['realtime_factor'])} x real time",
-        "verdict": "\n".join(reasons) or _success(metrics),
-    }  # fmt: skip
+    more = {
+        "gap": "gap" if check["judged"] else "lag (not judged)",
+        "kinetic_unit": _kinetic_unit(settings).replace("²", "^2"),
+    }
+    lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
+    if check["solver"] == "none":
+        lines["cross-check"] = "not asked for"
+    lines |= _physics_lines(metrics.get("physics"))
+    lines |= _incident_lines(metrics.get("incidents", {}))
+    lines["wall time"] = lines.pop("wall time")
+    lines["verdict"] = "\n".join(reasons) or _success(metrics)
     width = max(map(len, lines)) + 2
-    return "\n".join(
+    aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
+    return "\n".join([*path_completed(metrics), *aligned])
 
 
-def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
-    """What a run in physics adds to the summary."""
-    if physics is None:
-        return {}
-    lines = {
-        "settled error": f"max {_short(physics['max_position_error_settled_m'])} m "
-        f"from {_short(physics['settled_after_s'])} s on",
-        "torque": f"max {physics['max_torque_share']:.0%} of a joint's limit",
-    }
-    push = physics["push"]
-    if push is not None:
-        recovery = push["recovery_s"]
-        back = "never" if recovery is None else f"after {_short(recovery)} s"
-        lines["push"] = (
-            f"error max {_short(push['max_position_error_m'])} m, "
-            f"back within {_short(push['recovered_below_m'])} m {back}"
-        )
-    return lines
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Lay out a table in Markdown, its cells made fit to stand in one."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
 
 
-def _incident_lines(incidents: Mapping[str, Any] | None) -> dict[str, str]:
-    """What bounds and policies add to the summary."""
-    if incidents is None:
-        return {}
-    lines = {}
-    if incidents["active_bounds"]:
-        lines["active bounds"] = "\n".join(
-            f"{describe(bound)} for {_short(bound['time_s'])} s, "
-            f"multiplier up to {_short(bound['max_multiplier'])}"
-            for bound in incidents["active_bounds"]
-        )
-    if incidents["clipped_steps"]:
-        lines["clipped commands"] = f"at {incidents['clipped_steps']:,} steps"
-    return lines
+def bullets(lines: Iterable[str]) -> str:
+    """Lay out a list in Markdown."""
+    return "\n".join(f"- {line}" for line in lines)
+
+
+def show_figures(figures: Iterable[Path], captions: Mapping[str, str]) -> list[str]:
+    """Show the PNG files among some figures in Markdown, with captions by the files' stems."""
+    shown = [path for path in figures if path.suffix == ".png"]
+    named = ((path.stem.replace("_", " ").capitalize() + ".", path) for path in shown)
+    pictures = [f"![{captions.get(path.stem, name)}]({path.name})" for name, path in named]
+    return ["## Figures", *pictures] if shown else []
 
 
 def _success(metrics: Mapping[str, Any]) -> str:
-    """The verdict on a run without failures, no stronger than what was checked."""
+    """State the verdict on a run without failures, no stronger than the check."""
     check, steps = metrics["crosscheck"], f"{metrics['steps']:,}"
     if check["solver"] == "none":
         return "completed within all limits; no reference solver was asked"
@@ -234,126 +227,110 @@ def _success(metrics: Mapping[str, Any]) -> str:
     return f"all {steps} steps solved, within all limits and in agreement with {check['solver']}"
 
 
-def _results(metrics: Mapping[str, Any]) -> list[Sequence[str]]:
-    rows = (
-        ("largest position error", "max_position_error_m", "m"),
-        ("mean squared position error, over samples and axes", "mse_position_error_m2", "m²"),
-        ("largest orientation error", "max_orientation_error_rad", "rad"),
-        ("joint drift, start to end", "joint_drift_rad", "rad"),
-        ("largest kinetic index", "max_kinetic_index", _kinetic_unit(metrics["settings"])),
-        ("largest KKT residual", "max_kkt_residual", ""),
-        ("beyond position limits", "position_limit_violation_rad", "rad"),
-        ("beyond velocity limits", "velocity_limit_violation_rad_s", "rad/s"),
-        ("steps", "steps", ""),
-        ("time step", "dt_s", "s"),
-        ("time simulated", "duration_s", "s"),
-        ("wall time", "wall_time_s", "s"),
-        ("time simulated / wall time", "realtime_factor", ""),
-    )
-    return [
-        *((name, _number(metrics[key]), unit) for name, key, unit in rows),
-        *(_physics(metrics["physics"]) if "physics" in metrics else []),
-    ]
+def _fill(text: str, *values: Mapping[str, Any]) -> str:
+    """Fill a text's fields from mappings, numbers in four digits; later mappings come first."""
+    return text.format_map({key: _short(value) for part in values for key, value in part.items()})
+
+
+def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
+    """Lay out the summary's lines on torques and recovery."""
+    if physics is None:
+        return {}
+    settled = "max {max_position_error_settled_m} m from {settled_after_s} s on"
+    lines = {
+        "settled error": _fill(settled, physics),
+        "torque": f"max {physics['max_torque_share']:.0%} of a joint's limit",
+    }
+    if (push := physics["push"]) is not None:
+        back = "never" if push["recovery_s"] is None else "after {recovery_s} s"
+        text = f"error max {{max_position_error_m}} m, back within {{recovered_below_m}} m {back}"
+        lines["push"] = _fill(text, push)
+    return lines
+
+
+def _incident_lines(incidents: Mapping[str, Any]) -> dict[str, str]:
+    """Lay out the summary's lines on active bounds, active rows and clipping."""
+    found = {key: _spells(incidents, key, text) for key, text in _ACTED.items()}
+    lines = {key.replace("_", " "): "\n".join(spells) for key, spells in found.items() if spells}
+    if incidents.get("clipped_steps"):
+        lines["clipped commands"] = f"at {incidents['clipped_steps']:,} steps"
+    return lines
+
+
+def _spells(incidents: Mapping[str, Any], key: str, text: str) -> list[str]:
+    return [_fill(text, spell, {"name": describe(spell)}) for spell in incidents.get(key, ())]
 
 
 def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
-    """Which bounds acted and at what cost, and what policies and clipping did."""
+    """Lay out the report's part on limits and policies."""
     if incidents is None:
         return []
-    counts = [("steps with a clipped command", "clipped_steps", "")]
-    counts += [(f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()]
-    counts += [("path time reached", "path_time_s", "s")]
-    parts = [
-        "## Limits and policies",
-        markdown_table(
-            ("quantity", "value", "unit"),
-            [(name, _number(incidents[key]), unit) for name, key, unit in counts],
-        ),
-    ]
-    for title, key in (("active bound", "active_bounds"), ("in the way", "blocking")):
-        bounds = incidents[key]
-        if not bounds:
-            continue
-        head = [title, "steps", "time [s]", "from [s]"]
-        rows = [
-            [describe(bound), *(_number(bound[part]) for part in ("steps", "time_s", "first_s"))]
-            for bound in bounds
-        ]
-        if key == "active_bounds":
-            head += ["largest multiplier", "mean multiplier"]
-            for row, bound in zip(rows, bounds, strict=True):
-                row += [_number(bound[part]) for part in ("max_multiplier", "mean_multiplier")]
-        parts.append(markdown_table(head, rows))
-    return parts
+    texts = {key: text + _ON_AVERAGE for key, text in _ACTED.items()}
+    texts |= {"blocking": _BLOCKED, "blocking_rows": _BLOCKED}
+    lines = [line for key, text in texts.items() for line in _spells(incidents, key, text)]
+    counts = markdown_table(_HEAD, _rows(incidents, _INCIDENTS))
+    return ["## Limits and policies", counts, *([bullets(lines)] if lines else [])]
 
 
-def _physics(physics: Mapping[str, Any]) -> list[Sequence[str]]:
+def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str, str]]:
+    """Lay out the report's rows on torques and recovery."""
+    if physics is None:
+        return []
+    torques = zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True)
     since = f"largest position error from {physics['settled_after_s']:g} s on"
-    rows: list[Sequence[str]] = [
-        (since, _number(physics["max_position_error_settled_m"]), "m"),
-        *(
-            (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
-            for joint, (torque, limit) in enumerate(
-                zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True), 1
-            )
-        ),
+    rows = [(since, _number(physics["max_position_error_settled_m"]), "m")]
+    rows += [
+        (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
+        for joint, (torque, limit) in enumerate(torques, 1)
     ]
-    push = physics["push"]
-    if push is not None:
+    if (push := physics["push"]) is not None:
         back = f"time from the push's end until back within {push['recovered_below_m']:g} m"
         recovery = "never" if push["recovery_s"] is None else _number(push["recovery_s"])
-        rows += [
-            ("largest position error since the push", _number(push["max_position_error_m"]), "m"),
-            (back, recovery, "s"),
-        ]
+        largest = _number(push["max_position_error_m"])
+        rows += [("largest position error since the push", largest, "m"), (back, recovery, "s")]
     return rows
 
 
-def _crosscheck(check: Mapping[str, Any]) -> list[Sequence[str]]:
-    rows = (
-        ("steps checked", "steps_checked", ""),
-        ("steps that disagree", "disagreements", ""),
-        ("reference answers not to be believed", "reference_failures", ""),
-        ("largest gap in the solution", "max_solution_gap", "rad/s"),
-        ("tolerance on it", "tolerance", "rad/s"),
-        ("largest gap in the objective", "max_objective_gap", ""),
-        ("largest residual of a reference", "max_reference_residual", ""),
-    )
-    return [
-        ("reference solver", check["solver"], ""),
-        *((name, _number(check[key]), unit) for name, key, unit in rows),
-    ]
+def _rows(values: Mapping[str, Any], table: Table) -> list[tuple[str, str, str]]:
+    """Look up the numbers of a table; the unit of the kinetic index depends on the scheme."""
+    units = {"kinetic": _kinetic_unit(values.get("settings", {}))}
+    return [(name, _number(values[key]), units.get(unit, unit)) for name, key, unit in table]
 
 
 def _kinetic_unit(settings: Mapping[str, Any]) -> str:
-    """The unit of q̇ᵀ G q̇, which follows from what G is."""
+    """Return the unit of q̇ᵀ G q̇, none where the scheme does not say what G is."""
     scheme = settings.get("scheme")
     kinetic = scheme.get("kinetic") if isinstance(scheme, Mapping) else None
     return _KINETIC_UNITS.get(str(kinetic), "")
 
 
-def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown, its cells made fit to stand in one."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
+def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Put the settings in words, (name, value)."""
+    named = {_SETTINGS.get(key, key.replace("_", " ")): value for key, value in settings.items()}
+    if settings.get("rows"):
+        counts = Counter(row["part"] for row in settings["rows"])
+        named[_SETTINGS["rows"]] = ", ".join(f"{part}: {n}" for part, n in counts.items())
+    return [(name, _text(value)) for name, value in named.items()]
 
 
 def _cell(text: str) -> str:
     return " ".join(text.split()).replace("|", "\\|")
 
 
-def _number(value: float | None) -> str:
-    if value is None:
-        return "unknown"
+def _number(value: float | str | None) -> str:
+    if value is None or isinstance(value, str):
+        return value or "unknown"
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
 
 
-def _short(value: float | None) -> str:
-    return _number(value) if value is None else f"{value:.4g}"
+def _short(value: object) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return "unknown" if value is None else _text(value)
 
 
 def _text(value: object) -> str:
-    """A setting in words: 'name = value' pairs, and equal entries of a list said once."""
+    """Put a setting in words: 'name = value' pairs, equal entries of a list said once."""
     if isinstance(value, Mapping):
         return ", ".join(f"{key} = {_text(item)}" for key, item in value.items())
     if isinstance(value, list):

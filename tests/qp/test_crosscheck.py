@@ -15,7 +15,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution
 from iiwa_dnn.qp.crosscheck import SOLVERS, Agreement, CrossCheck
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.schemes import DoubleIndicator
 
 BOTH = CrossCheck(("proxqp", "osqp"))

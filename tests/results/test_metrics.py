@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from helpers_records import heart_record, make_record
-from iiwa_dnn.results.metrics import compute_metrics, failures, orientation_error, position_error
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
 
 DESIGN_KEYS = [
+    "path_completed",
     "max_position_error_m",
     "mse_position_error_m2",
     "max_orientation_error_rad",
@@ -241,13 +243,109 @@ def test_what_is_not_finite_is_no_success(name, value):
 
 def test_an_early_end():
     record = make_record(steps=3, settings={"duration": 1.0, "status": "step 3 has no solution"})
-    assert failures(record) == ["ended after 3 of 10 steps: step 3 has no solution"]
+    assert failures(record) == [
+        "path completed 30.0 %",
+        "ended after 3 of 10 steps: step 3 has no solution",
+    ]
     nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
     metrics = compute_metrics(nothing)
     assert metrics["max_kinetic_index"] is metrics["max_kkt_residual"] is None
     assert metrics["velocity_limit_violation_rad_s"] == 0.0
-    assert failures(metrics) == ["ended after 0 of 10 steps: interrupted"]
+    assert failures(metrics) == ["path completed 0.0 %", "ended after 0 of 10 steps: interrupted"]
 
 
 def test_a_good_run_has_no_reasons():
     assert failures(make_record()) == failures(compute_metrics(make_record())) == []
+
+
+ROWS = [
+    {"part": "Obstacle", "row": 1},
+    {"part": "CollisionAvoidance", "row": 1},
+    {"part": "CollisionAvoidance", "row": 2},
+]
+
+
+def slowed(fraction, **changes):
+    """A run whose clock went on by these shares of a control period."""
+    action = np.where(np.asarray(fraction) < 1.0, 2, 0)
+    return make_record(action=action, fraction=fraction, **changes)
+
+
+@pytest.mark.parametrize(
+    ("fraction", "share", "words"),
+    [
+        (np.zeros(10), 0.0, "path completed 0.0 %"),  # a start on a singular pose
+        (np.full(10, 0.25), 0.25, "path completed 25.0 %"),
+        ([1.0] * 9 + [0.99999], 0.999999, "path completed 99.9 %"),
+    ],
+)
+def test_a_path_that_is_not_completed_is_the_first_reason(fraction, share, words):
+    record = slowed(fraction)
+    assert compute_metrics(record)["path_completed"] == pytest.approx(share)
+    assert failures(record)[0] == failures(compute_metrics(record))[0] == words
+    assert compute_metrics(record)["max_position_error_m"] == 0.0  # to the slowed target
+
+
+def test_a_completed_path():
+    assert compute_metrics(make_record())["path_completed"] == 1.0
+    # Of 9.6 steps ten were asked for: a duration is rounded to whole steps.
+    assert compute_metrics(make_record(settings={"duration": 0.96}))["path_completed"] == 1.0
+    relaxed = make_record(action=np.full(10, 3), fraction=np.ones(10))
+    assert compute_metrics(relaxed)["path_completed"] == 1.0
+    old = compute_metrics(make_record())
+    del old["path_completed"]  # metrics of an older version
+    assert failures(old) == []
+
+
+def test_active_rows_are_counted_with_their_multipliers():
+    multiplier = np.zeros((10, 3))
+    multiplier[4:6, 1] = 0.1, 0.3
+    multiplier[7, 1], multiplier[9, 2] = 0.2, 1e-12
+    record = make_record(row_multiplier=multiplier, settings={"rows": ROWS})
+    incidents = compute_metrics(record)["incidents"]
+    assert incidents["active_rows"] == [
+        {
+            "part": "CollisionAvoidance", "row": 1, "steps": 3, "time_s": pytest.approx(0.3),
+            "first_s": pytest.approx(0.4), "max_multiplier": 0.3,
+            "mean_multiplier": pytest.approx(0.2),
+        },
+        {
+            "part": "CollisionAvoidance", "row": 2, "steps": 1, "time_s": 0.1,
+            "first_s": pytest.approx(0.9), "max_multiplier": 1e-12, "mean_multiplier": 1e-12,
+        },
+    ]  # fmt: skip
+    assert incidents["blocking_rows"] == incidents["active_bounds"] == []
+    assert failures(record) == []
+
+
+def test_rows_in_the_way_are_named():
+    blocking, rows = np.zeros((10, 7), int), np.zeros((10, 3), int)
+    blocking[2, 4], rows[2:9, 0], rows[5:9, 2] = -1, 1, 1
+    record = slowed(
+        [1.0] * 2 + [0.5] * 7 + [1.0],
+        blocking=blocking, blocking_rows=rows, settings={"rows": ROWS},
+    )  # fmt: skip
+    found = compute_metrics(record)["incidents"]["blocking_rows"]
+    first = {"steps": 7, "time_s": pytest.approx(0.7), "first_s": pytest.approx(0.2)}
+    assert found[0] == {"part": "Obstacle", "row": 1, **first}
+    assert [row["row"] for row in found] == [1, 2]
+    assert failures(record)[1] == (
+        "7 steps without a solution (7 slowed), the first at step 2 (t = 0.2 s); in the way: "
+        "row 1 of Obstacle, row 2 of CollisionAvoidance, joint 5 lower position limit"
+    )
+
+
+def test_each_kind_of_bound_has_its_own_multipliers():
+    """A joint at its upper position limit first, at its velocity limit later."""
+    multiplier, dq = np.zeros((10, 7)), np.zeros((10, 7))
+    multiplier[1:3, 0], multiplier[6:9, 0], dq[6:9, 0] = 0.5, 0.25, 1.5
+    record = make_record(bound_multiplier=multiplier, dq_solver=dq)
+    found = compute_metrics(record)["incidents"]["active_bounds"]
+    assert [(bound["limit"], bound["side"], bound["steps"]) for bound in found] == [
+        ("position", "upper", 2),
+        ("velocity", "upper", 3),
+    ]
+    assert [(bound["max_multiplier"], bound["mean_multiplier"]) for bound in found] == [
+        (0.5, 0.5),
+        (0.25, 0.25),
+    ]

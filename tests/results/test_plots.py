@@ -16,6 +16,7 @@ from matplotlib import image
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError
+from iiwa_dnn.results.panels import envelope
 from iiwa_dnn.results.plots import (
     FIGURES,
     convergence_figure,
@@ -200,3 +201,40 @@ def test_pdf_streams_are_whole(drawn):
     content = (drawn[0] / "path.pdf").read_bytes()
     start = content.index(b"stream\n") + len(b"stream\n")
     assert zlib.decompressobj().decompress(content[start:])
+
+
+def test_envelope_of_a_ramp():
+    t = np.arange(1000.0)
+    times, mean, least, greatest = envelope(t, 2.0 * t, buckets=10)
+    np.testing.assert_allclose(times, 49.5 + 100.0 * np.arange(10))
+    np.testing.assert_allclose(mean, 2.0 * times)
+    np.testing.assert_array_equal(least, 200.0 * np.arange(10))
+    np.testing.assert_array_equal(greatest, 200.0 * np.arange(10) + 198.0)
+
+
+def test_envelope_holds_every_sample():
+    curve = np.random.default_rng(2).normal(size=12_345)
+    t = np.linspace(0.0, 1.0, len(curve))
+    times, mean, least, greatest = envelope(t, curve, buckets=700)
+    assert len(times) == 700
+    assert least.min() == curve.min()
+    assert greatest.max() == curve.max()
+    assert (least <= mean).all()
+    assert (mean <= greatest).all()
+    for values in envelope(t[:5], curve[:5])[1:]:
+        np.testing.assert_array_equal(values, curve[:5])
+
+
+def test_a_spike_of_the_path_is_drawn_and_a_gap_left_out(heart, tmp_path):
+    """Of 20,000 samples one is off the heart: its ink is in the picture, a NaN is not."""
+
+    def ink(position):
+        path_figure(dataclasses.replace(heart, position=position)).savefig(tmp_path / "x.png")
+        return (image.imread(tmp_path / "x.png")[..., :3].max(axis=2) < 0.5).sum()
+
+    spike, gap = np.array(heart.position), np.array(heart.position)
+    # Both on the inside, so that the axes stay the same.
+    spike[12_345] = 0.5 * (heart.position[0] + heart.position[10_000])
+    gap[5000:7000] = np.nan
+    assert ink(spike) > ink(heart.position) + 50
+    assert ink(gap) < ink(heart.position) - 50

@@ -20,7 +20,11 @@ ARRAYS = [
     for field in dataclasses.fields(Record)
     if field.name not in ("settings", "wall_time_s") and field.default is not None
 ]
-OPTIONAL = {"torque", "bound_multiplier", "clipped", "action", "fraction", "blocking"}
+OPTIONAL = {
+    "torque", "bound_multiplier", "clipped", "action", "fraction", "blocking", "row_multiplier",
+    "blocking_rows",
+}  # fmt: skip
+ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 
 
 @pytest.fixture
@@ -83,9 +87,12 @@ def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
         "action": np.arange(10, dtype=np.int8) % 5,
         "fraction": np.linspace(0.0, 1.0, 10),
         "blocking": -2 * np.eye(10, 7, dtype=np.int8),
+        "row_multiplier": np.linspace(0.0, 1.0, 30).reshape(10, 3),
+        "blocking_rows": np.eye(10, 3, dtype=np.int8),
     }
-    make_record(**happened).save(tmp_path / "record.npz")
+    make_record(**happened, settings={"rows": ROWS}).save(tmp_path / "record.npz")
     loaded = Record.load(tmp_path / "record.npz")
+    assert loaded.settings["rows"] == ROWS
     for name, array in happened.items():
         np.testing.assert_array_equal(getattr(loaded, name), array, strict=True)
     make_record().save(tmp_path / "without.npz")
@@ -93,7 +100,51 @@ def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
         assert not OPTIONAL & set(stored.files)
     for name, array in happened.items():
         with pytest.raises(InvalidInputError, match=rf"^{name}: shape"):
-            make_record(**{name: array[:-1]})
+            make_record(**{name: array[:-1]}, settings={"rows": ROWS})
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        (None, r"settings\['rows'\]: must name 3"),
+        (ROWS[:2], r"settings\['rows'\]: must name 3"),
+        ([*ROWS[:2], {"part": "x", "row": 0}], r"settings\['rows'\]: must name 3"),
+        ([*ROWS[:2], {"row": 1}], "settings: 'part' is missing"),
+        ([*ROWS[:2], "row 3"], "settings: "),
+        (3, "settings"),
+    ],
+)
+def test_wrong_names_of_rows(rows, words):
+    for name, array in (
+        ("row_multiplier", np.zeros((10, 3))),
+        ("blocking_rows", np.zeros((10, 3), int)),
+    ):
+        with pytest.raises(InvalidInputError, match=words):
+            make_record(**{name: array}, settings={"rows": rows})
+
+
+def test_multipliers_of_rows_without_names_are_refused_and_names_alone_are_not():
+    with pytest.raises(InvalidInputError, match=r"settings\['rows'\]: must name 3"):
+        make_record(row_multiplier=np.zeros((10, 3)))
+    assert make_record(settings={"rows": ROWS}).row_multiplier is None
+    with pytest.raises(InvalidInputError, match=r"blocking_rows: shape \(10, 2\), .* \(N, m\)"):
+        make_record(
+            row_multiplier=np.zeros((10, 3)),
+            blocking_rows=np.zeros((10, 2), int),
+            settings={"rows": ROWS},
+        )
+
+
+def test_a_record_prints_one_line():
+    position = np.zeros((11, 3))
+    position[4] = [3e-3, -4e-3, 12e-3]
+    record = make_record(position=position, settings={"status": "stopped\nat step 3"})
+    assert (
+        repr(record)
+        == str(record)
+        == ("Record(iiwa7, 10 steps of 0.1 s, stopped at step 3, position error max 0.013 m)")
+    )
+    assert "\n" not in repr(make_record(steps=0))
 
 
 def test_the_gap_is_the_largest_over_the_solvers(heart):

@@ -10,7 +10,8 @@ import pytest
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, summary, write_report
 
@@ -26,7 +27,7 @@ def run(record, tmp_path_factory):
     return folder, save_run(record, folder)
 
 
-def rows(text):
+def rows_of(text):
     """Cells of all tables of a report, by the first of each row."""
     lines = [line for line in text.splitlines() if line.startswith("| ")]
     cells = [re.split(r" (?<!\\)\| ", line.strip("| ")) for line in lines]
@@ -57,7 +58,7 @@ def test_without_figures(record, tmp_path):
 
 def test_the_reports_numbers_are_the_metrics(run):
     folder, metrics = run
-    table = rows((folder / "report.md").read_text(encoding="utf-8"))
+    table = rows_of((folder / "report.md").read_text(encoding="utf-8"))
     check = metrics["crosscheck"]
     for row, value, unit in [
         ("largest position error", metrics["max_position_error_m"], "m"),
@@ -124,7 +125,7 @@ def test_a_failed_run_lists_every_reason(tmp_path):
 def test_cells_do_not_break_the_table(tmp_path):
     record = make_record(settings={"status": "a | b\nc", "motion": "x|y", "status_code": None})
     write_report(record, compute_metrics(record), tmp_path)
-    table = rows((tmp_path / "report.md").read_text(encoding="utf-8"))
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
     assert table["status"] == ["a \\| b c"]
     assert table["status code"] == ["none"]
 
@@ -169,3 +170,55 @@ def test_nothing_is_written_where_nothing_can_be(record, tmp_path):
         write_report(record, compute_metrics(record), tmp_path / "missing")
     assert (tmp_path / "file").read_text() == "mine"
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_an_unfinished_path_is_the_summarys_first_line():
+    stuck = make_record(action=np.full(10, 2), fraction=np.zeros(10))
+    lines = summary(compute_metrics(stuck), failures(stuck)).splitlines()
+    assert lines[0] == "path completed 0.0 %"
+    assert lines[1].startswith("run  ")
+    assert summary(compute_metrics(make_record())).startswith("run  ")
+
+
+def test_active_and_blocking_rows_are_said(tmp_path):
+    rows = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(4)]
+    multiplier, blocking = np.zeros((10, 4)), np.zeros((10, 4), int)
+    multiplier[:6, 2], blocking[8, 1] = np.linspace(0.4, 0.1, 6), 1
+    record = make_record(
+        row_multiplier=multiplier,
+        blocking_rows=blocking,
+        action=np.eye(10, dtype=int)[8] * 3,
+        fraction=np.ones(10),
+        settings={"rows": rows},
+    )
+    said = "row 3 of CollisionAvoidance active for 0.6 s, multiplier up to 0.4"
+    assert f"active rows        {said}" in summary(compute_metrics(record))
+    write_report(record, compute_metrics(record), tmp_path)
+    report = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert f"- {said}, 0.25 on average (6 steps, from 0 s on)\n" in report
+    assert "- row 2 of CollisionAvoidance in the way for 0.1 s (1 steps, from 0.8 s on)\n" in report
+    assert rows_of(report)["inequality rows"] == ["CollisionAvoidance: 4"]
+    assert "in the way: row 2 of CollisionAvoidance" in report
+
+
+def test_network_and_integrators_are_among_the_settings(tmp_path):
+    named = {
+        "network": {"name": "ProjectionNetwork", "rho": 9e-5},
+        "settler": {"name": "ImplicitEuler"},
+        "follower": {"name": "ExplicitEuler", "substeps": None},
+    }
+    record = make_record(settings=named)
+    write_report(record, compute_metrics(record), tmp_path)
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert table["network"] == ["name = ProjectionNetwork, rho = 9e-05"]
+    assert table["integrator, converged mode"] == ["name = ImplicitEuler"]
+    assert table["integrator, continuous mode"] == ["name = ExplicitEuler, substeps = none"]
+
+
+@pytest.mark.parametrize("scheme", [{"name": "Scheme"}, {"kinetic": None}, {"kinetic": "mine"}])
+def test_an_unknown_kinetic_index_has_no_unit(scheme, tmp_path):
+    record = make_record(settings={"scheme": scheme})
+    write_report(record, compute_metrics(record), tmp_path)
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert "".join(table["largest kinetic index"][1:]) == ""
+    assert re.search(r"kinetic index +max 0 *\n", summary(compute_metrics(record)))

@@ -1,4 +1,4 @@
-"""What a run in physics came to: closed forms on made-up records."""
+"""Torques, settled error and recovery of a run in physics: closed forms on made-up records."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import pytest
 
 from helpers_records import make_record
 from iiwa_dnn.results import plots
-from iiwa_dnn.results.metrics import compute_metrics, failures
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, summary
-from iiwa_dnn.results.torques import physics_failures, physics_metrics
 
 LIMITS = [100.0, 100.0, 50.0, 50.0, 50.0, 20.0, np.inf]
 PUSH = {"force": [0.0, 10.0, 0.0], "start": 2.0, "duration": 0.5}
@@ -41,9 +41,8 @@ def error_after(last_far: float) -> np.ndarray:
 
 def test_nothing_of_a_run_without_torques():
     record = make_record()
-    assert physics_metrics(record) == {}
     assert "physics" not in compute_metrics(record)
-    assert physics_failures(compute_metrics(record), record) == []
+    assert failures(record) == []
 
 
 def test_settled_error_and_torques():

@@ -1,0 +1,181 @@
+"""The reasons why a run is not a success, in plain words: from its record or its metrics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn.results.metrics import (
+    compute_metrics,
+    limits,
+    position_limit_excess,
+    velocity_limit_excess,
+)
+from iiwa_dnn.results.record import Record
+
+LIMIT_SLACK = 1e-9
+"""Excess over a limit [rad, rad/s] that is forgiven: the rounding of the motion's integration."""
+
+_DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
+
+
+def failures(run: Record | Mapping[str, Any]) -> list[str]:
+    """List the reasons why a run is not a success; its exit code is then 1.
+
+    A run fails if it did not complete its path, if a step was not solved, had no solution or broke
+    a limit, and, in converged mode, if a reference disagreed, gave no answer to be believed, or was
+    not asked.
+
+    Args:
+        run: The record, or its metrics. From the record the reasons also name joint and step.
+
+    Returns:
+        The reasons, the gravest first; empty if there is none.
+    """
+    record = run if isinstance(run, Record) else None
+    metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
+    return [
+        *path_completed(metrics),
+        *_early_end(metrics),
+        *_policies(metrics),
+        *_unsolved(metrics, record),
+        *_crosscheck(metrics["crosscheck"], metrics["steps"]),
+        *_broken_limits(metrics, record),
+        *_torques(metrics, record),
+    ]
+
+
+def describe(limit: Mapping[str, Any]) -> str:
+    """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
+    if "row" in limit:
+        return f"row {limit['row']} of {limit['part']}"
+    return f"joint {limit['joint']} {limit['side']} {limit['limit']} limit"
+
+
+def path_completed(metrics: Mapping[str, Any]) -> list[str]:
+    """Say that a path is incomplete, as ``path completed 12.3 %``; no line for a completed one."""
+    share = metrics.get("path_completed", 1.0)  # older metrics do not tell
+    return [f"path completed {min(100.0 * share, 99.9):.1f} %"] if share < 1.0 else []
+
+
+def _early_end(metrics: Mapping[str, Any]) -> list[str]:
+    settings = metrics["settings"]
+    if settings["status"] == "completed":
+        return []
+    planned = round(settings["duration"] / settings["dt"])
+    return [f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"]
+
+
+def _policies(metrics: Mapping[str, Any]) -> list[str]:
+    """Name the steps without the network's answer; clipping and active bounds are no failures."""
+    incidents = metrics.get("incidents")
+    if incidents is None or incidents["first"] is None:
+        return []
+    first, reasons = incidents["first"], []
+    if incidents["fallback_steps"]:
+        count = _count(incidents["fallback_steps"])
+        reasons.append(f"{count} answered by the reference: the network did not settle")
+    taken = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
+    if any(taken.values()):
+        did = ", ".join(f"{steps:,} {word}" for word, steps in taken.items() if steps)
+        blocks = [*incidents["blocking"], *incidents.get("blocking_rows", ())]
+        blocks.sort(key=lambda limit: -limit["steps"])
+        names = ", ".join(map(describe, blocks[:3])) or "no bound, a singular pose"
+        reasons.append(
+            f"{_count(sum(taken.values()))} without a solution ({did}), the first at "
+            f"step {first['step']} (t = {first['time_s']:.6g} s); in the way: {names}"
+        )
+    if incidents["slow_steps"]:
+        reached, asked = incidents["path_time_s"], metrics["duration_s"]
+        reasons.append(f"slowed: path time {reached:.6g} s after {asked:.6g} s")
+    return reasons
+
+
+def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
+    reasons = []
+    if metrics["max_position_error_m"] is None:
+        reasons.append("the tip position is not finite at every step")
+    worst, tolerance = metrics["max_kkt_residual"], metrics["settings"]["tol"]
+    if metrics["settings"]["mode"] != "converged" or not metrics["steps"]:
+        return reasons
+    if worst is not None and worst <= tolerance:
+        return reasons
+    if record is None:
+        return [*reasons, f"largest KKT residual {_show(worst)}, tolerance {_show(tolerance)}"]
+    steps = np.flatnonzero(~(record.kkt_residual <= tolerance))
+    reasons.append(
+        f"{_at(record, steps[0])}: KKT residual {_show(record.kkt_residual[steps[0]])}, "
+        f"tolerance {_show(tolerance)}; {_count(len(steps))} unsolved in all"
+    )
+    return reasons
+
+
+def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
+    reasons = []
+    first = check["first_disagreement"]
+    if first is not None:
+        disagree = "disagrees" if check["disagreements"] == 1 else "disagree"
+        reasons.append(
+            f"step {first['step']} (t = {first['time_s']:.6g} s): {first['solver']} differs by "
+            f"{_show(first['gap'])} rad/s, tolerance {_show(check['tolerance'])}; "
+            f"{_count(check['disagreements'])} {disagree} in all"
+        )
+    if not check["judged"]:  # in continuous mode the gap is a lag
+        return reasons
+    if check["reference_failures"]:
+        reasons.append(
+            f"{check['reference_failures']:,} reference answers missing or not accurate enough "
+            f"to judge by ({check['solver']})"
+        )
+    if check["steps_checked"] < steps:
+        reasons.append(f"only {check['steps_checked']:,} of {_count(steps)} were checked")
+    return reasons
+
+
+def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
+    reasons = []
+    for kind, key, unit, excess in (
+        ("position", "position_limit_violation_rad", "rad", position_limit_excess),
+        ("velocity", "velocity_limit_violation_rad_s", "rad/s", velocity_limit_excess),
+    ):
+        worst, where = metrics[key], ""
+        if worst is None:
+            reasons.append(f"a joint {kind} is not finite")
+        elif worst > LIMIT_SLACK:
+            if record is not None:
+                table = excess(record)
+                step, joint = np.unravel_index(int(table.argmax()), table.shape)
+                where = f"; joint {joint + 1} at {_at(record, step)}"
+            reasons.append(f"joint {kind} limit broken by {_show(worst)} {unit}{where}")
+    return reasons
+
+
+def _torques(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
+    physics = metrics.get("physics")
+    if physics is None or physics["max_torque_share"] < 1.0:
+        return []
+    if record is None or record.torque is None:
+        return [f"a joint torque reached {physics['max_torque_share']:.0%} of its limit"]
+    limit, reasons = limits(record, "torque_max"), []
+    reached = ~(np.abs(record.torque) < limit)
+    for joint in np.flatnonzero(reached.any(axis=0)):
+        steps = np.flatnonzero(reached[:, joint])
+        reasons.append(
+            f"joint {joint + 1} torque reached its limit of {limit[joint]:g} N m at "
+            f"{_at(record, steps[0])}; {steps.size:,} in all"
+        )
+    return reasons
+
+
+def _at(record: Record, step: np.integer[Any] | int) -> str:
+    return f"step {int(step)} (t = {record.t[step]:.6g} s)"
+
+
+def _count(steps: int) -> str:
+    return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
+
+
+def _show(value: float | None) -> str:
+    return "not a number" if value is None else f"{value:.3g}"
