@@ -54,8 +54,7 @@ class Ours(Stepper):
         robot = paper_robot()
         start = Configuration(robot, paper.START)
         scheme = DoubleIndicator().anchored(start)
-        self._controller = Controller(scheme, DNNSolver(), "converged", dt)
-        self._robot, self._data, self._dt = robot, robot.model.createData(), dt
+        self._controller, self._dt = Controller(robot, scheme, dt=dt), dt
         self._motion = MOTIONS[motion].step
         self.name = f"iiwa_dnn, {motion}"
         self.q = np.array(start.q)
@@ -65,8 +64,8 @@ class Ours(Stepper):
         dt = self._dt
 
         def velocity(q: Vector, t: float) -> Vector:
-            conf = Configuration(self._robot, q, self._data)
-            return self._controller.step(conf, targets[2 * k + round(2.0 * t / dt)]).dq
+            target = targets[2 * k + round(2.0 * t / dt)]
+            return self._controller.step(q, k * dt + t, target).dq
 
         self.q = self.q + dt * self._motion(velocity, self.q, 0.0, dt)
 
@@ -242,12 +241,12 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
     targets, data, solver = reference.sample(record.t[:-1]), robot.model.createData(), DNNSolver()
     confs = [Configuration(robot, q, data) for q in record.q[:-1]]
     programs = [scheme.build_qp(conf, targets[k]) for k, conf in enumerate(confs)]
-    controller = Controller(scheme, DNNSolver(), "converged", dt)
-    answers = controller.answers(steps)
+    controller = Controller(robot, scheme, dt=dt)
+    answers = controller.answers(targets.data)
 
     def answer(k: int) -> None:
         answers.count = k
-        controller.answer(confs[k], targets.data[k], answers)
+        controller.answer(confs[k].arrays[0], answers)
 
     check, block = CrossCheck(), min(steps, 500)
     rows = np.stack([qp.data for qp in programs[:block]])
@@ -267,7 +266,7 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
         ),
         ("network: DNNSolver.solve", _per_call(lambda k: solver.solve(programs[k]), steps)),
         (
-            "program and network in one call: Controller.answer",
+            "kinematics, program and network: Controller.answer",
             _per_call(answer, steps),
         ),
         ("reference: sample, per target", _each(lambda: reference.sample(record.t[:-1]), steps)),

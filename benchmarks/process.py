@@ -25,9 +25,9 @@ robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
 conf = iiwa_dnn.Configuration(robot, paper.START)
 reference = iiwa_dnn.Heart().anchored(conf)
 scheme = iiwa_dnn.DoubleIndicator().anchored(conf)
-controller = iiwa_dnn.Controller(scheme, iiwa_dnn.DNNSolver())
+controller = iiwa_dnn.Controller(robot, scheme, reference, dt=1e-4)
 for k in range(2):
-    command = controller.step(conf, reference.at(1e-4 * k))
+    command = controller.step(conf.q, 1e-4 * k)
 print(command.dq[0], flush=True)
 """
 

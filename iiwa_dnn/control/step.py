@@ -39,9 +39,9 @@ def control_step(
             integrator, time to advance (0: settle), whether x is projected, explicit sub-steps (0:
             as many as stability needs), share of the stable step that is used); the constants are
             `Layout.numbers`.
-        jacobian: `Kinematics.jacobian`.
-        placements: `Kinematics.placements`.
-        state: The network's state, advanced.
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        state: The network's state, (size,), advanced.
         built: Whether the row holds the program already.
         motion: Where above 0, the answer moves the joint positions in `work` for this time [s], as
             the ideal plant does.

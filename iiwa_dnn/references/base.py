@@ -50,7 +50,7 @@ class Reference(ABC):
         name: Name of the path in settings and on the command line.
         path: Compiled form of the path, where it has one: it adds displacement and velocity at
             times (k,), with the path's `numbers`, to targets (k, 18).
-        numbers: Constants of the compiled form.
+        numbers: Constants of the compiled form, (c,).
         origin: Position of displacement 0 [m], shape (3,), read-only.
         orientation: Orientation at all times, shape (3, 3), read-only.
     """

@@ -42,8 +42,9 @@ class Kinematics:
         ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
         self.frame_ids = tuple(dict.fromkeys(ids))
         self._dynamics = dynamics
-        self.jacobian: _Array = self._data.J.T
-        self.inertia: _Array = self._data.M
+        # With one joint Pinocchio's views have one axis less.
+        self.jacobian: _Array = self._data.J.T.reshape(robot.dof, 6)
+        self.inertia: _Array = self._data.M.reshape(robot.dof, robot.dof)
         self.placements = _placements(self._data)
 
     @property

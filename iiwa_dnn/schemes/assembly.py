@@ -205,14 +205,14 @@ def assemble(
     """Write a program into `data`, without the rows of parts that have no compiled form.
 
     Args:
-        data: The program, laid out as `QP.data`.
+        data: The program, laid out as `QP.data`, (size,).
         codes: `Layout.codes`.
-        numbers: `Layout.numbers`.
+        numbers: `Layout.numbers`, (c,).
         q: Joint positions [rad], (dof,).
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         inertia: Joint-space inertia matrix row by row, (dof dof), where a cost takes it.
-        targets: One `Target.data` after the other.
+        targets: One `Target.data` after the other, (18 frames,).
         rate: 1 / dt [1/s]; inf where there is no control period.
     """
     n, m, p, dof, blocks = codes[0], codes[1], codes[2], codes[3], codes[4]
@@ -252,7 +252,7 @@ def task_rows(
     kind: int, out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write the rows of a task by the number of its form; other arguments as `position_rows`."""
+    """Write the rows (k, n) of a task by the number of its form; arguments as `position_rows`."""
     if kind == POSITION:
         position_rows(out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target)
     elif kind == ORIENTATION_SO3:

@@ -149,7 +149,7 @@ _LISTS = ("costs", "tasks", "limits")
 
 
 def targets_of(layout: Layout, target: Target | Mapping[str, Target]) -> dict[str, Vector]:
-    """Return `Target.data` of each frame that tasks track, in the layout's order.
+    """Return `Target.data`, (18,), of each frame that tasks track, in the layout's order.
 
     Raises:
         InvalidInputError: A frame has no target.

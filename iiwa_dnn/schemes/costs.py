@@ -55,7 +55,16 @@ class KineticEnergy(Cost):
 def add_kinetic_energy(
     data: Vector, n: int, dof: int, numbers: Vector, at: int, inertia: Vector
 ) -> None:
-    """Add w G(q) to P in a program of n variables; constants from `at`, inertia (dof dof)."""
+    """Add w G(q) to P (n n) in a program `data` (size,).
+
+    Args:
+        data: The program, (size,).
+        n: Number of variables.
+        dof: Number of joints, the first variables.
+        numbers: Constants, (c,), of this cost from index `at`.
+        at: See `numbers`.
+        inertia: Joint-space inertia matrix row by row, (dof dof).
+    """
     weight = numbers[at]
     for i in range(dof):
         if numbers[at + 1] == 0.0:
@@ -113,7 +122,16 @@ class CyclicMotion(Cost):
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, q: Vector) -> None:
-    """Add w I to P and w m (q - home) to the linear term, which follows P; constants from `at`."""
+    """Add w I to P and w m (q - home) to the linear term, which follows P.
+
+    Args:
+        data: The program, (size,).
+        n: Number of variables.
+        dof: Number of joints, the first variables.
+        numbers: Constants, (c,), of this cost from index `at`.
+        at: See `numbers`.
+        q: Joint positions [rad], (dof,).
+    """
     weight, gain = numbers[at], numbers[at + 1]
     for i in range(dof):
         data[i * n + i] += weight

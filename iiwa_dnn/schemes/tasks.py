@@ -70,7 +70,7 @@ def position_rows(
     v + w x p.
 
     Args:
-        out: Where to write.
+        out: The program, or scratch memory, (size,).
         rows: Index of the first row's first entry in `out`.
         rhs: Index of the right-hand side's first entry in `out`.
         n: Number of variables.
@@ -79,7 +79,7 @@ def position_rows(
         gain: Feedback gain [1/s].
         jacobian: `Kinematics.jacobian`, (dof, 6).
         place: The frame's row of `Kinematics.placements`, (12,).
-        targets: One `Target.data` after the other.
+        targets: One `Target.data` after the other, (18 frames,).
         target: Index in `targets` of the frame's target.
     """
     x, y, z = place[9], place[10], place[11]
@@ -149,7 +149,7 @@ def orientation_rows_so3(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write three rows and their right-hand side; arguments as `position_rows`."""
+    """Write three rows (3, n) and their right-hand side; arguments as `position_rows`."""
     relative, error = np.empty((3, 3)), np.empty(3)
     for i in range(3):
         for j in range(3):
@@ -170,7 +170,7 @@ def orientation_rows_block(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
-    """Write four rows and their right-hand side; arguments as `position_rows`."""
+    """Write four rows (4, n) and their right-hand side; arguments as `position_rows`."""
     here, there = np.empty((4, 3)), np.empty((4, 3))
     rotation, desired = np.empty((3, 3)), np.empty((3, 3))
     wanted = np.empty(4)
@@ -197,7 +197,7 @@ def orientation_rows_block(
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def rotation_log(R: Matrix, out: Vector) -> None:
-    """Write the rotation vector of R, of length at most pi, into `out`.
+    """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 
     Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
     """

@@ -228,7 +228,7 @@ def test_a_slack_variable_works() -> None:
     assert record.q.shape == (301, 7)
     even = run(PseudoInverse(orientation="none"), reference=heart(period=2.0), duration=0.3)
     largest = [np.abs(r.dq[100:]).max(axis=1).mean() for r in (record, even)]
-    assert largest[0] < 0.8 * largest[1]
+    assert largest[0] < 0.9 * largest[1]
     assert record.row_multiplier is not None
     assert record.row_multiplier.shape == (300, 14)
 
