@@ -47,8 +47,7 @@ def visual_shapes(robot: Robot) -> list[Shape]:
     """
     root = urdf.read(file_of(robot))
     urdf.drop_meshes(root)
-    text = urdf.text_of(root)
-    visuals = pin.buildGeomFromUrdfString(robot.model, text, pin.GeometryType.VISUAL)
+    visuals = pin.buildGeomFromUrdfString(robot.model, urdf.text_of(root), pin.GeometryType.VISUAL)
     shapes = []
     for found in visuals.geometryObjects:
         if (measured := _measure(found.geometry)) is not None:
