@@ -1,7 +1,7 @@
 """Arms that can be loaded by name: URDF file, tip frame, locked joints and start posture.
 
-The files of `ARMS` are those of the package ``example-robot-data`` (extra ``robots``), which brings
-the URDFs as their makers publish them and no code.
+The files of `ARMS` come with the package ``example-robot-data`` (extra ``robots``), which is data
+only: the URDFs as their makers publish them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Arm:
         file: The URDF's path in the package's folder of robots.
         tip: Frame that follows references.
         locked: Joints of its gripper, which are held still.
-        start: A posture with the elbow bent, away from limits and singular postures [rad], (n,).
+        start: Posture away from limits and singular postures [rad], (n,).
     """
 
     file: str
@@ -40,12 +40,9 @@ class Arm:
             MissingDependencyError: The package of the files is not installed.
         """
         try:
-            folder = Path(str(distribution(_PACKAGE).locate_file(_FOLDER)))
-        except PackageNotFoundError:
-            folder = Path("missing")
-        if not folder.is_dir():
-            raise MissingDependencyError(_PACKAGE, "pip install 'iiwa-dnn[robots]'")
-        return folder / self.file
+            return Path(str(distribution(_PACKAGE).locate_file(_FOLDER))) / self.file
+        except PackageNotFoundError as error:
+            raise MissingDependencyError(_PACKAGE, "pip install 'iiwa-dnn[robots]'") from error
 
 
 ARMS = {

@@ -15,12 +15,7 @@ _jacobian, _place_frame = pin.computeFrameJacobian, pin.updateFramePlacement
 
 
 class FrameState:
-    """Pose and Jacobian of a frame, read-only.
-
-    Args:
-        pose: Pose of the frame in the world as a homogeneous matrix, shape (4, 4).
-        jacobian: Its Jacobian, shape (6, n).
-    """
+    """Pose and Jacobian of a frame, read-only."""
 
     __slots__ = ("_jacobian", "_pose")
 
@@ -46,14 +41,13 @@ class FrameState:
     def jacobian(self) -> _Array:
         """Jacobian J of the frame, shape (6, n): J dq = [linear velocity; angular velocity].
 
-        Rows 0 to 2 are [m/rad], rows 3 to 5 [rad/rad], along the world's axes, at the frame's
-        origin (Pinocchio's LOCAL_WORLD_ALIGNED).
+        Along the world's axes, at the frame's origin (Pinocchio's LOCAL_WORLD_ALIGNED).
         """
         return read_only(self._jacobian)
 
 
 class Configuration(FrameState):
-    """Joint positions of a robot, with the pose and the Jacobian of its tip up to date.
+    """Joint positions of a robot, with pose and Jacobian of one frame, its tip.
 
     Every array is a copy, and read-only: a configuration stays as it is, whatever becomes of ``q``
     and ``data`` afterwards. Positions outside the joint limits are accepted.
@@ -70,32 +64,24 @@ class Configuration(FrameState):
 
     # Built at every control step, so: slots, and no numpy call that is not needed.
     __slots__ = ("_data", "_inertia", "_q", "_robot")
+    _inertia: _Array | None
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
-        # A second copy, as `arrays` is not protected.
-        self._place(robot, finite_array("q", q, robot.q_lower.shape).copy(), data)
+        vector = _joint_vector(q, robot.q_lower.shape)
+        self._robot, self._q, self._data, self._inertia = robot, vector, data, None
+        self._pose, self._jacobian = _kinematics(robot, vector, data, robot.tip_id)
 
     @classmethod
     def from_checked(cls, robot: Robot, q: _Array, data: pin.Data | None = None) -> Configuration:
-        """Make a configuration over an existing array ``q`` (n,), neither copied nor checked.
-
-        For a loop that computes ``q`` itself and does not write into it again.
-        """
+        """Make a configuration over an array ``q`` (n,) that is neither copied nor checked."""
         conf = cls.__new__(cls)
-        conf._place(robot, q, data)
+        conf._robot, conf._q, conf._data, conf._inertia = robot, q, data, None
+        conf._pose, conf._jacobian = _kinematics(robot, q, data, robot.tip_id)
         return conf
-
-    def _place(self, robot: Robot, q: _Array, data: pin.Data | None) -> None:
-        self._robot, self._q, self._data = robot, q, data
-        self._inertia: _Array | None = None
-        super().__init__(*_kinematics(robot, q, data, robot.tip_id))
 
     @property
     def arrays(self) -> tuple[_Array, _Array, _Array]:
-        """``(q, pose, jacobian)`` as compiled code takes them; do not write into them.
-
-        They are not protected, which takes time, as does reading a protected array there.
-        """
+        """``(q, pose, jacobian)`` for compiled code, not protected, which makes it quicker."""
         return self._q, self._pose, self._jacobian
 
     @property
@@ -122,13 +108,7 @@ class Configuration(FrameState):
         return read_only(self._inertia)
 
     def frame(self, name: str) -> FrameState:
-        """Compute pose and Jacobian of any frame of the robot.
-
-        Args:
-            name: Name of the frame, out of `Robot.frame_names`.
-
-        Returns:
-            Position, rotation and Jacobian, with the conventions of the tip's.
+        """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.
 
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
@@ -145,16 +125,23 @@ class Configuration(FrameState):
         return Configuration, (self._robot, self._q)
 
 
-def _kinematics(
-    robot: Robot, q: _Array, data: pin.Data | None, frame_id: int
-) -> tuple[_Array, _Array]:
+def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> _Array:
+    """Return a checked copy of joint positions, which is not protected."""
+    try:
+        vector = np.array(q, np.float64)
+        if vector.shape == shape and np.isfinite(vector).all():
+            return vector
+    except (TypeError, ValueError):
+        pass
+    return finite_array("q", q, shape)  # slower, and raises
+
+
+def _kinematics(robot: Robot, q: _Array, data: pin.Data, index: int) -> tuple[_Array, _Array]:
     """Compute pose (4, 4) and Jacobian (6, n) of a frame."""
     model = robot.model
-    if data is None:
-        data = model.createData()
+    data = model.createData() if data is None else data
     # Both results are new arrays, not views of the scratch memory. The first call has placed the
     # joints, so the second need not run over the chain again.
-    jacobian = _jacobian(model, data, q, frame_id, _WORLD_AXES)
-    if jacobian.ndim == 1:  # of a single joint
-        jacobian = jacobian[:, None]
-    return _place_frame(model, data, frame_id).homogeneous, jacobian
+    jacobian = _jacobian(model, data, q, index, _WORLD_AXES)
+    pose = _place_frame(model, data, index).homogeneous
+    return pose, jacobian if jacobian.ndim == 2 else jacobian[:, None]  # (6,) for a single joint

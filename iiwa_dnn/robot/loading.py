@@ -21,10 +21,7 @@ _Array = NDArray[np.float64]
 
 
 def available_robots() -> tuple[str, ...]:
-    """List the names of the robots that come with the package, for :func:`load_robot`.
-
-    It knows those of `iiwa_dnn.robot.arms` too, whose files are in another package.
-    """
+    """List the robots that come with the package; `load_robot` knows those of `arms` too."""
     files = _robots_folder().glob("*/*.urdf")
     return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
 
@@ -41,18 +38,13 @@ def load_robot(
     position limit, and a ``velocity`` of 0 stands for "not given": no velocity limit.
 
     Args:
-        name_or_path: A name out of :func:`available_robots` or `iiwa_dnn.robot.arms.ARMS`, or the
-            path of a URDF file: a :class:`~pathlib.Path`, or a string that ends in ``.urdf`` or
-            has a separator in it.
-        tip: Frame that is to follow references. Default: that of the name (`iiwa_dnn.robot.arms`),
-            or the link at the end of the chain, for a robot that has only one end.
+        name_or_path: A name out of `available_robots` or `iiwa_dnn.robot.arms.ARMS`, or the path
+            of a URDF file: a `Path`, or a string that ends in ``.urdf`` or has a separator in it.
+        tip: Frame that follows references. Default: that of the name (`iiwa_dnn.robot.arms`), or
+            the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
             an arm loaded by name has the joints of its gripper frozen besides.
-        verify: Compare joints, limits and link poses with those that a second reader finds in the
-            file (`iiwa_dnn.robot.verification`). That takes about a second more.
-
-    Returns:
-        The robot.
+        verify: Let a second reader judge joints, limits and link poses (`verification`).
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
@@ -79,7 +71,7 @@ def load_robot(
     robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked)
     _check_no_mimic(robot, joints)
     if verify:
-        from iiwa_dnn.robot.verification import verify_robot  # here: the reader takes a second
+        from iiwa_dnn.robot.verification import verify_robot  # slow to import
 
         verify_robot(robot)
     return robot
@@ -97,8 +89,7 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
     if not isinstance(name_or_path, str | os.PathLike):
         raise InvalidInputError("name_or_path", "must be a robot's name or a path", name_or_path)
     text = os.fspath(name_or_path)
-    has_separator = any(s in text for s in (os.sep, os.altsep, "/") if s)
-    if isinstance(name_or_path, os.PathLike) or text.endswith(".urdf") or has_separator:
+    if isinstance(name_or_path, os.PathLike) or text.endswith(".urdf") or {"/", os.sep} & set(text):
         return Path(text)
     available = available_robots()
     if text not in available:
@@ -109,36 +100,28 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
 def _default_tip(model: pin.Model) -> str:
     """Name the link at the end of the chain; refuse a robot with several ends."""
     parents = {frame.parentFrame for frame in model.frames}
-    ends = [
-        frame.name
-        for index, frame in enumerate(model.frames)
-        if frame.type == pin.FrameType.BODY and index not in parents
-    ]
+    frames = enumerate(model.frames)
+    ends = [f.name for i, f in frames if f.type == pin.FrameType.BODY and i not in parents]
     if len(ends) != 1:
         raise InvalidInputError("tip", f"is needed: the robot has several ends: {', '.join(ends)}")
     return str(ends[0])
 
 
 def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[float, ...]]:
-    """Freeze joints at zero, or at the limit nearest to it.
-
-    Returns:
-        The model of the joints that are left, and the positions of the frozen ones [rad].
-    """
+    """Freeze joints at zero or the limit nearest to it; return model and frozen positions [rad]."""
     names = tuple(model.names)
     for name in locked:
         if name not in names[1:]:
             raise NotFoundError("joint", name, names[1:])
     if len(locked) == len(names) - 1:
         raise InvalidInputError("locked", "no joint is left to move", locked)
-    if not locked:
-        return model, ()
     # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
     posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
     frozen = [names.index(name) for name in locked]
-    # Joints of several coordinates are frozen where they do not move anything: at zero.
+    # Continuous, planar and floating joints have no limits, so they are at zero.
     q_locked = [posture[model.idx_qs[i]] if model.nqs[i] == 1 else 0.0 for i in frozen]
-    return pin.buildReducedModel(model, frozen, posture), tuple(map(float, q_locked))
+    reduced = pin.buildReducedModel(model, frozen, posture) if locked else model
+    return reduced, tuple(map(float, q_locked))
 
 
 def _check_no_mimic(robot: Robot, joints: _Joints) -> None:
@@ -146,24 +129,17 @@ def _check_no_mimic(robot: Robot, joints: _Joints) -> None:
     model = robot.model
     for index in list(model.supports[model.frames[robot.tip_id].parentJoint])[1:]:
         name = model.names[index]
-        mimic = joints[name].find("mimic")
-        if mimic is not None:
-            problem = (
-                f"joint {name!r} follows {mimic.get('joint')!r} (<mimic>), which is not "
-                "supported between base and tip: lock it"
-            )
+        if (mimic := joints[name].find("mimic")) is not None:
+            problem = f"joint {name!r} follows {mimic.get('joint')!r} (<mimic>): lock it"
             raise InvalidInputError("locked", problem, name)
 
 
 def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[_Array, _Array, _Array]:
-    """Read lower, upper and velocity limits, each (n,); infinite where the URDF gives none.
-
-    Continuous, planar and floating joints are refused: for them q and its velocity differ in kind.
-    """
+    """Read lower, upper and velocity limits, each (n,); infinite where the URDF gives none."""
     lower, upper = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
     velocity = model.velocityLimit.copy()
     for i, name in enumerate(tuple(model.names)[1:]):
-        if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:
+        if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:  # q and its velocity differ in kind
             problem = (
                 f"joint {name!r} is {joints[name].get('type')}; only joints with one coordinate "
                 "are supported: lock it, or make it revolute, with limits, in the URDF"

@@ -1,9 +1,7 @@
 """OpenGL without a display, for MuJoCo to draw with.
 
-If the environment variable MUJOCO_GL names a library of these two, that one is taken. Otherwise, on
-Linux, EGL (a graphics card, or Mesa's software driver), else OSMesa (always in software); neither
-needs a display. Where there is neither, physics runs all the same and pictures are refused in one
-line.
+On Linux it is the library that the environment variable MUJOCO_GL names, else EGL (a graphics card,
+or Mesa's software driver), else OSMesa (always in software). Physics needs none of them.
 """
 
 from __future__ import annotations
@@ -17,9 +15,6 @@ from typing import Any
 from iiwa_dnn.errors import MissingDependencyError
 
 _EGL_PLATFORM_DEVICE = 0x313F
-_MAX_DEVICES = 32
-
-_LIBRARIES = ("egl", "osmesa")
 _OPENGL_REMEDY = "on Debian and Ubuntu: apt-get install libosmesa6 (or, for EGL: libegl1 libgl1)"
 
 
@@ -36,7 +31,7 @@ def import_mujoco() -> Any:
         package = "the Python package mujoco"
         raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
     except Exception as error:  # whatever PyOpenGL meets where that library is not there
-        if (wanted := os.environ.get("MUJOCO_GL", "").lower()) not in _LIBRARIES:
+        if (wanted := os.environ.get("MUJOCO_GL", "").lower()) not in ("egl", "osmesa"):
             raise
         library = f"the OpenGL library that MUJOCO_GL={wanted} asks for"
         raise MissingDependencyError(library, _OPENGL_REMEDY) from error
@@ -69,38 +64,31 @@ def open_context(width: int, height: int) -> Any:
         MissingDependencyError: If MuJoCo or an OpenGL library is not there.
     """
     import_mujoco()
-    module = importlib.import_module(f"mujoco.{opengl_library()}")
-    context = module.GLContext(width, height)
+    context = importlib.import_module(f"mujoco.{opengl_library()}").GLContext(width, height)
     context.make_current()
     return context
 
 
 def egl_works() -> bool:
     """Check that EGL opens a display on some device; a library without a driver does not."""
-    try:
-        egl = ctypes.CDLL("libEGL.so.1")
-        ctypes.CDLL("libOpenGL.so.0" if _loads("libOpenGL.so.0") else "libGL.so.1")
-    except OSError:
+    if not (_loads("libOpenGL.so.0") or _loads("libGL.so.1")) or not _loads("libEGL.so.1"):
         return False
-    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    egl, pointer, number = ctypes.CDLL("libEGL.so.1"), ctypes.c_void_p, ctypes.c_uint
+    egl.eglGetProcAddress.restype = pointer
     query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
     get_display = egl.eglGetProcAddress(b"eglGetPlatformDisplayEXT")
     if not (query and get_display):
         return False
-    devices, count = (ctypes.c_void_p * _MAX_DEVICES)(), ctypes.c_int()
-    query = ctypes.CFUNCTYPE(ctypes.c_uint, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)(query)
-    get_display = ctypes.CFUNCTYPE(
-        ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p
-    )(get_display)
-    if not query(_MAX_DEVICES, devices, ctypes.byref(count)):
+    devices, count = (pointer * 32)(), ctypes.c_int()
+    query = ctypes.CFUNCTYPE(number, ctypes.c_int, pointer, pointer)(query)
+    get_display = ctypes.CFUNCTYPE(pointer, number, pointer, pointer)(get_display)
+    if not query(len(devices), devices, ctypes.byref(count)):
         return False
-    egl.eglInitialize.argtypes = [ctypes.c_void_p] * 3
-    for device in devices[: count.value]:
-        display = get_display(_EGL_PLATFORM_DEVICE, device, None)
-        # Left open: MuJoCo gets the same display and closes it.
-        if display and egl.eglInitialize(display, None, None):
-            return True
-    return False
+    egl.eglInitialize.argtypes = [pointer] * 3
+    found = devices[: count.value]
+    displays = (get_display(_EGL_PLATFORM_DEVICE, device, None) for device in found)
+    # Left open: MuJoCo gets the same display and closes it.
+    return any(display and egl.eglInitialize(display, None, None) for display in displays)
 
 
 def osmesa_works() -> bool:

@@ -1,4 +1,4 @@
-"""Robots: a Pinocchio model with its tip frame and its limits; `loading` makes them from URDFs."""
+"""Robots: a Pinocchio model with its tip frame and its limits."""
 
 from __future__ import annotations
 
@@ -15,29 +15,27 @@ from iiwa_dnn.robot.arms import STARTS
 SINGULAR = 0.05
 """Smallest singular value of the tip's Jacobian below which a posture is no start."""
 
-_POSTURES = 200
+_Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Robot:
-    """A robot arm: everything that the package needs to know of it, and nothing that changes.
+    """A robot arm: model, tip and limits, none of which changes.
 
-    The limits are this object's own: :meth:`with_limits` replaces them and leaves ``model`` alone.
     Angles are in [rad]; a prismatic joint counts in [m].
 
     Attributes:
         name: Name of the robot, from its URDF.
         model: The Pinocchio model; each of its n joints has one coordinate. Treat as read-only.
         tip: Name of the frame that follows references.
-        q_lower: Lower joint position limits [rad], shape (n,); -inf where there is none.
-        q_upper: Upper joint position limits [rad], shape (n,); inf where there is none.
-        dq_max: Joint velocity limits [rad/s], shape (n,); inf where there is none.
+        q_lower: Lower joint position limits [rad], (n,); -inf where there is none.
+        q_upper: Upper joint position limits [rad], (n,); inf where there is none.
+        dq_max: Joint velocity limits [rad/s], (n,); inf where there is none.
         locked: Names of the URDF's joints that were frozen on loading.
         path: The URDF file, where the robot came from one.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
         tip_id: Pinocchio's index of the tip frame.
-        limits: ``q_lower``, ``q_upper`` and ``dq_max`` as the rows of one array, shape (3, n), for
-            compiled code; do not write into it (`Configuration.arrays` says why it could be).
+        limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
     Raises:
         NotFoundError: If the model has no frame ``tip``.
@@ -47,14 +45,14 @@ class Robot:
     name: str
     model: pin.Model
     tip: str
-    q_lower: NDArray[np.float64]
-    q_upper: NDArray[np.float64]
-    dq_max: NDArray[np.float64]
+    q_lower: _Array
+    q_upper: _Array
+    dq_max: _Array
     locked: tuple[str, ...] = ()
     path: Path | None = None
     q_locked: tuple[float, ...] = ()
     tip_id: int = field(init=False)
-    limits: NDArray[np.float64] = field(init=False)
+    limits: _Array = field(init=False)
 
     def __post_init__(self) -> None:
         tip_id = self.frame_id(self.tip)
@@ -66,9 +64,8 @@ class Robot:
         object.__setattr__(self, "tip_id", tip_id)
         for name in ("q_lower", "q_upper", "dq_max"):
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
-        _check_limits(("q_lower", "dq_max"), self.q_lower, self.q_upper, self.dq_max)
-        limits = np.stack([self.q_lower, self.q_upper, self.dq_max])
-        object.__setattr__(self, "limits", limits)
+        object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
+        _check_limits(("q_lower", "dq_max"), *self.limits)
 
     @property
     def dof(self) -> int:
@@ -88,7 +85,7 @@ class Robot:
         return tuple(dict.fromkeys(links + [frame.name for frame in frames]))
 
     def frame_id(self, name: str) -> int:
-        """Return Pinocchio's index of a frame; the link's, where a joint has the same name.
+        """Return Pinocchio's index of a frame: the link's, where a joint has the same name.
 
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
@@ -108,13 +105,9 @@ class Robot:
         """Return the same robot with other limits; those not given stay as they are.
 
         Args:
-            lower: Lower joint position limits [rad], one number for all joints or shape (n,);
-                -inf for none.
-            upper: Upper joint position limits [rad], likewise; inf for none.
-            velocity: Joint velocity limits [rad/s], likewise, above zero; inf for none.
-
-        Returns:
-            A new robot; this one is unchanged.
+            lower: Lower joint position limits [rad], one number or (n,); -inf for none.
+            upper: Upper joint position limits [rad], one number or (n,); inf for none.
+            velocity: Joint velocity limits [rad/s], one number or (n,), above 0; inf for none.
 
         Raises:
             InvalidInputError: If a limit is not a number, has a wrong length, is not below its
@@ -123,43 +116,38 @@ class Robot:
         q_lower = self.q_lower if lower is None else _limit("lower", lower, self.dof)
         q_upper = self.q_upper if upper is None else _limit("upper", upper, self.dof)
         dq_max = self.dq_max if velocity is None else _limit("velocity", velocity, self.dof)
-        names = ("upper" if lower is None else "lower", "velocity")
-        _check_limits(names, q_lower, q_upper, dq_max)
+        name = "upper" if lower is None else "lower"
+        _check_limits((name, "velocity"), q_lower, q_upper, dq_max)
         return replace(self, q_lower=q_lower, q_upper=q_upper, dq_max=dq_max)
 
-    def start_posture(self) -> NDArray[np.float64]:
-        """Choose a posture to start from that is inside the limits and not singular.
+    def start_posture(self) -> _Array:
+        """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.
 
         A robot of a known name and number of joints starts from its known posture
         (`iiwa_dnn.robot.arms.STARTS`), if that is inside its limits. Any other starts from the
         middle of its joints' ranges, if the smallest singular value of the tip's Jacobian is at
         least `SINGULAR` there; else from that of 200 postures, drawn with a fixed seed from the
-        inner 60 % of the ranges, where it is largest. Singular values that are 0 in all of these
-        do not count: a planar arm has some. An arm with fewer than six joints is judged by its
-        three rows of position.
+        inner 60 % of the ranges, where it is largest. Fewer than six joints are judged by the rows
+        of position. Singular values that are 0 in every posture, as a planar arm has, do not count.
 
-        The smallest singular value is a measure of dexterity in C. A. Klein, B. E. Blaho,
-        "Dexterity measures for the design and control of kinematically redundant manipulators",
-        Int. J. Robotics Research 6(2), 1987. It mixes [m/rad] with [rad/rad] here, and collisions
-        are not considered.
-
-        Returns:
-            Joint positions [rad], shape (n,).
+        Source of the criterion: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and
+        control of kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987. It
+        mixes [m/rad] with [rad/rad] here, and collisions are not considered.
         """
         known = np.array(STARTS.get(self.name, ()))
         if known.size == self.dof and (self.q_lower < known).all() and (known < self.q_upper).all():
             return known
-        lower, upper = finite_ranges(self)
+        nearest, turn = np.clip(0.0, self.q_lower, self.q_upper), 2.0 * np.pi
+        lower = np.maximum(self.q_lower, nearest - turn)  # a limit may be infinite
+        upper = np.minimum(self.q_upper, nearest + turn)
         middle = 0.5 * (lower + upper)
-        drawn = np.random.default_rng(0).uniform(-0.3, 0.3, (_POSTURES, self.dof))
+        drawn = np.random.default_rng(0).uniform(-0.3, 0.3, (200, self.dof))
         postures = np.vstack([middle, middle + (upper - lower) * drawn])
-        data, axes = self.model.createData(), pin.LOCAL_WORLD_ALIGNED
-        jacobians = [
-            pin.computeFrameJacobian(self.model, data, q, self.tip_id, axes).reshape(6, self.dof)
-            for q in postures
-        ]
-        rows = 6 if self.dof >= 6 else 3
-        values = np.linalg.svd(np.array(jacobians)[:, :rows], compute_uv=False)
+        place = (self.tip_id, pin.LOCAL_WORLD_ALIGNED)
+        data, rows = self.model.createData(), 6 if self.dof >= 6 else 3
+        found = [pin.computeFrameJacobian(self.model, data, q, *place) for q in postures]
+        jacobians = np.reshape(found, (-1, 6, self.dof))
+        values = np.linalg.svd(jacobians[:, :rows], compute_uv=False)
         rank = np.count_nonzero(values.max(axis=0) > 1e-9)
         smallest = values[:, rank - 1]
         best = 0 if rank == 0 or smallest[0] >= SINGULAR else int(smallest.argmax())
@@ -174,15 +162,14 @@ class Robot:
         return Robot, tuple(getattr(self, f.name) for f in fields(self) if f.init)
 
 
-def finite_ranges(robot: Robot) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the position limits [rad], each (n,), with ranges of a full turn for infinite ones."""
-    turn = 2.0 * np.pi
-    from_upper = np.where(np.isfinite(robot.q_upper), robot.q_upper - turn, -np.pi)
-    lower = np.where(np.isfinite(robot.q_lower), robot.q_lower, from_upper)
-    return lower, np.where(np.isfinite(robot.q_upper), robot.q_upper, lower + turn)
+def file_of(robot: Robot) -> Path:
+    """Return the URDF file of a robot, or raise an InvalidInputError if it comes from none."""
+    if robot.path is None:
+        raise InvalidInputError("robot", "must come from a URDF file", robot)
+    return robot.path
 
 
-def _limit(argument: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
+def _limit(argument: str, value: ArrayLike, size: int) -> _Array:
     """Return one limit per joint, read-only, from a number or one per joint."""
     try:
         array = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)))
@@ -194,16 +181,10 @@ def _limit(argument: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
     return array
 
 
-def _check_limits(
-    arguments: tuple[str, str],
-    lower: NDArray[np.float64],
-    upper: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-) -> None:
+def _check_limits(arguments: tuple[str, str], lower: _Array, upper: _Array, dq: _Array) -> None:
     """Refuse limits that leave a joint no room; `arguments` name position and velocity limits."""
     for i in np.flatnonzero(lower >= upper):
         problem = f"joint {i + 1}: lower limit {lower[i]:g} is not below upper limit {upper[i]:g}"
         raise InvalidInputError(arguments[0], problem, (lower, upper))
-    for i in np.flatnonzero(velocity <= 0.0):
-        problem = f"joint {i + 1}: {velocity[i]:g} is not above 0"
-        raise InvalidInputError(arguments[1], problem, velocity)
+    for i in np.flatnonzero(dq <= 0.0):
+        raise InvalidInputError(arguments[1], f"joint {i + 1}: {dq[i]:g} is not above 0", dq)

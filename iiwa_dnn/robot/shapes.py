@@ -9,14 +9,12 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.robot import Robot, file_of
 
-STICK_RADIUS = 0.02
-"""Radius of the sticks that stand for links without a primitive shape [m]."""
+Kind = Literal["cylinder", "sphere", "box"]
 
-_GREY = (0.6, 0.6, 0.6)
+_STICK_RADIUS, _STICK_COLOUR = 0.02, (0.6, 0.6, 0.6)  # [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +30,7 @@ class Shape:
         colour: Red, green, blue, 0 to 1.
     """
 
-    kind: Literal["cylinder", "sphere", "box"]
+    kind: Kind
     size: tuple[float, ...]
     joint: int
     position: NDArray[np.float64]
@@ -43,34 +41,20 @@ class Shape:
 def visual_shapes(robot: Robot) -> list[Shape]:
     """List the primitives of a robot, or sticks from joint to joint where it has only meshes.
 
-    Args:
-        robot: The robot, from its URDF file.
-
-    Returns:
-        The shapes, the base's too.
-
     Raises:
         InvalidInputError: If the robot does not come from a file.
         FileError: If the file cannot be read any more.
     """
-    if robot.path is None:
-        raise InvalidInputError("robot", "must come from a URDF file", robot)
-    root = urdf.read(robot.path)
+    root = urdf.read(file_of(robot))
     urdf.drop_meshes(root)
-    text = urdf.text_of(root)
-    visuals = pin.buildGeomFromUrdfString(robot.model, text, pin.GeometryType.VISUAL)
+    visuals = pin.buildGeomFromUrdfString(robot.model, urdf.text_of(root), pin.GeometryType.VISUAL)
     shapes = []
     for found in visuals.geometryObjects:
-        kind, size = _measure(found.geometry)
-        if kind is not None:
+        if (measured := _measure(found.geometry)) is not None:
+            position, rotation = found.placement.translation.copy(), found.placement.rotation.copy()
             red, green, blue = map(float, found.meshColor[:3])
-            place = found.placement
-            shapes.append(
-                Shape(
-                    kind, size, int(found.parentJoint), place.translation.copy(),
-                    place.rotation.copy(), (red, green, blue),
-                )
-            )  # fmt: skip
+            joint = int(found.parentJoint)
+            shapes.append(Shape(*measured, joint, position, rotation, (red, green, blue)))
     return shapes or _sticks(robot)
 
 
@@ -81,45 +65,34 @@ def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> lis
         robot: The robot, n joints.
         q: Joint positions [rad], (n,).
         data: Pinocchio scratch memory to reuse; None makes it.
-
-    Returns:
-        The poses, the base's (0) first.
     """
     data = robot.model.createData() if data is None else data
     pin.forwardKinematics(robot.model, data, np.asarray(q, dtype=np.float64))
     return [data.oMi[i].copy() for i in range(robot.model.njoints)]
 
 
-def _measure(
-    geometry: object,
-) -> tuple[Literal["cylinder", "sphere", "box"] | None, tuple[float, ...]]:
+def _measure(shape: pin.CollisionGeometry) -> tuple[Kind, tuple[float, ...]] | None:
     """Return kind and size of one of coal's primitives; None for anything else."""
-    name = type(geometry).__name__
-    shape: pin.CollisionGeometry = geometry
+    name = type(shape).__name__
     if name == "Cylinder":
         return "cylinder", (float(shape.radius), 2.0 * float(shape.halfLength))
     if name == "Sphere":
         return "sphere", (float(shape.radius),)
     if name == "Box":
         return "box", tuple(2.0 * float(half) for half in shape.halfSide)
-    return None, ()
+    return None
 
 
 def _sticks(robot: Robot) -> list[Shape]:
     """Make a cylinder from each joint to the next, and to the tip."""
-    model = robot.model
-    tip = model.frames[robot.tip_id]
-    places = model.jointPlacements
-    ends = [(model.parents[i], places[i].translation) for i in range(1, model.njoints)]
-    ends.append((tip.parentJoint, tip.placement.translation))
+    tip = robot.model.frames[robot.tip_id]
+    ends = list(zip(robot.model.parents, robot.model.jointPlacements, strict=True))[1:]
     sticks = []
-    for joint, end in ends:
+    for joint, place in [*ends, (tip.parentJoint, tip.placement)]:
+        end = place.translation.copy()
         length = float(np.linalg.norm(end))
         if length > 1e-6:
-            turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), end / length)
-            sticks.append(
-                Shape(
-                    "cylinder", (STICK_RADIUS, length), int(joint), 0.5 * end, turn.matrix(), _GREY
-                )
-            )
+            turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), end / length).matrix()
+            size = (_STICK_RADIUS, length)
+            sticks.append(Shape("cylinder", size, int(joint), 0.5 * end, turn, _STICK_COLOUR))
     return sticks

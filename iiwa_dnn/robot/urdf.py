@@ -1,7 +1,7 @@
 """URDF files: read with care, then made into a Pinocchio model.
 
-The file is first read as XML here. That gives one-line reasons for faults in it, and a few facts
-that Pinocchio's model does not keep: the limits that were given, the joints that follow others.
+The XML gives one-line reasons for faults, and facts that Pinocchio's model does not keep: limits
+that were not given, joints that follow others.
 """
 
 from __future__ import annotations
@@ -28,13 +28,7 @@ class _NoDoctype(ET.TreeBuilder):
 
 
 def read(path: Path) -> ET.Element:
-    """Read a URDF file as XML.
-
-    Args:
-        path: The file.
-
-    Returns:
-        The element ``<robot>``, which has joints.
+    """Read a URDF file as XML; return the element ``<robot>``, which has joints.
 
     Raises:
         FileError: If the file cannot be read, is not XML, has a DOCTYPE or is not a robot with
@@ -70,12 +64,9 @@ def drop_meshes(root: ET.Element) -> None:
 
 
 def weld(root: ET.Element, posture: Mapping[str, float]) -> None:
-    """Replace joints by fixed ones.
+    """Replace joints by fixed ones, each at its position in `posture` [rad], by name.
 
-    Args:
-        root: The element ``<robot>``, which is changed.
-        posture: Position of each of these joints by its name [rad]; 0 for continuous, planar and
-            floating ones.
+    The position of continuous, planar and floating joints has to be 0.
     """
     for joint in root.findall("joint"):
         name, mimic = joint.get("name", ""), joint.find("mimic")
@@ -83,16 +74,16 @@ def weld(root: ET.Element, posture: Mapping[str, float]) -> None:
             joint.remove(mimic)
         if posture.get(name):
             axis = _numbers(joint, "axis", "xyz", "1 0 0")
-            step, still = posture[name] * axis / np.linalg.norm(axis), np.zeros(3)
+            step = posture[name] * axis / np.linalg.norm(axis)
             slides = joint.get("type") == "prismatic"
-            moved = pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), still)
             rpy, xyz = (_numbers(joint, "origin", key, "0 0 0") for key in ("rpy", "xyz"))
-            place = pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz) * moved
-            for origin in joint.findall("origin"):
-                joint.remove(origin)
-            numbers = {"rpy": pin.rpy.matrixToRpy(place.rotation), "xyz": place.translation}
-            words = {key: " ".join(map(repr, value.tolist())) for key, value in numbers.items()}
-            ET.SubElement(joint, "origin", words)
+            place = pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz)
+            place *= pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), np.zeros(3))
+            origin = joint.find("origin")
+            origin = ET.SubElement(joint, "origin") if origin is None else origin
+            rpy, xyz = pin.rpy.matrixToRpy(place.rotation), place.translation
+            for key, numbers in (("rpy", rpy), ("xyz", xyz)):
+                origin.set(key, " ".join(map(repr, numbers.tolist())))
         if name in posture:
             joint.set("type", "fixed")
 
@@ -105,14 +96,11 @@ def _numbers(joint: ET.Element, tag: str, key: str, default: str) -> NDArray[np.
 
 
 def build_model(path: Path, root: ET.Element) -> pin.Model:
-    """Build the Pinocchio model of a URDF, with no word on the console.
+    """Build the Pinocchio model of a URDF, its base fixed to the world, with no word printed.
 
     Args:
         path: The file that the XML came from, for the error.
         root: The element ``<robot>``.
-
-    Returns:
-        The model, its base fixed to the world.
 
     Raises:
         FileError: If Pinocchio refuses the robot (its own first complaint is the reason), or no
@@ -137,22 +125,19 @@ def build_model(path: Path, root: ET.Element) -> pin.Model:
 def _captured_stderr(lines: list[str]) -> Iterator[None]:
     """Collect the lines that C++ writes to standard error; urdfdom tells its reasons only there.
 
-    It redirects the process's file descriptor 2, as nothing else reaches C++ streams, so another
-    thread's messages of these few milliseconds end up in ``lines`` too.
+    Nothing but the file descriptor reaches C++ streams: other threads' messages come along.
     """
-    try:
-        saved = os.dup(2)
-    except OSError:  # the process has no standard error
-        yield
-        return
-    try:
-        with tempfile.TemporaryFile() as file:
-            os.dup2(file.fileno(), 2)
-            try:
-                yield
-            finally:
-                os.dup2(saved, 2)
-                file.seek(0)
-                lines += file.read().decode(errors="replace").splitlines()
-    finally:
-        os.close(saved)
+    with tempfile.TemporaryFile() as file:
+        try:
+            saved = os.dup(2)
+        except OSError:  # the process has no standard error
+            yield
+            return
+        os.dup2(file.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(saved, 2)
+            os.close(saved)
+            file.seek(0)
+            lines += file.read().decode(errors="replace").splitlines()

@@ -1,6 +1,6 @@
-"""What the physics does to the controller that its nominal model knows nothing of.
+"""Differences between an arm in physics and the controller's nominal model of it.
 
-The default of every disturbance is none. `Disturbances.typical` is what ``--disturb`` means; its
+The default of every disturbance is none. The option ``--disturb`` takes `Disturbances.typical`; its
 sizes are assumptions, stated here, as the maker publishes none of them.
 """
 
@@ -16,21 +16,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
 
-MASS_ERROR = 0.1
-"""Relative error of a link's mass: every mass of the URDF is an estimate."""
-
-FRICTION = 0.01
-"""Coulomb friction as a share of the torque limit: 1.76 N m at the iiwa's first two joints."""
-
-ENCODER_NOISE = 1e-5
-"""Standard deviation of an encoder reading [rad]."""
-
-ENCODER_BITS = 18
-"""Resolution of an encoder: 2 pi / 2^18 = 2.4e-5 rad."""
-
-DELAY = 1
-"""Control periods by which a command is late."""
-
 
 @dataclass(frozen=True)
 class Push:
@@ -38,8 +23,8 @@ class Push:
 
     Attributes:
         force: Force along the world's axes [N], (3,).
-        start: When it begins [s].
-        duration: How long it lasts [s].
+        start: Time at which it begins [s].
+        duration: Time for which it lasts [s].
     """
 
     force: tuple[float, float, float] = (0.0, 10.0, 0.0)
@@ -54,13 +39,13 @@ class Push:
 
     @property
     def end(self) -> float:
-        """When it ends [s]."""
+        """Time at which it ends [s]."""
         return self.start + self.duration
 
 
 @dataclass(frozen=True)
 class Disturbances:
-    """Everything that may differ between the physics and the controller's idea of it.
+    """Differences between the arm and the controller's idea of it.
 
     Attributes:
         mass_error: Relative error of the moving links' masses and inertias: each is too heavy or
@@ -93,8 +78,15 @@ class Disturbances:
 
     @classmethod
     def typical(cls, push: Push | None = None) -> Disturbances:
-        """All of them but the push at the sizes stated above."""
-        return cls(MASS_ERROR, FRICTION, ENCODER_NOISE, ENCODER_BITS, DELAY, push)
+        """Return all disturbances at their assumed sizes, and a push only where one is given."""
+        return cls(
+            mass_error=0.1,  # every mass of the URDF is an estimate
+            friction=0.01,  # 1.76 N m at the iiwa's first two joints
+            encoder_noise=1e-5,
+            encoder_bits=18,  # 2.4e-5 rad
+            delay=1,
+            push=push,
+        )
 
     @property
     def encoder_step(self) -> float:
@@ -102,25 +94,25 @@ class Disturbances:
         return 2.0 * math.pi / 2**self.encoder_bits if self.encoder_bits else 0.0
 
     def mass_factors(self, joints: int, seed: int) -> Vector:
-        """What each moving link's mass and inertia is multiplied by, (n,)."""
+        """Draw the factor on mass and inertia of the links that each joint carries, (n,)."""
         signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
         return 1.0 + self.mass_error * signs
 
     def settings(self) -> dict[str, Any]:
-        """All of it, as values that JSON can hold."""
+        """Return all of it as values that JSON can hold."""
         return asdict(self)
 
 
 class Encoder:
-    """Joint angles as they are measured: with noise, then rounded.
+    """An encoder on every joint, whose readings have noise and are then rounded.
 
-    Attributes:
+    Args:
         noise: Standard deviation of a reading [rad].
         step: Resolution [rad]; 0 for none.
+        seed: Seed of the noise.
     """
 
     def __init__(self, noise: float, step: float, seed: int) -> None:
-        """The same seed gives the same readings."""
         self.noise, self.step = noise, step
         self._rng = np.random.default_rng([seed, 1])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,18 +17,21 @@ from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
 from iiwa_dnn.simulation.plants.base import Plant
 from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
-COARSEST = 1e-3
-"""The longest physics step that is accepted [s]."""
+_COARSEST = 1e-3  # the longest physics step that is accepted [s]
 
 
 class MujocoPlant(Plant):
     """An arm with mass, motors and disturbances, whose torque loop follows velocity commands.
 
-    Attributes:
-        disturbances: Differences between the arm and the controller's idea of it.
-        gains: Stiffness of the torque loop.
-        dynamics: Joint damping and rotor inertia, of the arm and of its nominal model.
-        timestep: Physics step that was asked for [s].
+    Args:
+        disturbances: Differences between the arm and the controller's idea of it; None for none.
+        gains: Stiffness of the torque loop; None takes the defaults.
+        dynamics: Joint damping and rotor inertia, of the arm and of its nominal model; None takes
+            the estimates.
+        timestep: Physics step [s], at most 1e-3; a whole number of them makes the control period.
+
+    Raises:
+        InvalidInputError: If the physics step is out of range.
     """
 
     packages: ClassVar[tuple[str, ...]] = ("mujoco",)
@@ -39,22 +43,9 @@ class MujocoPlant(Plant):
         dynamics: JointDynamics | None = None,
         timestep: float = 2.5e-4,
     ) -> None:
-        """Check the numbers; `start` builds the arm.
-
-        Args:
-            disturbances: Differences between the arm and the controller's idea of it; None for
-                none.
-            gains: Stiffness of the torque loop; None takes the defaults.
-            dynamics: Joint damping and rotor inertia; None takes the estimates.
-            timestep: Physics step [s], at most 1e-3; a whole number of them makes the control
-                period.
-
-        Raises:
-            InvalidInputError: If the physics step is out of range.
-        """
         checks.positive("physics_dt", timestep)
-        if timestep > COARSEST:
-            problem = f"must be at most {COARSEST:g} s, not {timestep:g}"
+        if timestep > _COARSEST:
+            problem = f"must be at most {_COARSEST:g} s, not {timestep:g}"
             raise InvalidInputError("physics_dt", problem, timestep)
         self.timestep = timestep
         self.disturbances = Disturbances() if disturbances is None else disturbances
@@ -62,13 +53,7 @@ class MujocoPlant(Plant):
         self.dynamics = JointDynamics() if dynamics is None else dynamics
 
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
-        """Build the arm and put it at rest at joint angles `q0` (n,) [rad].
-
-        Args:
-            robot: The robot, n joints, from a URDF file.
-            q0: Joint angles at the start [rad], (n,).
-            dt: Control period [s].
-            seed: Seed of the mass errors and the encoder noise.
+        """Build the arm, with masses and encoder noise drawn from the seed, and put it at rest.
 
         Raises:
             MissingDependencyError: If MuJoCo is not installed.
@@ -80,8 +65,7 @@ class MujocoPlant(Plant):
             problem = f"must divide the control period of {dt:g} s, {self.timestep:g} s does not"
             raise InvalidInputError("physics_dt", problem, self.timestep)
         self._mj = mj = import_mujoco()
-        if mj.get_mju_user_warning() is None:
-            # Else MuJoCo writes its warnings to a file in the working folder; `diverged` has them.
+        if mj.get_mju_user_warning() is None:  # else they go into a file in the working folder
             mj.set_mju_user_warning(lambda message: None)
         wrong, limit = self.disturbances, torque_limits(robot)
         friction = np.where(np.isfinite(limit), wrong.friction * limit, 0.0)
@@ -103,8 +87,7 @@ class MujocoPlant(Plant):
     @property
     def q(self) -> Vector:
         """True joint angles [rad], (n,), a copy."""
-        copy: Vector = self._data.qpos.copy()
-        return copy
+        return np.array(self._data.qpos)
 
     @property
     def torque(self) -> Vector:
@@ -114,8 +97,7 @@ class MujocoPlant(Plant):
     @property
     def diverged(self) -> bool:
         """True if MuJoCo has met a state that is too large and reset the arm, or the loop has."""
-        warnings = self._data.warning
-        kinds = self._mj.mjtWarning
+        kinds, warnings = self._mj.mjtWarning, self._data.warning
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
         in_arm = any(warnings[int(kind)].number > 0 for kind in bad)
         return in_arm or self._torques.diverged
@@ -126,10 +108,9 @@ class MujocoPlant(Plant):
         return self._reading.copy()
 
     def move(self, command: Vector) -> None:
-        """Follow a velocity command (n,) [rad/s] for one control period.
+        """Follow a velocity command (n,) [rad/s], late by the delay, for one control period.
 
-        It arrives late by the delay of `disturbances`. The first physics step goes by the last
-        `read`, if there was one since the last move.
+        The first physics step goes by the last `read`, if there was one since the last move.
         """
         self._late.append(np.array(command))
         self._torques.command(self._late.pop(0))
@@ -165,6 +146,6 @@ class MujocoPlant(Plant):
             "armature": model.dof_armature.tolist(),
             "friction": model.dof_frictionloss.tolist(),
             "disturbances": self.disturbances.settings(),
-            "torque_loop": self._torques.settings(),
+            "torque_loop": asdict(self.gains),
         }
         return {"torque_max": self._torques.limit, "physics": physics}

@@ -9,13 +9,12 @@ The control law is computed torque on the *nominal* model,
 
 which gives every joint a critically damped error of bandwidth :math:`\omega`, whatever its
 inertia. The desired motion is integrated from the commands: within one control period the desired
-velocity goes linearly from the last command to the new one, so its position, velocity and
-acceleration fit each other. That integration is also what the velocity controller's feedback acts
-through, so that a constant disturbance leaves no constant error at the tip.
+velocity goes linearly from the last command to the new one. The velocity controller's feedback acts
+through that integral, so that a constant disturbance leaves no constant error at the tip.
 
 Only the encoders are read. Position and velocity come from an observer that predicts with *a*, the
 acceleration that was asked for, and corrects with the innovation (critically damped, bandwidth
-:math:`\omega_o`): it lags only behind what the model does not explain.
+:math:`\omega_o`).
 
 Sources: R. M. Murray, Z. Li, S. S. Sastry, "A Mathematical Introduction to Robotic Manipulation",
 section 4.5 (computed torque); D. G. Luenberger, "Observing the state of a linear system", IEEE
@@ -26,7 +25,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -36,19 +34,18 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot.mujoco_model import JointDynamics, torque_limits
 from iiwa_dnn.robot.robot import Robot
 
-FASTEST = 1e6
-"""Observed joint velocity from which on the loop counts as diverged [rad/s]."""
+_FASTEST = 1e6  # observed joint velocity from which on the loop counts as diverged [rad/s]
 
 
 @dataclass(frozen=True)
 class TorqueGains:
-    """How stiff the torque loop is.
+    """Stiffness of the torque loop.
 
     Attributes:
         bandwidth: Bandwidth of the position error [rad/s].
         observer_bandwidth: Bandwidth of the observer [rad/s].
-        leash: How far the desired position may be ahead of the measured one [rad]: where the arm
-            is held back, it does not wind up.
+        leash: Largest lead of the desired position over the measured one [rad], so that it does
+            not wind up where the arm is held back.
     """
 
     bandwidth: float = 60.0
@@ -62,10 +59,17 @@ class TorqueGains:
 
 
 class TorqueController:
-    """The torque loop of an arm with n joints, and its observer.
+    """The torque loop of an arm with n joints, and its observer; `reset` comes first.
+
+    Args:
+        robot: The robot as the controller knows it.
+        period: Control period, in which a velocity command is reached [s].
+        timestep: Time between two calls of `torque` [s].
+        gains: Stiffness; None takes the defaults.
+        dynamics: Damping and rotor inertia as the controller knows them; None takes the estimates.
 
     Attributes:
-        gains: How stiff it is.
+        gains: Stiffness.
         limit: Torque limits [N m], (n,).
     """
 
@@ -77,15 +81,6 @@ class TorqueController:
         gains: TorqueGains | None = None,
         dynamics: JointDynamics | None = None,
     ) -> None:
-        """Take the nominal model; `reset` comes before the first `torque`.
-
-        Args:
-            robot: The robot as the controller knows it.
-            period: Control period, in which a velocity command is reached [s].
-            timestep: Time between two calls of `torque` [s].
-            gains: How stiff; None takes the defaults.
-            dynamics: Damping and rotor inertia as the controller knows them.
-        """
         self.gains = TorqueGains() if gains is None else gains
         dynamics = JointDynamics() if dynamics is None else dynamics
         self.limit = torque_limits(robot)
@@ -109,13 +104,10 @@ class TorqueController:
         self._a_desired = (dq - self._v_desired) / self._period
 
     def torque(self, reading: Vector) -> Vector:
-        """Torques for the next physics step.
+        """Compute torques within the limits [N m], (n,), for the next physics step.
 
         Args:
             reading: Measured joint angles [rad], (n,).
-
-        Returns:
-            Torques within the limits [N m], (n,).
         """
         gains = self.gains
         innovation = reading - self._q
@@ -136,8 +128,4 @@ class TorqueController:
     @property
     def diverged(self) -> bool:
         """True if the observer's velocity is far beyond any joint's, or not a number."""
-        return not float(np.abs(self._v).max()) < FASTEST
-
-    def settings(self) -> dict[str, Any]:
-        """Its gains, as values that JSON can hold."""
-        return asdict(self.gains)
+        return not float(np.abs(self._v).max()) < _FASTEST
