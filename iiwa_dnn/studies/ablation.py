@@ -18,14 +18,9 @@ ORIENTATIONS: tuple[Orientation, ...] = ("block", "so3")
 ENTRIES = ("none", *NOISE_ENTRIES)
 
 _MEASURES = (
-    "max_position_error_m",
-    "max_orientation_error_rad",
-    "joint_drift_rad",
-    "total_variation_rad_s",
-    "max_kinetic_index",
-    "amplification",
-    "status",
-)
+    "max_position_error_m", "max_orientation_error_rad", "joint_drift_rad",
+    "total_variation_rad_s", "max_kinetic_index", "amplification", "status",
+)  # fmt: skip
 
 
 def cells(scope: Scope) -> list[HeartRun]:

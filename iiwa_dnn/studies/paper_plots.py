@@ -14,8 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iiwa_dnn.results.metrics import position_error
-from iiwa_dnn.results.panels import draw_error, legend_above
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, overview_figure, write_figures
+from iiwa_dnn.results.plots import (
+    DOUBLE_COLUMN,
+    draw_error,
+    legend_above,
+    new_figure,
+    overview_figure,
+    write_figures,
+)
 from iiwa_dnn.results.record import Record
 
 if TYPE_CHECKING:
@@ -39,19 +45,13 @@ def save_paper_figures(
     tables: Mapping[str, Table],
     folder: str | os.PathLike[str],
 ) -> list[Path]:
-    """Draw ``fig1``, ``fig2`` and ``tables``, each as PNG and PDF, atomically.
+    """Draw ``fig1``, ``fig2`` and ``tables`` as PNG and PDF (`write_figures`); return the files.
 
     Args:
         fig1: The run of Fig. 1.
         fig2: The runs of Fig. 2, by the names of its `PANELS`.
         tables: ``table1``, ``table2`` and ``ablation``.
         folder: The folder; made if need be.
-
-    Returns:
-        The files written, each PNG followed by its PDF.
-
-    Raises:
-        FileError: If the folder cannot be written.
     """
     figures = {
         "fig1": partial(overview_figure, fig1),

@@ -15,7 +15,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart, Reference
@@ -33,18 +33,11 @@ from iiwa_dnn.studies.stability import amplification
 from iiwa_dnn.studies.sweeps import Outcome
 
 _KEPT = (
-    "max_position_error_m",
-    "mse_position_error_m2",
-    "max_orientation_error_rad",
-    "joint_drift_rad",
-    "max_kinetic_index",
-    "max_kkt_residual",
-    "position_limit_violation_rad",
-    "velocity_limit_violation_rad_s",
-    "wall_time_s",
-)
+    "max_position_error_m", "mse_position_error_m2", "max_orientation_error_rad",
+    "joint_drift_rad", "max_kinetic_index", "max_kkt_residual", "position_limit_violation_rad",
+    "velocity_limit_violation_rad_s", "wall_time_s",
+)  # fmt: skip
 _HANDED_ON = ("dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "seed")
-_STABILITY_SAMPLES = 101
 
 
 @dataclass(frozen=True)
@@ -128,11 +121,11 @@ class HeartRun:
     def run(self) -> Record:
         """Carry out the run, without reference solvers."""
         options: dict[str, Any] = {name: getattr(self, name) for name in _HANDED_ON}
-        solver, check = DNNSolver(follower=self.follower()), CrossCheck(())
-        robot, scheme, reference = paper_robot(), self.scheme(), self.reference()
-        return simulate(
-            robot, scheme, reference, paper.START, check=check, solver=solver, **options
-        )
+        steps = None if isinstance(self.substeps, str) else self.substeps
+        implicit = self.substeps == "implicit"
+        solver = DNNSolver(follower=ImplicitEuler() if implicit else ExplicitEuler(substeps=steps))
+        options |= {"check": CrossCheck(()), "solver": solver}
+        return simulate(paper_robot(), self.scheme(), self.reference(), paper.START, **options)
 
     def scheme(self) -> Scheme:
         """Make the scheme, with the paper's start as its home."""
@@ -145,12 +138,6 @@ class HeartRun:
     def reference(self) -> Reference:
         """Make the heart from the paper's start."""
         return Heart().anchored(Configuration(paper_robot(), paper.START))
-
-    def follower(self) -> Integrator:
-        """Make the integrator of ``continuous`` mode."""
-        if self.substeps == "implicit":
-            return ImplicitEuler()
-        return ExplicitEuler(substeps=None if self.substeps == "computed" else self.substeps)
 
 
 @cache
@@ -175,8 +162,8 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
     run = HeartRun(**settings)
     record = run.run()
     metrics = compute_metrics(record)
-    values = {name: metrics[name] for name in _KEPT}
-    values |= {
+    values = {
+        **{name: metrics[name] for name in _KEPT},
         "status": record.settings["status"],
         "total_variation_rad_s": total_variation(record),
         "lap_drift_rad": lap_drift(record, Heart().period),
@@ -207,8 +194,8 @@ def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
     scheme, reference = run.scheme(), run.reference()
     explicit = run.mode == "continuous" and run.substeps != "implicit"
     worst, squares = 0.0, []
-    samples = np.unique(np.linspace(0, record.steps - 1, _STABILITY_SAMPLES).astype(int))
-    for k in samples:
+    # A hundred and one, or as many as there are.
+    for k in np.unique(np.linspace(0, record.steps - 1, 101).astype(int)):
         conf = Configuration(paper_robot(), record.q[k])
         squares.append(float(np.sum(conf.jacobian[:3] ** 2)))
         if explicit:
@@ -216,7 +203,5 @@ def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
             # An explicit run's iterations are its sub-steps.
             step = run.dt / record.settings["rho"] / float(record.iterations[k])
             worst = max(worst, amplification(qp, step))
-    return {
-        "jacobian_square_m2": float(np.mean(squares)),
-        "amplification": worst if explicit else None,
-    }
+    mean = float(np.mean(squares))
+    return {"jacobian_square_m2": mean, "amplification": worst if explicit else None}

@@ -38,12 +38,7 @@ def vertical_start() -> Configuration:
 
 
 def tilted_run(orientation: Orientation, mode: Mode) -> Record:
-    """Hold the vertical orientation for half a second, from a start tilted by ``TILT``.
-
-    Args:
-        orientation: Form of the orientation rows.
-        mode: ``"converged"``, or ``"continuous"``, the paper's.
-    """
+    """Hold the vertical orientation for half a second, from a start tilted by ``TILT``."""
     desired = vertical_start()
     q0 = desired.q.copy()
     q0[5] += TILT
@@ -55,12 +50,7 @@ def tilted_run(orientation: Orientation, mode: Mode) -> Record:
 
 
 def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
-    """Follow a line for 4 s that leads 0.3 m further out than the arm reaches, and back.
-
-    Args:
-        policy: Policy for steps without a solution.
-        dt: Control period [s].
-    """
+    """Follow a line for 4 s, in steps of dt [s], 0.3 m beyond the arm's reach and back."""
     start = vertical_start()
     outward = start.position * [1.0, 1.0, 0.0]
     reach = 0.8 - float(np.linalg.norm(outward))
@@ -75,18 +65,12 @@ def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
 def save_singular_figure(
     vertical: Mapping[str, Record], stretched: Mapping[str, Record], folder: str | os.PathLike[str]
 ) -> list[Path]:
-    """Draw ``singular`` as PNG and PDF.
+    """Draw ``singular`` as PNG and PDF (`write_figures`), and return the files.
 
     Args:
-        vertical: Runs with a tool that is to be vertical, by rows and mode.
-        stretched: Runs beyond the arm's reach, by policy.
+        vertical: Runs of `tilted_run`, by rows and mode.
+        stretched: Runs of `stretched_run`, by policy.
         folder: The folder; made if need be.
-
-    Returns:
-        The files written.
-
-    Raises:
-        FileError: If the folder cannot be written.
     """
     return write_figures({"singular": lambda: _figure(vertical, stretched)}, folder)
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -95,11 +95,11 @@ class Sweep:
         names = [self.name(cell) for cell in cells]
         found = {name: self._read(name) for name in names}
         todo = {name: cell for name, cell in zip(names, cells, strict=True) if found[name] is None}
-        # None: no bar where standard error is not a terminal.
-        hidden, done = True if quiet else None, len(found) - len(todo)
-        with tqdm(
-            total=len(found), initial=done, unit="run", dynamic_ncols=True, disable=hidden
-        ) as bar:
+        bar = tqdm(
+            total=len(found), initial=len(found) - len(todo), unit="run", dynamic_ncols=True,
+            disable=quiet or None,  # None: no bar where standard error is not a terminal
+        )  # fmt: skip
+        with bar:
             for name, outcome in self._outcomes(todo, workers, dask):
                 found[name] = self._write(name, todo[name], outcome)
                 bar.update()
@@ -153,10 +153,8 @@ class Sweep:
         with _backend(min(workers or joblib.cpu_count(), len(todo)), dask):
             # One cell a message: a finished one is written at once.
             # max_nbytes: no arrays in shared memory, which a killed sweep would leave behind.
-            parallel = joblib.Parallel(
-                batch_size=1, return_as="generator_unordered", max_nbytes=None
-            )
-            yield from parallel(calls)
+            options = {"batch_size": 1, "return_as": "generator_unordered", "max_nbytes": None}
+            yield from joblib.Parallel(**options)(calls)
 
 
 def _compute(
@@ -175,19 +173,19 @@ def _compute(
 @contextmanager
 def _backend(workers: int, dask: str | None) -> Iterator[None]:
     """Send joblib's calls to this process, to processes of this machine, or to Dask."""
-    if dask is not None:
-        with _dask_client(workers, dask), joblib.parallel_config("dask"):
-            yield
-    elif workers == 1:
-        with joblib.parallel_config("sequential"):
-            yield
-    else:
-        with joblib.parallel_config("loky", n_jobs=workers, inner_max_num_threads=1):
+    with ExitStack() as stack:
+        if dask is not None:
+            _connect(stack, workers, dask)
+            config = joblib.parallel_config("dask")
+        elif workers == 1:
+            config = joblib.parallel_config("sequential")
+        else:
+            config = joblib.parallel_config("loky", n_jobs=workers, inner_max_num_threads=1)
+        with config:
             yield
 
 
-@contextmanager
-def _dask_client(workers: int, address: str) -> Iterator[object]:
+def _connect(stack: ExitStack, workers: int, address: Any) -> None:
     """Connect to a Dask scheduler, or to a cluster of its own for ``"local"``."""
     try:
         from distributed import Client, LocalCluster
@@ -195,13 +193,9 @@ def _dask_client(workers: int, address: str) -> Iterator[object]:
         raise InvalidInputError("dask", "is not installed: pip install iiwa-dnn[dask]") from error
     if address == "local":
         options = {"threads_per_worker": 1, "dashboard_address": None, "env": _ONE_THREAD}
-        with LocalCluster(n_workers=workers, **options) as cluster, Client(cluster) as client:
-            yield client
-        return
+        address = stack.enter_context(LocalCluster(n_workers=workers, **options))
     try:
-        client = Client(address, timeout=_PATIENCE)
+        stack.enter_context(Client(address, timeout=_PATIENCE))
     except (OSError, ValueError) as error:
         problem = f"no scheduler at {address!r} ({one_line(error)})"
         raise InvalidInputError("dask", problem) from error
-    with client:
-        yield client

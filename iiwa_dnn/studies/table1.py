@@ -30,15 +30,9 @@ DRIFTERS: dict[str, HeartRun] = {
 """Runs that draw one heart after another."""
 
 _MEASURES = (
-    "max_position_error_m",
-    "mse_position_error_m2",
-    "joint_drift_rad",
-    "max_kinetic_index",
-    "max_orientation_error_rad",
-    "max_kkt_residual",
-    "total_variation_rad_s",
-    "status",
-)
+    "max_position_error_m", "mse_position_error_m2", "joint_drift_rad", "max_kinetic_index",
+    "max_orientation_error_rad", "max_kkt_residual", "total_variation_rad_s", "status",
+)  # fmt: skip
 _PAPER = {
     "max_position_error_m": paper.MAX_ERROR,
     "joint_drift_rad": paper.DRIFT,

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -60,19 +61,20 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
         scope: Sizes of the experiments.
         results: The numbers of `cells`, in that order.
     """
-    left = iter(results)
     modes: dict[str, Any] = {}
-    growth: dict[str, list[float | None]] = {}
-    for name in MODES:
-        quiet = [next(left) for _ in range(2)]
-        modes[name] = {}
-        growth[name] = [run["amplification"] for run in quiet]
+    growth: dict[str, float | None] = {}
+    size = len(results) // len(MODES)
+    for i, name in enumerate(MODES):
+        part = results[i * size : (i + 1) * size]
+        growths = [run["amplification"] for run in part if run["amplification"] is not None]
+        growth[name] = max(growths, default=None)
+        left, modes[name] = iter(part), {}
+        quiet = list(islice(left, 2))
         for entry in NOISE_ENTRIES:
-            noisy = [[next(left) for _ in range(scope.seeds)] for _ in range(2)]
-            growth[name] += [run["amplification"] for runs in noisy for run in runs]
-            modes[name][entry] = {key: _measure(key, quiet, noisy) for key in MEASURES} | {
-                "theory_noise_mse_m2": _theory(entry, quiet[0], scope)
-            }
+            noisy = [list(islice(left, scope.seeds)) for _ in range(2)]
+            measures = {key: _measure(key, quiet, noisy) for key in MEASURES}
+            theory = {"theory_noise_mse_m2": _theory(entry, quiet[0], scope)}
+            modes[name][entry] = measures | theory
     return {
         "scope": asdict(scope),
         "weight": paper.WEIGHT,
@@ -82,10 +84,7 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
         "paper": {key: list(values) for key, values in MEASURES.items()},
         "paper_changes": {key: _paper_changes(values) for key, values in MEASURES.items()},
         "modes": modes,
-        "amplification": {
-            name: max((value for value in values if value is not None), default=None)
-            for name, values in growth.items()
-        },
+        "amplification": growth,
     }
 
 
