@@ -2,8 +2,7 @@
 
 import sys
 
-from iiwa_dnn.studies.singular import stretched_run, tilted_run
-from iiwa_dnn.studies.singular_plots import save_singular_figure
+from iiwa_dnn.studies.singular import save_singular_figure, stretched_run, tilted_run
 
 if __name__ == "__main__":
     vertical = {

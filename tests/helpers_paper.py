@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.studies import ablation, paper, table1, table2
-from iiwa_dnn.studies.runs import HeartRun
-from iiwa_dnn.studies.scope import Scope
+from iiwa_dnn.studies.runs import HeartRun, Scope
 
 SCOPE = Scope(duration=1.0, seeds=40, laps=2)
 

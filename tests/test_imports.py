@@ -32,7 +32,7 @@ ORDER = (
 # It reads a Record and recomputes nothing: robot, solver and simulation are out of its sight.
 BEFORE_THE_RECORD = {"errors", "checks", "files"}
 # What draws the robot itself needs its shapes too, and nothing else of it.
-DRAW_THE_ROBOT = {"rendering", "pictures"}
+DRAW_THE_ROBOT = {"pictures"}
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 
@@ -117,7 +117,7 @@ def test_a_wrong_import_is_found(own: str, source: str, fault: str) -> None:
         ("networks/projection", "from .base import Network\nfrom ..qp import f"),
         ("networks/__init__", "from .projection import Projection"),
         ("results/plots", "from .record import Record\nfrom iiwa_dnn.errors import FileError"),
-        ("results/rendering", "from iiwa_dnn.robot import Robot"),
+        ("results/pictures", "from iiwa_dnn.robot import Robot"),
         ("__init__", "from iiwa_dnn.app import main\nfrom .robot import Robot"),
     ],
 )

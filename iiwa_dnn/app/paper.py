@@ -16,12 +16,10 @@ from iiwa_dnn.app.command_line import list_files, run_command, save_settings
 from iiwa_dnn.app.settings import PaperSettings
 from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.studies import ablation, paper, table1, table2
-from iiwa_dnn.studies.paper_findings import findings
 from iiwa_dnn.studies.paper_plots import save_paper_figures
-from iiwa_dnn.studies.paper_report import write_paper_report
+from iiwa_dnn.studies.paper_report import findings, write_paper_report
 from iiwa_dnn.studies.provenance import fingerprint
-from iiwa_dnn.studies.runs import HeartRun, measure
-from iiwa_dnn.studies.scope import FULL, QUICK, Scope
+from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, measure
 from iiwa_dnn.studies.sweeps import Sweep
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}

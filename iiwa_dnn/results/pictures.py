@@ -1,4 +1,8 @@
-"""The arm at work, as a figure of five moments (the paper's Fig. 3) and as a video."""
+"""The arm at work, as a figure of five moments (the paper's Fig. 3) and as a video.
+
+MuJoCo's renderer draws it, without a display. Only shapes are drawn: joint angles come from a
+record, nothing is simulated.
+"""
 
 from __future__ import annotations
 
@@ -6,22 +10,29 @@ import importlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.rendering import ArmRenderer, Image, View, sample_at
+from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
+from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
 from iiwa_dnn.robot.robot import Robot
 
 if TYPE_CHECKING:
+    import mujoco
     from matplotlib.figure import Figure
+
+Image = NDArray[np.uint8]
+View = Literal["arm", "path"]
 
 MOMENTS = 5
 """Pictures in the figure: after each fifth of the run, so at 2, 4, 6, 8 and 10 s of the paper's."""
@@ -31,6 +42,12 @@ FRAME_RATE = 25
 
 WIDTH, HEIGHT, INSET = 960, 540, 208  # of the video [pixel]
 _MARGIN = 12
+
+DESIRED_COLOUR = (0.2, 0.25, 0.35, 1.0)
+DRAWN_COLOUR = (0.86, 0.0, 0.1, 1.0)
+
+_SCENERY_GROUP = 2
+_PIECES = 400  # straight ones that a path is drawn with
 
 
 def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -> list[Path]:
@@ -153,3 +170,167 @@ def _captioned(frame: Image, text: str) -> Image:
     font = ImageFont.load_default(22)
     ImageDraw.Draw(picture).text((_MARGIN + 4, _MARGIN), text, fill=(40, 40, 40), font=font)
     return np.asarray(picture)
+
+
+class ArmRenderer(AbstractContextManager["ArmRenderer"]):
+    """A renderer of an arm that follows a record, with the path so far; a context manager."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        record: Record,
+        width: int = 960,
+        height: int = 540,
+        view: View = "arm",
+        smooth: bool = True,
+    ) -> None:
+        """Lay out the scene around the arm and the record's path.
+
+        Pictures are `width` by `height` [pixel] and show ``"arm"``, all of it, or ``"path"``, face
+        on under a translucent arm. Smooth edges double the time in software.
+
+        Raises:
+            MissingDependencyError: MuJoCo or an OpenGL library is not installed.
+            InvalidInputError: MuJoCo cannot take the robot.
+        """
+        self._mj = mj = import_mujoco()
+        opengl_library()  # before the slow part
+        self._record, self._width, self._height, self._view = record, width, height, view
+        # Both paths may have 100,000 samples.
+        self._corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
+        self._desired = record.position_desired[self._corners]
+        spec = build_spec(robot)
+        spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
+        spec.visual.quality.offsamples = 4 if smooth else 0
+        spec.visual.quality.shadowsize = 4096 if smooth else 1024
+        _add_scenery(mj, spec, record)
+        self._model = spec.compile()
+        self._data = mj.MjData(self._model)
+        self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
+        turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
+        sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
+        self._behind = 2e-3 * self._camera.distance * sight
+        self._options = mj.MjvOption()
+        self._options.geomgroup[:] = 0
+        self._options.geomgroup[[VISUAL_GROUP, _SCENERY_GROUP]] = 1
+        self._options.sitegroup[:] = 0
+        self._options.flags[mj.mjtVisFlag.mjVIS_TRANSPARENT] = view == "path"
+        self._scene = mj.MjvScene(self._model, maxgeom=self._model.ngeom + 2 * _PIECES + 10)
+        self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
+        # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
+        self._opengl = open_context(width, height)
+        self._drawing = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
+        mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
+
+    def __exit__(self, *_: object) -> None:
+        """Give the OpenGL context back."""
+        self._opengl.make_current()
+        self._drawing.free()
+        self._opengl.free()
+
+    def draw(self, sample: int) -> Image:
+        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colours to 255."""
+        mj = self._mj
+        self._data.qpos[:] = self._record.q[sample]
+        mj.mj_kinematics(self._model, self._data)
+        mj.mj_camlight(self._model, self._data)
+        mj.mjv_updateScene(
+            self._model, self._data, self._options, None, self._camera,
+            mj.mjtCatBit.mjCAT_ALL.value, self._scene,
+        )  # fmt: skip
+        wide = max(3.0, self._height / 130.0)
+        # A little farther off than what is drawn, so that it never shows through that.
+        self._line(self._desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
+        passed = [*self._corners[self._corners < sample], sample]
+        self._line(self._record.position[passed], wide, DRAWN_COLOUR)
+        if self._view == "path":  # a dot at the tip, since the arm is translucent
+            size, at = 0.008 * self._camera.distance, self._record.position[sample]
+            self._geom(mj.mjtGeom.mjGEOM_SPHERE, (0.0, 0.0, 0.0, 1.0), size, at)
+        frame = mj.MjrRect(0, 0, self._width, self._height)
+        image: Image = np.empty((self._height, self._width, 3), dtype=np.uint8)
+        self._opengl.make_current()  # another renderer may have drawn since
+        mj.mjr_render(frame, self._scene, self._drawing)
+        mj.mjr_readPixels(image, None, frame, self._drawing)
+        return image[::-1]  # OpenGL counts rows from below
+
+    def _line(self, points: FloatArray, width: float, colour: tuple[float, ...]) -> None:
+        """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
+        for start, end in pairwise(points):
+            geom = self._geom(self._mj.mjtGeom.mjGEOM_LINE, colour, 0.0, start)
+            self._mj.mjv_connector(geom, self._mj.mjtGeom.mjGEOM_LINE, width, start, end)
+            geom.emission = 1.0  # the colour as it is, whatever the light
+
+    def _geom(self, kind: Any, colour: tuple[float, ...], size: float, at: FloatArray) -> Any:
+        """Add a shape to the scene."""
+        geom, rgba = self._scene.geoms[self._scene.ngeom], np.array(colour, dtype=np.float32)
+        self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
+        self._scene.ngeom += 1
+        return geom
+
+
+def sample_at(record: Record, t: float) -> int:
+    """Return the index of the record's sample nearest to a time [s]."""
+    return int(np.abs(record.t - t).argmin())
+
+
+def _add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
+    """Add floor, light and, under a path in a horizontal plane, a sheet of paper."""
+    visual, world = spec.visual, spec.worldbody
+    visual.headlight.ambient[:] = 0.4
+    visual.headlight.diffuse[:] = 0.3
+    visual.headlight.specular[:] = 0.1
+    visual.map.alpha = 0.07  # of the arm where it is translucent
+    spec.stat.center, spec.stat.extent = [0.0, 0.0, 0.4], 1.2
+    spec.add_texture(
+        name="sky", type=mj.mjtTexture.mjTEXTURE_SKYBOX, builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
+        rgb1=[1.0, 1.0, 1.0], rgb2=[1.0, 1.0, 1.0], width=16, height=16,
+    )  # fmt: skip
+    scenery = {"group": _SCENERY_GROUP, "contype": 0, "conaffinity": 0}
+    spec.add_texture(
+        name="tiles", type=mj.mjtTexture.mjTEXTURE_2D, builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.90, 0.91, 0.93], rgb2=[0.84, 0.86, 0.89], width=256, height=256,
+    )  # fmt: skip
+    # A repeat has two tiles a side: they are 0.25 m wide.
+    floor = spec.add_material(name="floor", texuniform=True, texrepeat=[2.0, 2.0])
+    floor.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
+    world.add_geom(
+        type=mj.mjtGeom.mjGEOM_PLANE, size=[1.25, 1.25, 0.1], material="floor", **scenery
+    )
+    world.add_light(
+        pos=[0.8, -0.6, 2.6], dir=[-0.25, 0.2, -1.0], diffuse=[0.55, 0.55, 0.55],
+        castshadow=True, type=mj.mjtLightType.mjLIGHT_SPOT, cutoff=60.0, exponent=1.0,
+    )  # fmt: skip
+    low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
+    if high[2] - low[2] < 1e-3 < high[0] - low[0]:
+        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
+        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
+            type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
+            pos=[*middle, low[2] - 3e-3], **scenery,
+        )  # fmt: skip
+
+
+def _arm_camera(mj: Any, record: Record) -> Any:
+    """Place a camera that has the whole arm in view, from beside the path."""
+    camera = mj.MjvCamera()
+    path = record.position_desired.mean(axis=0)
+    reach = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
+    camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * reach])
+    camera.distance = 1.95 * reach
+    # MuJoCo's azimuth is the direction of sight.
+    camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
+    camera.elevation = -30.0
+    return camera
+
+
+def _path_camera(mj: Any, record: Record) -> Any:
+    """Place a camera that looks at the path's own plane, from above where it can."""
+    camera = mj.MjvCamera()
+    path = record.position_desired
+    camera.lookat[:] = 0.5 * (path.min(axis=0) + path.max(axis=0))
+    normal = np.linalg.svd(path - path.mean(axis=0), full_matrices=False)[2][-1]
+    sight = -normal if normal[2] >= 0.0 else normal
+    camera.distance = max(2.2 * float(np.ptp(path, axis=0).max()), 0.05)
+    camera.elevation = np.degrees(np.arcsin(np.clip(sight[2], -1.0, 1.0)))
+    level = float(np.hypot(sight[0], sight[1]))
+    camera.azimuth = 90.0 if level < 1e-6 else np.degrees(np.arctan2(sight[1], sight[0]))
+    return camera

@@ -1,4 +1,4 @@
-"""What helps against which disturbance: error against smoothness of the command, paired by seed.
+"""Means against disturbances compared: error against smoothness of the command, paired by seed.
 
 Every countermeasure meets every disturbance on the paper's heart, converged, with SO(3) rows. Runs
 with chance in them share their seeds, so a countermeasure is compared with none run by run.
@@ -7,6 +7,7 @@ with chance in them share their seeds, so a countermeasure is compared with none
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,11 @@ from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.feedback import noise_gain
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import Simulation, VelocityDisturbance
+from iiwa_dnn.simulation import VelocityDisturbance, simulate
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.statistics import estimate, paired_difference
@@ -54,29 +56,23 @@ COUNTERMEASURES: dict[str, dict[str, Any]] = {
 }
 
 SETTLED_AFTER = 1.0
-"""From here on [s] errors and roughness are counted."""
+"""Time after which errors and roughness are counted [s]."""
 
 MEASURES = ("mse_m2", "max_error_m", "last_error_m", "command_roughness", "motion_roughness")
-_STOCHASTIC = ("noise",)
 
 
 def cells(seeds: int, duration: float) -> list[dict[str, Any]]:
-    """Settings of all runs: those without chance once, the others for every seed.
-
-    Args:
-        seeds: Number of noises.
-        duration: Length of each run [s].
-    """
+    """List the settings of all runs of this duration [s]: one without chance, else every seed."""
     return [
         {"disturbance": kind, "countermeasure": means, "seed": seed, "duration": duration}
         for kind, means in pairs()
-        for seed in range(seeds if _has_chance(kind) else 1)
+        for seed in range(_runs(kind, seeds))
     ]
 
 
 def pairs() -> list[tuple[str, str]]:
-    """Disturbance and countermeasure of each row of the table."""
-    return [(kind, means) for kind in DISTURBANCES for means in COUNTERMEASURES]
+    """List disturbance and countermeasure of each row of the table."""
+    return list(product(DISTURBANCES, COUNTERMEASURES))
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
@@ -88,8 +84,8 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
     Returns:
         ``mse_m2``, over samples and axes, and ``max_error_m`` after ``SETTLED_AFTER``;
         ``last_error_m`` at the end; ``command_roughness`` and ``motion_roughness``, the total
-        variation of the network's answer and of what moved the robot, per second and joint
-        [rad/s per s].
+        variation of the network's answer and of the velocity that moved the robot, per second and
+        joint [rad/s per s].
     """
     asked = dict(DISTURBANCES[settings["disturbance"]])
     means = dict(COUNTERMEASURES[settings["countermeasure"]])
@@ -98,11 +94,10 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
     if "estimator" in means:
         means["estimator"] = NoiseModel(**means["estimator"])
     gain = means.pop("gain", DoubleIndicator().position_gain)
-    robot = paper_robot()
-    record = Simulation(
-        robot,
+    record = simulate(
+        paper_robot(),
         DoubleIndicator(paper.WEIGHT, position_gain=gain, orientation_gain=gain),
-        Heart().anchored(Configuration(robot, paper.START)),
+        Heart().anchored(Configuration(paper_robot(), paper.START)),
         paper.START,
         dt=paper.DT,
         duration=settings["duration"],
@@ -110,33 +105,31 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
         check=CrossCheck(()),
         **asked,
         **means,
-    ).run()
-    return Outcome({"status": record.settings["status"], **_sums(record)})
-
-
-def _sums(record: Record) -> dict[str, float]:
-    settled = record.t >= SETTLED_AFTER
-    error = record.position - record.position_desired
+    )
+    settled, error = record.t >= SETTLED_AFTER, position_error(record)
     distance = np.linalg.norm(error, axis=1)
-    return {
-        "mse_m2": float(np.mean(error[settled] ** 2)),
-        "max_error_m": float(distance[settled].max()),
-        "last_error_m": float(distance[-1]),
-        "command_roughness": _roughness(record.dq_solver[settled[:-1]], record),
-        "motion_roughness": _roughness(record.dq[settled[:-1]], record),
-    }
+    return Outcome(
+        {
+            "status": record.settings["status"],
+            "mse_m2": float(np.mean(error[settled] ** 2)),
+            "max_error_m": float(distance[settled].max()),
+            "last_error_m": float(distance[-1]),
+            "command_roughness": _roughness(record.dq_solver[settled[:-1]]),
+            "motion_roughness": _roughness(record.dq[settled[:-1]]),
+        }
+    )
 
 
-def _roughness(velocity: np.ndarray[Any, Any], record: Record) -> float:
-    """Total variation per second, the mean over the joints."""
+def _roughness(velocity: FloatArray) -> float:
+    """Compute the total variation per second, the mean over the joints."""
     changes = np.abs(np.diff(velocity, axis=0)).sum(axis=0)
-    return float(changes.mean() / (len(velocity) * record.settings["dt"]))
+    return float(changes.mean() / (len(velocity) * paper.DT))
 
 
 def tabulate(
     seeds: int, duration: float, results: Sequence[Mapping[str, Any]]
 ) -> list[dict[str, Any]]:
-    """One row for each pair, with means and 95 % intervals where there is chance.
+    """Lay out a row for each pair, with means and 95 % intervals where there is chance.
 
     Args:
         seeds: As for `cells`.
@@ -148,22 +141,22 @@ def tabulate(
         error without a countermeasure over that with it, with its interval by pairs.
     """
     left, rows = iter(results), []
-    plain: dict[str, np.ndarray[Any, Any]] = {}
+    plain: dict[str, FloatArray] = {}
     for kind, means in pairs():
-        runs = [next(left) for _ in range(seeds if _has_chance(kind) else 1)]
+        runs = list(islice(left, _runs(kind, seeds)))
         mse = np.array([run["mse_m2"] for run in runs])
         base = plain.setdefault(kind, mse)  # the first countermeasure is none
         row = {"disturbance": kind, "countermeasure": means, "runs": len(runs)}
         row |= {name: float(np.mean([run[name] for run in runs])) for name in MEASURES}
         row["completed"] = all(run["status"] == "completed" for run in runs)
         row["mse_ratio"] = float(base.mean() / mse.mean())
-        row["difference"] = row["mse"] = None
-        if len(runs) > 1:
-            row["mse"] = estimate(mse).to_json()
-            row["difference"] = paired_difference(mse, base).to_json()
+        by_chance = len(runs) > 1
+        row["difference"] = paired_difference(mse, base).to_json() if by_chance else None
+        row["mse"] = estimate(mse).to_json() if by_chance else None
         rows.append(row)
     return rows
 
 
-def _has_chance(kind: str) -> bool:
-    return any(key in DISTURBANCES[kind] for key in _STOCHASTIC)
+def _runs(kind: str, seeds: int) -> int:
+    """Count the runs of a disturbance: only noise has chance in it."""
+    return seeds if "noise" in DISTURBANCES[kind] else 1

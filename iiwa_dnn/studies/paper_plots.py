@@ -1,12 +1,12 @@
 """The paper's figures 1 and 2 out of records, and one that sums up its tables.
 
-The tables are those that `iiwa_dnn.studies` makes, in JSON types; nothing is computed here.
+The tables are those of `table1`, `table2` and `ablation`, in JSON types; nothing is computed here.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iiwa_dnn.results.metrics import position_error
-from iiwa_dnn.results.panels import draw_error, legend_above
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, overview_figure, write_figures
+from iiwa_dnn.results.plots import (
+    DOUBLE_COLUMN,
+    draw_error,
+    legend_above,
+    new_figure,
+    overview_figure,
+    write_figures,
+)
 from iiwa_dnn.results.record import Record
 
 if TYPE_CHECKING:
@@ -28,6 +34,8 @@ PANELS = ("no noise, no filter", "noise, no filter", "no noise, filter", "noise,
 FAR = 100.0
 """A change by more than this [%] is named at the edge and not drawn to scale."""
 
+_STYLES = (("o", "-", "0.0"), ("s", "--", "0.5"))  # marker, line and colour of two curves
+
 Table = Mapping[str, Any]
 
 
@@ -37,19 +45,13 @@ def save_paper_figures(
     tables: Mapping[str, Table],
     folder: str | os.PathLike[str],
 ) -> list[Path]:
-    """Draw ``fig1``, ``fig2`` and ``tables``, each as PNG and PDF, atomically.
+    """Draw ``fig1``, ``fig2`` and ``tables`` as PNG and PDF (`write_figures`); return the files.
 
     Args:
         fig1: The run of Fig. 1.
         fig2: The runs of Fig. 2, by the names of its `PANELS`.
         tables: ``table1``, ``table2`` and ``ablation``.
-        folder: Where to; made if need be.
-
-    Returns:
-        The files written, each PNG followed by its PDF.
-
-    Raises:
-        FileError: If the folder cannot be written.
+        folder: The folder; made if need be.
     """
     figures = {
         "fig1": partial(overview_figure, fig1),
@@ -60,7 +62,7 @@ def save_paper_figures(
 
 
 def error_figure(records: Mapping[str, Record]) -> Figure:
-    """Position error of the four cases on one scale: the paper's Fig. 2 (a)-(d)."""
+    """Draw the position error of the four cases on one scale: the paper's Fig. 2 (a)-(d)."""
     figure = new_figure(DOUBLE_COLUMN, 5.0)
     largest = max(float(np.linalg.norm(position_error(r), axis=1).max()) for r in records.values())
     for axes, letter, case in zip(figure.subplots(2, 2).flat, "abcd", PANELS, strict=True):
@@ -70,55 +72,44 @@ def error_figure(records: Mapping[str, Record]) -> Figure:
 
 
 def tables_figure(tables: Mapping[str, Table]) -> Figure:
-    """Error and drift over the weight, what the filter changes, and the drift over sub-steps."""
+    """Draw error and drift over the weight, the filter's effect, and the drift over sub-steps."""
     figure = new_figure(DOUBLE_COLUMN, 5.4)
-    panels = figure.subplots(2, 2)
-    _draw_row(panels[0, 0], tables["table1"], "max_position_error_m", "Largest position error [m]")
-    _draw_row(panels[0, 1], tables["table1"], "joint_drift_rad", "Joint drift [rad]")
-    _draw_filter(panels[1, 0], tables["table2"])
-    _draw_substeps(panels[1, 1], tables["ablation"])
-    for axes, letter in zip(panels.flat, "abcd", strict=True):
+    panels = figure.subplots(2, 2).ravel()
+    _draw_row(panels[0], tables["table1"], "max_position_error_m", "Largest position error [m]")
+    _draw_row(panels[1], tables["table1"], "joint_drift_rad", "Joint drift [rad]")
+    _draw_filter(panels[2], tables["table2"])
+    _draw_substeps(panels[3], tables["ablation"])
+    for axes, letter, columns in zip(panels, "abcd", (3, 3, 4, 3), strict=True):
         axes.set_xlabel(f"{axes.get_xlabel()}\n({letter})")
+        legend_above(axes, columns)
     return figure
 
 
 def _draw_row(axes: Axes, table: Table, key: str, label: str) -> None:
-    """One row of Table I over the weight, the paper's and those with G = I."""
-    styles = (("o", "-", "0.0"), ("s", "--", "0.5"))
+    """Draw one row of Table I over the weight, the paper's and those with G = I."""
     ours = [name for name in table["variants"] if "inertia" not in name]
-    _draw_points(axes, table["weights"], table["paper"][key], "x", ":", "0.0", "paper")
-    for name, (marker, line, colour) in zip(ours, styles, strict=False):
-        values = table["variants"][name]["rows"][key]
-        _draw_points(axes, table["weights"], values, marker, line, colour, name)
+    rows = [("paper", table["paper"][key], "x", ":", "0.0")]
+    rows += [
+        (name, table["variants"][name]["rows"][key], *style)
+        for name, style in zip(ours, _STYLES, strict=False)
+    ]
+    for name, values, marker, line, colour in rows:
+        known = [pair for pair in zip(table["weights"], values, strict=True) if pair[1] is not None]
+        _draw_points(axes, known, marker=marker, linestyle=line, color=colour, label=name)
     axes.set_yscale("log")
     axes.set_xlabel("Weight ξ")
     axes.set_ylabel(label)
-    legend_above(axes, columns=3)
 
 
-def _draw_points(
-    axes: Axes, x: list[Any], y: list[Any], marker: str, line: str, colour: str, label: str
-) -> None:
-    """A curve through the points that there are."""
-    known = [(a, b) for a, b in zip(x, y, strict=True) if b is not None]
-    axes.plot(
-        [a for a, _ in known],
-        [b for _, b in known],
-        marker=marker,
-        linestyle=line,
-        color=colour,
-        label=label,
-    )
+def _draw_points(axes: Axes, points: Sequence[tuple[Any, Any]], **style: Any) -> None:
+    axes.plot([x for x, _ in points], [y for _, y in points], **style)
 
 
 def _draw_filter(axes: Axes, table: Table) -> None:
-    """What the filter changes under noise, in per cent, with its interval; and in the paper."""
-    styles = {
-        "max_position_error_m": ("MAX E", "o", "0.0"),
-        "mse_position_error_m2": ("MSE", "s", "0.5"),
-    }
+    """Draw the filter's effect under noise, in per cent, with its interval; and the paper's."""
+    measures = (("max_position_error_m", "MAX E", -0.14), ("mse_position_error_m2", "MSE", 0.14))
     names = [(mode, entry) for mode, entries in table["modes"].items() for entry in entries]
-    for offset, (key, (label, marker, colour)) in zip((-0.14, 0.14), styles.items(), strict=True):
+    for (key, label, offset), (marker, _, colour) in zip(measures, _STYLES, strict=True):
         for row, (mode, entry) in enumerate(names):
             change = table["modes"][mode][entry][key]["changes"]["filter, with noise"]
             at, mean = row + offset, 100.0 * change["mean"]
@@ -137,38 +128,26 @@ def _draw_filter(axes: Axes, table: Table) -> None:
     axes.set_yticks(range(len(names)), [f"{mode.split(',')[0]},\n{entry}" for mode, entry in names])
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.set_xlabel("Change by the filter [%]")
-    legend_above(axes, columns=4)
 
 
 def _draw_substeps(axes: Axes, table: Table) -> None:
-    """Drift without noise over the number of sub-steps; hollow where a sub-step is unstable."""
-    styles = {"block": ("o", "-", "0.0"), "so3": ("s", "--", "0.5")}
+    """Draw the drift without noise over the sub-steps; hollow where a sub-step is unstable."""
     names = list(dict.fromkeys(str(row["substeps"]) for row in table["rows"]))
-    for orientation, (marker, line, colour) in styles.items():
-        rows = [
-            row
+    for orientation, (marker, line, colour) in zip(("block", "so3"), _STYLES, strict=True):
+        points = [
+            ((names.index(str(row["substeps"])), row["joint_drift_rad"]), row["stable"])
             for row in table["rows"]
             if row["orientation"] == orientation and row["noise_at"] == "none"
         ]
-        at = [names.index(str(row["substeps"])) for row in rows]
-        drift = [row["joint_drift_rad"] for row in rows]
-        _draw_points(axes, at, drift, "", line, colour, "")
+        known = [point for point, _ in points if point[1] is not None]
+        _draw_points(axes, known, linestyle=line, color=colour, label="")
         for stable, face in ((True, colour), (False, "1.0")):
-            part = [
-                (x, y) for x, y, row in zip(at, drift, rows, strict=True) if row["stable"] is stable
-            ]
-            axes.plot(
-                [x for x, _ in part],
-                [y for _, y in part],
-                linestyle="",
-                marker=marker,
-                color=colour,
-                markerfacecolor=face,
-                label=f"{orientation}, {'stable' if stable else 'unstable'}",
-            )
+            part = [point for point, is_stable in points if is_stable is stable]
+            label = f"{orientation}, {'stable' if stable else 'unstable'}"
+            _draw_points(axes, part, linestyle="", marker=marker, color=colour,
+                         markerfacecolor=face, label=label)  # fmt: skip
     axes.axhline(table["paper"]["joint_drift_rad"], color="0.0", linestyle=":", label="paper")
     axes.set_yscale("log")
     axes.set_xticks(range(len(names)), names)
     axes.set_xlabel("Sub-steps in a control step")
     axes.set_ylabel("Joint drift [rad]")
-    legend_above(axes, columns=3)

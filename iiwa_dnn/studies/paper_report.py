@@ -1,21 +1,23 @@
 """report.md of the paper's experiments: each number beside the paper's, with its verdict.
 
-Works on the tables that `iiwa_dnn.studies` makes, in JSON types; nothing is computed here, and
-every sentence that says how an experiment came out is put together from a table's verdicts.
+Works on the tables of `table1`, `table2` and `ablation`, in JSON types; nothing is computed here,
+and every sentence about an experiment's outcome is put together from a table's verdicts.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import write_text
-from iiwa_dnn.results.report import markdown_table
-from iiwa_dnn.studies.paper_findings import MEASURES, change_in_words, findings, short
+from iiwa_dnn.results.report import bullets, markdown_table, show_figures
 
 Table = Mapping[str, Any]
+
+MEASURES = {"max_position_error_m": "MAX E", "mse_position_error_m2": "MSE"}
+"""The paper's names of the two measures of its Table II."""
 
 _ROWS = {
     "max_position_error_m": "MAX E [m]",
@@ -27,10 +29,21 @@ _ROWS = {
     "total_variation_rad_s": "total variation of q̇ [rad/s]",
     "max_kkt_residual": "MAX KKT residual",
 }
+_JUDGED = ("max_position_error_m", "joint_drift_rad", "max_kinetic_index",
+           "max_kinetic_index_times_dt")  # fmt: skip
 _TABLE2_HEAD = (
     "case", "MAX E [m], paper", "ours", "ours / paper's",
     "MSE [m²], paper", "ours", "ours / paper's",
 )  # fmt: skip
+_ABLATION = {
+    "max_position_error_m": "MAX E [m]",
+    "max_orientation_error_rad": "orientation error [rad]",
+    "joint_drift_rad": "drift [rad]",
+    "total_variation_rad_s": "total variation [rad/s]",
+    "max_kinetic_index": "MAX q̇ᵀq̇ [rad²/s²]",
+}
+_WAYS = {"lowers": "lowered", "raises": "raised", "no effect shown": "no effect shown"}
+_FILTER = "filter, with noise"
 _CAPTIONS = {
     "fig1": "The paper's Fig. 1: path, joint angles, joint velocities and position error, with "
     "noise and filter.",
@@ -63,9 +76,9 @@ def write_paper_report(
     """Write report.md.
 
     Args:
-        folder: Where to; it must exist.
+        folder: The folder; it must exist.
         tables: ``table1``, ``table2`` and ``ablation``.
-        head: What, when and on what it was run, by names.
+        head: Date, machine, versions and the like, by names.
         figures: The figures' files in that folder; the PNG ones are shown.
 
     Returns:
@@ -74,13 +87,14 @@ def write_paper_report(
     Raises:
         FileError: If it cannot be written.
     """
-    table1, table2, ablation = (tables[name] for name in ("table1", "table2", "ablation"))
+    table1, table2 = tables["table1"], tables["table2"]
+    names = list(dict.fromkeys([*table1["variants"], *table2["modes"]]))
     parts = [
         "# The paper's experiments, run again",
         markdown_table(("what", "value"), list(head.items())),
         "## Verdicts",
-        markdown_table(("the paper's", *_variants(table1, table2)), _verdicts(table1, table2)),
-        "\n".join(f"- {line}" for line in findings(tables)),
+        markdown_table(("the paper's", *names), _verdicts(table1, table2, names)),
+        bullets(findings(tables)),
         "## What limits the comparison",
         _LIMITS,
         "## Table I: weights, without noise",
@@ -90,48 +104,112 @@ def write_paper_report(
         "## Table II: noise and filter",
         *_table2(table2),
         "## Ablation: what the paper leaves out",
-        _ablation(ablation),
+        _ablation(tables["ablation"]),
+        *show_figures(figures, _CAPTIONS),
     ]
-    shown = [path for path in figures if path.suffix == ".png"]
-    if shown:
-        parts.append("## Figures")
-        parts += [f"![{_CAPTIONS.get(path.stem, path.stem)}]({path.name})" for path in shown]
     path = Path(folder) / "report.md"
     write_text(path, "\n\n".join(parts) + "\n")
     return path
 
 
-def _variants(table1: Table, table2: Table) -> list[str]:
-    return list(dict.fromkeys([*table1["variants"], *table2["modes"]]))
-
-
-def _verdicts(table1: Table, table2: Table) -> list[list[str]]:
-    """A line for each row of the paper's tables, a column for each way to run them."""
-    names = _variants(table1, table2)
-    rows = []
-    for key in ("max_position_error_m", "joint_drift_rad", "max_kinetic_index",
-                "max_kinetic_index_times_dt"):  # fmt: skip
-        cells = [_of(table1["variants"].get(name), "verdicts", key, "verdict") for name in names]
-        rows.append([f"Table I, {_ROWS[key]}", *cells])
-    entries = next(iter(table2["modes"].values()))
-    for entry in entries:
-        for key, label in MEASURES.items():
-            cells = [
-                _of(table2["modes"].get(name), entry, key, "verdict", "verdict") for name in names
+def findings(tables: Mapping[str, Table]) -> list[str]:
+    """Put the outcome in sentences made from the tables' numbers and verdicts."""
+    table1, table2, ablation = (tables[name] for name in ("table1", "table2", "ablation"))
+    lines = []
+    for name, variant in table1["variants"].items():
+        said = []
+        for key, label in (("max_position_error_m", "MAX E"), ("joint_drift_rad", "drift")):
+            verdict = variant["verdicts"][key]
+            known = [ratio for ratio in verdict["ours_over_paper"] if ratio is not None]
+            ratios = f"{short(min(known))} to {short(max(known))}" if known else "–"
+            ways = f"{verdict['our_trend']} with ξ (paper: {verdict['paper_trend']})"
+            said.append(f"{label} {ways}, {ratios} times the paper's")
+        lines.append(f"Table I, {name}: {'; '.join(said)}.")
+    for mode, entries in table2["modes"].items():
+        for entry, measures in entries.items():
+            said = [
+                f"{label} {_change(measures[key]['changes'][_FILTER])}"
+                for key, label in MEASURES.items()
             ]
-            rows.append([f"Table II, {label}, noise at {entry}", *cells])
+            lines.append(f"Filter under noise at {entry}, {mode}: {', '.join(said)}.")
+    closest, stable = ablation["closest_to_the_papers_drift"], ablation["closest_stable"]
+    growth = closest["amplification"]
+    grows = f"a sub-step multiplies errors by {growth or 0.0:.2f}"
+    return [
+        *lines,
+        _claim(table2),
+        f"Closest to the paper's drift of {short(ablation['paper']['joint_drift_rad'])} rad: "
+        f"{_choice(closest)}, {short(closest['joint_drift_rad'])} rad; this choice is "
+        f"{'stable' if closest['stable'] else 'not stable'}: "
+        f"{'implicit steps damp' if growth is None else grows}, MAX E "
+        f"{short(closest['max_position_error_m'])} m. The closest stable one: {_choice(stable)}, "
+        f"{short(stable['joint_drift_rad'])} rad.",
+    ]
+
+
+def short(value: float | None) -> str:
+    """Show a number in three digits; a dash where there is none."""
+    return "–" if value is None else f"{value:.3g}"
+
+
+def _claim(table: Table) -> str:
+    """Judge the claim that the filter helps by all comparisons of Table II together."""
+    found = [
+        measures[key]["changes"][_FILTER]
+        for entries in table["modes"].values()
+        for measures in entries.values()
+        for key in MEASURES
+    ]
+    counts = {way: sum(change["our_trend"] == way for change in found) for way in _WAYS}
+    said = ", ".join(f"{word} in {counts[way]}" for way, word in _WAYS.items())
+    best = 100.0 * max(-min(change["mean"] for change in found), 0.0)
+    papers = [changes[_FILTER] for changes in table["paper_changes"].values()]
+    return (
+        f"The paper's claim that the filter lowers the error under noise, in {len(found)} "
+        f"comparisons over {table['scope']['seeds']} seeds: {said}; the most it took off a mean is "
+        f"{best:.2f} %, against {-100.0 * min(papers):.1f} % in the paper."
+    )
+
+
+def _change(change: Mapping[str, Any]) -> str:
+    """Put a relative change in words and per cent."""
+    mean, low, high = (change[key] for key in ("mean", "low", "high"))
+    if mean > 1.0:  # a percentage of thousands says less than a factor
+        size = f"× {1.0 + mean:.3g}"
+    else:
+        size = f"{100.0 * mean:+.2f} %"
+        if change["samples"] > 1:
+            size += f" [{100.0 * low:+.2f}, {100.0 * high:+.2f}]"
+    return f"{_WAYS[change['our_trend']]}, {size}: {change['verdict']}"
+
+
+def _choice(row: Mapping[str, Any]) -> str:
+    steps = "implicit" if row["substeps"] == "implicit" else f"{row['substeps']} explicit sub-steps"
+    return f"{steps}, {row['orientation']}, noise at {row['noise_at']}"
+
+
+def _verdicts(table1: Table, table2: Table, names: Sequence[str]) -> list[list[str]]:
+    """Lay out a line for each row of the paper's tables, a column for each way to run them."""
+    paths: dict[str, tuple[str, ...]] = {
+        f"Table I, {_ROWS[key]}": ("variants", "verdicts", key, "verdict") for key in _JUDGED
+    }
+    for entry in next(iter(table2["modes"].values())):
+        for key, label in MEASURES.items():
+            row = ("modes", entry, key)
+            paths[f"Table II, {label}, noise at {entry}"] = (*row, "verdict", "verdict")
             for change in table2["paper_changes"][key]:
-                path = (entry, key, "changes", change, "verdict")
-                cells = [_of(table2["modes"].get(name), *path) for name in names]
-                rows.append([f"effect of {change}, on {label}, noise at {entry}", *cells])
-    return rows
+                title = f"effect of {change}, on {label}, noise at {entry}"
+                paths[title] = (*row, "changes", change, "verdict")
+    lines = []
+    for title, (kind, *path) in paths.items():
+        table = table1 if kind == "variants" else table2
+        lines.append([title, *(_at(table[kind].get(name), path) for name in names)])
+    return lines
 
 
-def _of(table: Any, *path: str) -> str:
-    """What stands at a path in nested tables; a dash where there is none."""
-    for key in path:
-        if table is None:
-            break
+def _at(table: Any, path: Sequence[str]) -> str:
+    """Look up a path in nested tables; a dash where there is no table."""
+    for key in path if table is not None else ():
         table = table[key]
     return "–" if table is None else str(table)
 
@@ -160,78 +238,49 @@ def _laps(table: Table) -> str:
 
 def _table2(table: Table) -> list[str]:
     parts = []
-    cases, changes = table["cases"], table["paper_changes"]
     for mode, entries in table["modes"].items():
         for entry, measures in entries.items():
-            rows = [
-                [case]
-                + [
-                    text
-                    for key in MEASURES
-                    for text in (
-                        short(table["paper"][key][i]),
-                        _interval(measures[key]["cases"][i]),
-                        short(measures[key]["verdict"]["ours_over_paper"][i]),
-                    )
-                ]
-                for i, case in enumerate(cases)
-            ]
-            parts += [f"### {mode}; noise at {entry}", markdown_table(_TABLE2_HEAD, rows)]
-            rows = [
-                [
-                    MEASURES[key],
-                    change,
-                    f"{100.0 * changes[key][change]:+.1f} %",
-                    change_in_words(ours),
-                ]
-                for key in MEASURES
-                for change, ours in measures[key]["changes"].items()
-            ]
-            parts.append(markdown_table(("", "effect of", "paper", "ours [95 %]: verdict"), rows))
-            pairs = ", ".join(
-                f"{label} {_interval(measures[key]['difference'])}"
-                for key, label in MEASURES.items()
-            )
-            said = f"Filter minus no filter, seed by seed: {pairs}."
+            rows, effects, pairs = [[case] for case in table["cases"]], [], []
+            for key, label in MEASURES.items():
+                ours = measures[key]
+                ratios = ours["verdict"]["ours_over_paper"]
+                columns = zip(table["paper"][key], ours["cases"], ratios, strict=True)
+                for row, (paper, case, ratio) in zip(rows, columns, strict=True):
+                    row += [short(paper), _interval(case), short(ratio)]
+                for change, effect in ours["changes"].items():
+                    paper = f"{100.0 * table['paper_changes'][key][change]:+.1f} %"
+                    effects.append([label, change, paper, _change(effect)])
+                pairs.append(f"{label} {_interval(ours['difference'])}")
+            said = f"Filter minus no filter, seed by seed: {', '.join(pairs)}."
             theory = measures["theory_noise_mse_m2"]
             if theory is not None and mode.startswith("converged"):
-                quiet, noisy = (
-                    measures["mse_position_error_m2"]["cases"][i]["mean"] for i in (0, 2)
-                )
-                said += (
-                    f" MSE that noise adds without filter: {short(noisy - quiet)} m²; from "
-                    f"σ²Δt/2δ, {short(theory)} m²."
-                )
-            parts.append(said)
+                quiet, _, noisy, _ = measures["mse_position_error_m2"]["cases"]
+                added = short(noisy["mean"] - quiet["mean"])
+                said += f" MSE that noise adds without filter: {added} m²; "
+                said += f"from σ²Δt/2δ, {short(theory)} m²."
+            parts += [
+                f"### {mode}; noise at {entry}",
+                markdown_table(_TABLE2_HEAD, rows),
+                markdown_table(("", "effect of", "paper", "ours [95 %]: verdict"), effects),
+                said,
+            ]
     return parts
 
 
 def _ablation(table: Table) -> str:
-    columns = {
-        "max_position_error_m": "MAX E [m]",
-        "max_orientation_error_rad": "orientation error [rad]",
-        "joint_drift_rad": "drift [rad]",
-        "total_variation_rad_s": "total variation [rad/s]",
-        "max_kinetic_index": "MAX q̇ᵀq̇ [rad²/s²]",
-        "amplification": "growth of a sub-step",
-    }
-    head = ("orientation", "noise at", "sub-steps", "stable", *columns.values())
-    rows = [
-        [
-            row["orientation"],
-            row["noise_at"],
-            str(row["substeps"]),
-            "yes" if row["stable"] else "no",
-            *(short(row[key]) for key in columns if key != "amplification"),
-            "–" if row["amplification"] is None else f"{row['amplification']:.4f}",
-        ]
-        for row in table["rows"]
-    ]
+    head = ("orientation", "noise at", "sub-steps", "stable", *_ABLATION.values(),
+            "growth of a sub-step")  # fmt: skip
+    rows = []
+    for row in table["rows"]:
+        growth, stable = row["amplification"], "yes" if row["stable"] else "no"
+        named = [row["orientation"], row["noise_at"], str(row["substeps"]), stable]
+        numbers = [short(row[key]) for key in _ABLATION]
+        rows.append([*named, *numbers, "–" if growth is None else f"{growth:.4f}"])
     return markdown_table(head, rows)
 
 
 def _interval(estimate: Mapping[str, Any]) -> str:
-    """A mean with the ends of its interval; an exact value alone."""
+    """Show a mean with the ends of its interval; an exact value alone."""
     if estimate["samples"] == 1:
         return short(estimate["mean"])
     return f"{estimate['mean']:.4g} [{estimate['low']:.4g}, {estimate['high']:.4g}]"

@@ -1,6 +1,6 @@
 """One run of the paper's heart from plain settings, and the numbers that are kept of it.
 
-`measure` is the task of the sweeps: whatever it returns depends on its settings alone.
+`measure` is the task of the sweeps: its answer depends on its settings alone.
 """
 
 from __future__ import annotations
@@ -12,8 +12,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Mode
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart, Reference
@@ -23,24 +25,53 @@ from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 from iiwa_dnn.schemes.costs import Kinetic
 from iiwa_dnn.schemes.tasks import Orientation
-from iiwa_dnn.simulation import NoiseEntry, Simulation
+from iiwa_dnn.simulation import NoiseEntry, simulate
 from iiwa_dnn.simulation.motion import Motion
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.stability import amplification
 from iiwa_dnn.studies.sweeps import Outcome
 
 _KEPT = (
-    "max_position_error_m",
-    "mse_position_error_m2",
-    "max_orientation_error_rad",
-    "joint_drift_rad",
-    "max_kinetic_index",
-    "max_kkt_residual",
-    "position_limit_violation_rad",
-    "velocity_limit_violation_rad_s",
-    "wall_time_s",
-)
-_STABILITY_SAMPLES = 101
+    "max_position_error_m", "mse_position_error_m2", "max_orientation_error_rad",
+    "joint_drift_rad", "max_kinetic_index", "max_kkt_residual", "position_limit_violation_rad",
+    "velocity_limit_violation_rad_s", "wall_time_s",
+)  # fmt: skip
+_HANDED_ON = ("dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "seed")
+
+
+@dataclass(frozen=True)
+class Scope:
+    """Sizes of the paper's experiments.
+
+    Attributes:
+        duration: Length of each run [s]; the heart takes 10 s.
+        seeds: Number of noises in Table II, two or more.
+        laps: Number of hearts drawn to see the drift add up.
+        laps_dt: Control period of those laps [s]; they are integrated by the midpoint rule.
+        dt: Control period of everything else [s].
+    """
+
+    duration: float = 10.0
+    seeds: int = 100
+    laps: int = 10
+    laps_dt: float = 1e-3
+    dt: float = paper.DT
+
+    def __post_init__(self) -> None:
+        """Check the sizes; raises InvalidInputError naming the one that is wrong."""
+        for name in ("duration", "laps_dt", "dt"):
+            checks.positive(name, getattr(self, name))
+        for name, least in (("seeds", 2), ("laps", 1)):
+            if getattr(self, name) < least:
+                problem = f"must be at least {least}, not {getattr(self, name)}"
+                raise InvalidInputError(name, problem, getattr(self, name))
+
+
+FULL = Scope()
+"""The paper's experiments at full length, over 100 seeds."""
+
+QUICK = Scope(duration=1.0, seeds=5, laps=2, laps_dt=1e-2)
+"""The same with the first second of each run: to see that all works, not to compare with."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +85,10 @@ class HeartRun:
         kinetic: G: ``"identity"`` (the paper's) or ``"inertia"``.
         baseline: Whether the pseudo-inverse takes the scheme's place, which has neither weight
             nor bounds.
-        substeps: How the network is advanced in ``continuous`` mode: that many explicit
-            sub-steps a control step, as many as are ``"computed"`` to be stable, or
-            ``"implicit"`` Euler.
+        substeps: Advance of the network in ``continuous`` mode: that many explicit sub-steps a
+            control step, as many as are ``"computed"`` to be stable, or ``"implicit"`` Euler.
         noise: Standard deviation, in the unit of `noise_at` (`NOISE_ENTRIES`).
-        noise_at: Where the noise enters.
+        noise_at: Entry of the noise.
         filter_window: Samples in the moving average.
         seed: Seed of the noise.
         dt: Control period [s].
@@ -83,31 +113,21 @@ class HeartRun:
     keep_record: bool = False
 
     def settings(self) -> dict[str, Any]:
-        """In JSON types; runs that cannot differ have the same settings, and are run once."""
+        """Return them in JSON types; runs that cannot differ have the same, and are run once."""
         silent = replace(self, seed=0, noise_at="velocity") if self.noise == 0.0 else self
         return asdict(silent)
 
-    def simulation(self) -> Simulation:
-        """The run, ready to be carried out, without reference solvers."""
-        return Simulation(
-            paper_robot(),
-            self.scheme(),
-            self.reference(),
-            paper.START,
-            dt=self.dt,
-            duration=self.duration,
-            mode=self.mode,
-            motion=self.motion,
-            noise=self.noise,
-            noise_at=self.noise_at,
-            filter_window=self.filter_window,
-            seed=self.seed,
-            check=CrossCheck(()),
-            solver=DNNSolver(follower=self.follower()),
-        )
+    def run(self) -> Record:
+        """Carry out the run, without reference solvers."""
+        options: dict[str, Any] = {name: getattr(self, name) for name in _HANDED_ON}
+        steps = None if isinstance(self.substeps, str) else self.substeps
+        implicit = self.substeps == "implicit"
+        solver = DNNSolver(follower=ImplicitEuler() if implicit else ExplicitEuler(substeps=steps))
+        options |= {"check": CrossCheck(()), "solver": solver}
+        return simulate(paper_robot(), self.scheme(), self.reference(), paper.START, **options)
 
     def scheme(self) -> Scheme:
-        """What builds the programs, with the paper's start as its home."""
+        """Make the scheme, with the paper's start as its home."""
         if self.baseline:
             return PseudoInverse(orientation=self.orientation)
         return DoubleIndicator(
@@ -115,19 +135,13 @@ class HeartRun:
         )
 
     def reference(self) -> Reference:
-        """The heart from the paper's start."""
+        """Make the heart from the paper's start."""
         return Heart().anchored(Configuration(paper_robot(), paper.START))
-
-    def follower(self) -> Integrator:
-        """The integrator of ``continuous`` mode."""
-        if self.substeps == "implicit":
-            return ImplicitEuler()
-        return ExplicitEuler(substeps=None if self.substeps == "computed" else self.substeps)
 
 
 @cache
 def paper_robot() -> Robot:
-    """The iiwa 7 with the paper's position limits."""
+    """Load the iiwa 7 with the paper's position limits."""
     return load_robot("iiwa7").with_limits(lower=-paper.JOINT_LIMIT, upper=paper.JOINT_LIMIT)
 
 
@@ -145,10 +159,10 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
         None.
     """
     run = HeartRun(**settings)
-    record = run.simulation().run()
+    record = run.run()
     metrics = compute_metrics(record)
-    values = {name: metrics[name] for name in _KEPT}
-    values |= {
+    values = {
+        **{name: metrics[name] for name in _KEPT},
         "status": record.settings["status"],
         "total_variation_rad_s": total_variation(record),
         "lap_drift_rad": lap_drift(record, Heart().period),
@@ -158,7 +172,7 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
 
 
 def total_variation(record: Record) -> float:
-    """Sum of the joint velocity's changes from step to step [rad/s], of the joint with most.
+    """Sum up the changes of a joint velocity from step to step [rad/s], of the joint with most.
 
     A smooth run's is the sum of its ups and downs; chatter adds its height at every step.
     """
@@ -168,19 +182,19 @@ def total_variation(record: Record) -> float:
 
 
 def lap_drift(record: Record, period: float) -> list[float]:
-    """Largest distance of a joint from its start [rad] after each whole lap."""
+    """Return the largest distance of a joint from its start [rad] after each whole lap."""
     dt = float(record.settings["dt"])
     ends = [round(lap * period / dt) for lap in range(1, int(record.t[-1] / period + 0.5) + 1)]
     return [float(np.abs(record.q[k] - record.q[0]).max()) for k in ends if k <= record.steps]
 
 
 def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
-    """What depends on the postures that the run went through, at a hundred of them."""
+    """Evaluate Jacobian and stability at a hundred of the postures that the run went through."""
     scheme, reference = run.scheme(), run.reference()
     explicit = run.mode == "continuous" and run.substeps != "implicit"
     worst, squares = 0.0, []
-    samples = np.unique(np.linspace(0, record.steps - 1, _STABILITY_SAMPLES).astype(int))
-    for k in samples:
+    # A hundred and one, or as many as there are.
+    for k in np.unique(np.linspace(0, record.steps - 1, 101).astype(int)):
         conf = Configuration(paper_robot(), record.q[k])
         squares.append(float(np.sum(conf.jacobian[:3] ** 2)))
         if explicit:
@@ -188,7 +202,5 @@ def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
             # An explicit run's iterations are its sub-steps.
             step = run.dt / record.settings["rho"] / float(record.iterations[k])
             worst = max(worst, amplification(qp, step))
-    return {
-        "jacobian_square_m2": float(np.mean(squares)),
-        "amplification": worst if explicit else None,
-    }
+    mean = float(np.mean(squares))
+    return {"jacobian_square_m2": mean, "amplification": worst if explicit else None}

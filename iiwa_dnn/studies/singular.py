@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Line
+from iiwa_dnn.results.metrics import orientation_error, position_error
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -15,59 +22,70 @@ from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies.runs import paper_robot
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 TILT = 0.05
-"""By how much the tool is off its desired orientation at the start [rad]."""
+"""Angle between the tool and its desired orientation at the start [rad]."""
 
 _STILL = Line(offset=(1e-12, 0.0, 0.0), period=1e3)
 
 
 def vertical_start() -> Configuration:
-    """A bent arm whose tool points straight down."""
+    """Make a bent arm whose tool points straight down."""
     # In the arm's own plane, joints 2, 4 and 6 turn the tool by q2 - q4 + q6.
     return Configuration(paper_robot(), [0.3, 0.5, 0.0, -1.6, 0.0, np.pi - 2.1, 0.2])
 
 
 def tilted_run(orientation: Orientation, mode: Mode) -> Record:
-    """Half a second of holding the vertical orientation, from a start tilted by ``TILT``.
-
-    Args:
-        orientation: Form of the orientation rows.
-        mode: ``"converged"``, or ``"continuous"``, the paper's.
-    """
+    """Hold the vertical orientation for half a second, from a start tilted by ``TILT``."""
     desired = vertical_start()
     q0 = desired.q.copy()
     q0[5] += TILT
+    scheme = DoubleIndicator(orientation=orientation, weight=1.0)
     return simulate(
-        paper_robot(),
-        DoubleIndicator(orientation=orientation, weight=1.0),
-        _STILL.anchored(desired),
-        q0,
-        dt=1e-4,
-        duration=0.5,
-        mode=mode,
-        check=CrossCheck(()),
-    )
+        paper_robot(), scheme, _STILL.anchored(desired), q0,
+        dt=1e-4, duration=0.5, mode=mode, check=CrossCheck(()),
+    )  # fmt: skip
 
 
 def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
-    """Four seconds along a line that leads 0.3 m further out than the arm reaches, and back.
-
-    Args:
-        policy: What is done where there is no solution.
-        dt: Control period [s].
-    """
+    """Follow a line for 4 s, in steps of dt [s], 0.3 m beyond the arm's reach and back."""
     start = vertical_start()
     outward = start.position * [1.0, 1.0, 0.0]
     reach = 0.8 - float(np.linalg.norm(outward))
-    offset = (reach + 0.3) * outward / np.linalg.norm(outward)
-    x, y, z = offset.tolist()
+    x, y, z = ((reach + 0.3) * outward / np.linalg.norm(outward)).tolist()
+    line = Line(offset=(x, y, z), period=4.0).anchored(start)
     return simulate(
-        paper_robot(),
-        DoubleIndicator(orientation="none"),
-        Line(offset=(x, y, z), period=4.0).anchored(start),
-        start.q,
-        dt=dt,
-        duration=4.0,
-        policy=policy,
-        check=CrossCheck(()),
-    )
+        paper_robot(), DoubleIndicator(orientation="none"), line, start.q,
+        dt=dt, duration=4.0, policy=policy, check=CrossCheck(()),
+    )  # fmt: skip
+
+
+def save_singular_figure(
+    vertical: Mapping[str, Record], stretched: Mapping[str, Record], folder: str | os.PathLike[str]
+) -> list[Path]:
+    """Draw ``singular`` as PNG and PDF (`write_figures`), and return the files.
+
+    Args:
+        vertical: Runs of `tilted_run`, by rows and mode.
+        stretched: Runs of `stretched_run`, by policy.
+        folder: The folder; made if need be.
+    """
+    return write_figures({"singular": lambda: _figure(vertical, stretched)}, folder)
+
+
+def _figure(vertical: Mapping[str, Record], stretched: Mapping[str, Record]) -> Figure:
+    figure = new_figure(DOUBLE_COLUMN, 2.6)
+    left, middle, right = figure.subplots(1, 3)
+    for name, record in vertical.items():
+        left.semilogy(record.t[1:], orientation_error(record)[1:], label=name)
+    for name, record in stretched.items():
+        middle.plot(record.t, np.linalg.norm(position_error(record), axis=1), label=name)
+        right.plot(record.t[1:], np.abs(record.dq).max(axis=1), label=name, linewidth=0.6)
+    left.set(title="Tool vertical", xlabel="t [s]", ylabel="orientation error [rad]")
+    middle.set(title="Arm stretched", xlabel="t [s]", ylabel="position error [m]")
+    right.set(title="Arm stretched", xlabel="t [s]", ylabel="fastest joint [rad/s]")
+    for axes in (left, middle, right):
+        axes.legend()
+    return figure

@@ -1,4 +1,4 @@
-r"""Whether explicit steps of the network die out or grow.
+r"""Growth of an error in explicit steps of the network.
 
 On a fixed active set the network is linear, :math:`\rho\,\dot s = M (s - s^*)`. With no bound
 active, x and the equalities' multipliers move by
@@ -19,13 +19,13 @@ from iiwa_dnn.qp.program import QP, Matrix
 
 
 def network_matrix(qp: QP) -> Matrix:
-    """M, for a program with n variables and p equalities and no bound active: (n + p, n + p)."""
+    """Build M for a program with n variables, p equalities and no bound active: (n + p, n + p)."""
     p = qp.b.size
     return np.block([[-qp.P, -qp.A.T], [qp.A, np.zeros((p, p))]])
 
 
 def amplification(qp: QP, step: float) -> float:
-    r"""By how much one explicit Euler step can magnify an error, no bound being active.
+    r"""Compute the largest growth of an error in one explicit Euler step, no bound being active.
 
     Args:
         qp: The program.

@@ -5,7 +5,7 @@ With :math:`\bar x` the mean and s the standard deviation of k independent sampl
 .. math::  \bar x \pm t_{k-1,\,(1+c)/2}\, s / \sqrt{k}
 
 holds the true mean with confidence c (Student's t). Where two runs share their noise, the
-difference is taken run by run before it is averaged: what the noise did to both cancels, and the
+difference is taken run by run before it is averaged: the noise that both share cancels, and the
 interval is the narrower for it.
 
 Sources: Student, "The probable error of a mean", Biometrika 6 (1908); M. G. Kendall, "A new measure
@@ -19,6 +19,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.stats import kendalltau
 from scipy.stats import t as student
 
 from iiwa_dnn.checks import finite_array
@@ -33,12 +34,12 @@ Trend = Literal["rising", "falling", "constant", "none"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean and how well it is known.
+    """A mean and its confidence interval.
 
     Attributes:
         mean: Mean of the samples.
         half_width: Half the width of the confidence interval around it; 0 of an exact value.
-        samples: How many there were; 1 of an exact value.
+        samples: Number of samples; 1 of an exact value.
     """
 
     mean: float
@@ -47,7 +48,7 @@ class Estimate:
 
     @classmethod
     def exact(cls, value: float) -> Estimate:
-        """A number without chance in it, such as a run without noise."""
+        """Make an estimate of a number without chance in it, such as that of a quiet run."""
         return cls(float(value), 0.0, 1)
 
     @property
@@ -66,17 +67,12 @@ class Estimate:
         return int(self.low > 0.0) - int(self.high < 0.0)
 
     def to_json(self) -> dict[str, Any]:
-        """The estimate in JSON types, for a table."""
-        return {
-            "mean": self.mean,
-            "low": self.low,
-            "high": self.high,
-            "samples": self.samples,
-        }
+        """Return the estimate in JSON types, for a table."""
+        return {"mean": self.mean, "low": self.low, "high": self.high, "samples": self.samples}
 
 
 def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
-    """Mean of independent samples and its confidence interval.
+    """Estimate the mean of independent samples, with its confidence interval.
 
     Args:
         samples: At least two finite numbers, (k,).
@@ -94,6 +90,7 @@ def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
         raise InvalidInputError("samples", f"must be two or more, not {values.size}", samples)
     if not 0.0 < confidence < 1.0:
         raise InvalidInputError("confidence", f"must be in (0, 1), not {confidence}", confidence)
+    # Not scipy's ttest_1samp, whose interval is NaN where all samples are equal.
     quantile = float(student.ppf(0.5 * (1.0 + confidence), values.size - 1))
     half_width = quantile * float(values.std(ddof=1)) / float(np.sqrt(values.size))
     return Estimate(float(values.mean()), half_width, values.size)
@@ -102,12 +99,7 @@ def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
 def paired_difference(
     after: ArrayLike, before: ArrayLike, confidence: float = CONFIDENCE
 ) -> Estimate:
-    """Mean of ``after - before`` over pairs, and its confidence interval.
-
-    Args:
-        after: Samples, (k,).
-        before: Their partners, (k,): entry i of both shares its noise.
-        confidence: As for `estimate`.
+    """Estimate the mean of ``after - before`` over pairs, (k,) both: entry i shares its noise.
 
     Raises:
         InvalidInputError: The lengths differ, or as for `estimate`.
@@ -117,30 +109,8 @@ def paired_difference(
     return estimate(one - other, confidence)
 
 
-def kendall_tau(x: ArrayLike, y: ArrayLike) -> float:
-    """Kendall's tau-a: share of the pairs that x and y order alike minus share ordered unlike.
-
-    Args:
-        x: Numbers, (k,), k at least 2.
-        y: Numbers, (k,).
-
-    Returns:
-        A number in [-1, 1]; pairs with a tie count as neither.
-
-    Raises:
-        InvalidInputError: The lengths differ, there are fewer than two, or one is not finite.
-    """
-    one = finite_array("x", x, (-1,))
-    other = finite_array("y", y, (one.size,))
-    if one.size < 2:
-        raise InvalidInputError("x", f"must hold two or more numbers, not {one.size}", x)
-    first, second = np.triu_indices(one.size, 1)
-    agreement = np.sign(one[second] - one[first]) * np.sign(other[second] - other[first])
-    return float(agreement.mean())
-
-
 def trend(x: ArrayLike, y: ArrayLike) -> Trend:
-    """Which way y goes as x grows: the sign of Kendall's tau, or ``constant``.
+    """Tell the trend of y over x: the sign of Kendall's tau, or ``constant``.
 
     Args:
         x: Numbers, (k,), k at least 2.
@@ -150,10 +120,13 @@ def trend(x: ArrayLike, y: ArrayLike) -> Trend:
         ``none`` where tau is zero.
 
     Raises:
-        InvalidInputError: As for `kendall_tau`.
+        InvalidInputError: The lengths differ, there are fewer than two, or one is not finite.
     """
-    tau = kendall_tau(x, y)
-    values = np.asarray(y, dtype=np.float64)
-    if np.ptp(values) <= FLAT * abs(float(values.mean())):
+    one = finite_array("x", x, (-1,))
+    other = finite_array("y", y, (one.size,))
+    if one.size < 2:
+        raise InvalidInputError("x", f"must hold two or more numbers, not {one.size}", x)
+    if np.ptp(other) <= FLAT * abs(float(other.mean())):
         return "constant"
-    return "none" if tau == 0.0 else "rising" if tau > 0.0 else "falling"
+    tau = kendalltau(one, other).statistic  # NaN of a constant x
+    return "rising" if tau > 0.0 else "falling" if tau < 0.0 else "none"

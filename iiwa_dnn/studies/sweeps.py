@@ -1,8 +1,7 @@
 """Resumable grids of runs, on all cores through joblib or on a Dask cluster.
 
-A cell is one setting of a task, in JSON types. What a finished cell came to is one file, named by
-the hash of its settings and of all else that the numbers depend on: the versions of the packages,
-the source of the task with what it imports of this package, the robots' URDFs. A sweep that was
+A cell is one setting of a task, in JSON types. The outcome of a finished cell is one file, named by
+the hash of its settings and of all else that the numbers depend on (`provenance`). A sweep that was
 killed, even by ``kill -9``, finds the finished cells the next time and computes the others; after
 any change there are new cells, and old ones are never taken for them. Only the process that asked
 writes files, each atomically.
@@ -16,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,7 @@ from iiwa_dnn.studies.provenance import fingerprint
 
 Settings = Mapping[str, Any]
 
-_PATIENCE = 10.0  # how long to look for a scheduler [s]
+_PATIENCE = 10.0  # time to look for a scheduler [s]
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
@@ -39,7 +38,7 @@ _ONE_THREAD = dict.fromkeys(
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one cell came to.
+    """The outcome of one cell.
 
     Attributes:
         values: Its numbers, in JSON types.
@@ -60,7 +59,7 @@ class Sweep:
     Attributes:
         task: A function of a module, so that a worker can import it; its result must depend on
             nothing but its argument.
-        folder: Where the cells' files go; made if need be.
+        folder: Folder of the cells' files; made if need be.
     """
 
     task: Task
@@ -94,16 +93,12 @@ class Sweep:
             raise InvalidInputError("workers", f"must be at least 1, not {workers}", workers)
         prepare_folder(self.folder)
         names = [self.name(cell) for cell in cells]
-        found = {name: self._read(name, cell) for name, cell in zip(names, cells, strict=True)}
+        found = {name: self._read(name) for name in names}
         todo = {name: cell for name, cell in zip(names, cells, strict=True) if found[name] is None}
         bar = tqdm(
-            total=len(found),
-            initial=len(found) - len(todo),
-            unit="run",
-            dynamic_ncols=True,
-            # None: no bar where standard error is not a terminal.
-            disable=True if quiet else None,
-        )
+            total=len(found), initial=len(found) - len(todo), unit="run", dynamic_ncols=True,
+            disable=quiet or None,  # None: no bar where standard error is not a terminal
+        )  # fmt: skip
         with bar:
             for name, outcome in self._outcomes(todo, workers, dask):
                 found[name] = self._write(name, todo[name], outcome)
@@ -111,7 +106,7 @@ class Sweep:
         return [values for name in names if (values := found[name]) is not None]
 
     def record(self, cell: Settings) -> Record:
-        """The record of a finished cell.
+        """Load the record of a finished cell.
 
         Raises:
             FileError: The cell is not finished, or its task kept no record.
@@ -119,7 +114,7 @@ class Sweep:
         return Record.load(self.folder / f"{self.name(cell)}.npz")
 
     def name(self, cell: Settings) -> str:
-        """The name of a cell's files: a hash of all that its numbers depend on."""
+        """Return the name of a cell's files: a hash of all that its numbers depend on."""
         text = json.dumps(self._identity(cell), sort_keys=True, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()[:24]
 
@@ -127,25 +122,22 @@ class Sweep:
         task = f"{self.task.__module__}.{self.task.__qualname__}"
         return {"task": task, "settings": plain(cell), **fingerprint(self.task)}
 
-    def _read(self, name: str, cell: Settings) -> dict[str, Any] | None:
-        """The numbers of a finished cell; None if it is not finished or its file is damaged."""
+    def _read(self, name: str) -> dict[str, Any] | None:
+        """Read the numbers of a finished cell; None if its file is missing or damaged."""
         try:
             content = json.loads((self.folder / f"{name}.json").read_text(encoding="utf-8"))
-            if content["identity"] != self._identity(cell):
-                return None
             values: dict[str, Any] = content["values"]
-            if content["record"] and not (self.folder / f"{name}.npz").is_file():
-                return None
+            kept = not content["record"] or (self.folder / f"{name}.npz").is_file()
         except (OSError, ValueError, KeyError, TypeError):
             return None
-        return values
+        return values if kept else None
 
     def _write(self, name: str, cell: Settings, outcome: Outcome) -> dict[str, Any]:
-        """Keep what a cell came to; the numbers last, since they say that it is finished."""
+        """Write the outcome of a cell; the numbers last, since they say that it is finished."""
         values: dict[str, Any] = plain(outcome.values)
+        kept = outcome.record is not None
         if outcome.record is not None:
             outcome.record.save(self.folder / f"{name}.npz")
-        kept = outcome.record is not None
         content = {"identity": self._identity(cell), "record": kept, "values": values}
         write_json(self.folder / f"{name}.json", content)
         return values
@@ -154,28 +146,22 @@ class Sweep:
         self, todo: Mapping[str, Settings], workers: int | None, dask: str | None
     ) -> Iterator[tuple[str, Outcome]]:
         """Compute the cells, each yielded as soon as it is done, in whatever order."""
-        calls = (
-            joblib.delayed(_compute)(name, self.task, dict(cell), fingerprint(self.task))
-            for name, cell in todo.items()
-        )
         if not todo:
             return
-        count = min(workers or joblib.cpu_count(), len(todo))
-        with _backend(count, dask):
+        compute, expected = joblib.delayed(_compute), fingerprint(self.task)
+        calls = (compute(name, self.task, dict(cell), expected) for name, cell in todo.items())
+        with _backend(min(workers or joblib.cpu_count(), len(todo)), dask):
             # One cell a message: a finished one is written at once.
             # max_nbytes: no arrays in shared memory, which a killed sweep would leave behind.
-            parallel = joblib.Parallel(
-                batch_size=1, return_as="generator_unordered", max_nbytes=None
-            )
-            yield from parallel(calls)
+            options = {"batch_size": 1, "return_as": "generator_unordered", "max_nbytes": None}
+            yield from joblib.Parallel(**options)(calls)
 
 
 def _compute(
     name: str, task: Task, cell: Settings, expected: dict[str, Any]
 ) -> tuple[str, Outcome]:
-    """What a worker does; one with other versions than the asking process refuses."""
-    if fingerprint(task) != expected:
-        own = fingerprint(task)
+    """Compute a cell in a worker; one with other versions than the asking process refuses."""
+    if (own := fingerprint(task)) != expected:
         raise IiwaDnnError(f"a worker runs other versions: {own}, expected {expected}")
     try:
         return name, task(cell)
@@ -186,42 +172,30 @@ def _compute(
 
 @contextmanager
 def _backend(workers: int, dask: str | None) -> Iterator[None]:
-    """Where joblib's calls go: to this process, to processes of this machine, or to Dask."""
-    if dask is not None:
-        with _dask_client(workers, dask), joblib.parallel_config("dask"):
-            yield
-    elif workers == 1:
-        with joblib.parallel_config("sequential"):
-            yield
-    else:
-        with joblib.parallel_config("loky", n_jobs=workers, inner_max_num_threads=1):
+    """Send joblib's calls to this process, to processes of this machine, or to Dask."""
+    with ExitStack() as stack:
+        if dask is not None:
+            _connect(stack, workers, dask)
+            config = joblib.parallel_config("dask")
+        elif workers == 1:
+            config = joblib.parallel_config("sequential")
+        else:
+            config = joblib.parallel_config("loky", n_jobs=workers, inner_max_num_threads=1)
+        with config:
             yield
 
 
-@contextmanager
-def _dask_client(workers: int, address: str) -> Iterator[object]:
-    """A client of a Dask scheduler, or of a cluster of its own for ``"local"``."""
+def _connect(stack: ExitStack, workers: int, address: Any) -> None:
+    """Connect to a Dask scheduler, or to a cluster of its own for ``"local"``."""
     try:
         from distributed import Client, LocalCluster
     except ImportError as error:
         raise InvalidInputError("dask", "is not installed: pip install iiwa-dnn[dask]") from error
     if address == "local":
-        with (
-            LocalCluster(
-                n_workers=workers,
-                threads_per_worker=1,
-                dashboard_address=None,
-                env=_ONE_THREAD,
-            ) as cluster,
-            Client(cluster) as client,
-        ):
-            yield client
-        return
+        options = {"threads_per_worker": 1, "dashboard_address": None, "env": _ONE_THREAD}
+        address = stack.enter_context(LocalCluster(n_workers=workers, **options))
     try:
-        client = Client(address, timeout=_PATIENCE)
+        stack.enter_context(Client(address, timeout=_PATIENCE))
     except (OSError, ValueError) as error:
-        raise InvalidInputError(
-            "dask", f"no scheduler at {address!r} ({one_line(error)})"
-        ) from error
-    with client:
-        yield client
+        problem = f"no scheduler at {address!r} ({one_line(error)})"
+        raise InvalidInputError("dask", problem) from error

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import HeartRun
-from iiwa_dnn.studies.scope import Scope
-from iiwa_dnn.studies.verdicts import Verdict, judge_row
+from iiwa_dnn.studies.runs import HeartRun, Scope
+from iiwa_dnn.studies.verdicts import judge_row
 
 VARIANTS: dict[str, HeartRun] = {
     "continuous, block": HeartRun(),
@@ -28,46 +27,39 @@ DRIFTERS: dict[str, HeartRun] = {
     "double indicator, ξ = 0.2, SO(3)": _LAPS,
     "double indicator, ξ = 0.2, position only": replace(_LAPS, orientation="none"),
 }
-"""What draws one heart after another."""
+"""Runs that draw one heart after another."""
 
 _MEASURES = (
-    "max_position_error_m",
-    "mse_position_error_m2",
-    "joint_drift_rad",
-    "max_kinetic_index",
-    "max_orientation_error_rad",
-    "max_kkt_residual",
-    "total_variation_rad_s",
-    "status",
-)
+    "max_position_error_m", "mse_position_error_m2", "joint_drift_rad", "max_kinetic_index",
+    "max_orientation_error_rad", "max_kkt_residual", "total_variation_rad_s", "status",
+)  # fmt: skip
+_PAPER = {
+    "max_position_error_m": paper.MAX_ERROR,
+    "joint_drift_rad": paper.DRIFT,
+    "max_kinetic_index": paper.KINETIC_INDEX,
+}
+# The kinetic index is judged as it is printed, and divided by dt.
+_JUDGED = _PAPER | {"max_kinetic_index_times_dt": paper.KINETIC_INDEX}
 
 
 def cells(scope: Scope) -> list[HeartRun]:
-    """The runs of the table, weights of each variant in turn, and then the laps."""
+    """List the runs of the table, weights of each variant in turn, and then the laps."""
     weights = [
         replace(variant, weight=weight, dt=scope.dt, duration=scope.duration)
         for variant in VARIANTS.values()
         for weight in paper.WEIGHTS
     ]
-    return [*weights, *_laps(scope)]
-
-
-def _laps(scope: Scope) -> list[HeartRun]:
-    period = HeartRun().reference().period
-    return [
-        replace(run, dt=scope.laps_dt, duration=scope.laps * period) for run in DRIFTERS.values()
-    ]
+    length = scope.laps * HeartRun().reference().period
+    laps = [replace(run, dt=scope.laps_dt, duration=length) for run in DRIFTERS.values()]
+    return [*weights, *laps]
 
 
 def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The table, beside the paper's, with its verdicts.
+    """Lay out the table beside the paper's, with its verdicts, in JSON types.
 
     Args:
-        scope: What was run.
+        scope: Sizes of the experiments.
         results: The numbers of `cells`, in that order.
-
-    Returns:
-        The table in JSON types.
     """
     columns = len(paper.WEIGHTS)
     variants = {}
@@ -77,33 +69,19 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
         rows["max_kinetic_index_times_dt"] = [
             None if value is None else value * scope.dt for value in rows["max_kinetic_index"]
         ]
-        variants[name] = {
-            "rows": rows,
-            "verdicts": {key: v.to_json() for key, v in _verdicts(rows).items()},
+        verdicts = {
+            key: judge_row(paper.WEIGHTS, printed, rows[key]).to_json()
+            for key, printed in _JUDGED.items()
         }
-    laps = results[len(VARIANTS) * columns :]
+        variants[name] = {"rows": rows, "verdicts": verdicts}
+    laps = zip(DRIFTERS, results[len(VARIANTS) * columns :], strict=True)
     return {
-        "scope": scope.to_json(),
+        "scope": asdict(scope),
         "weights": list(paper.WEIGHTS),
-        "paper": {
-            "max_position_error_m": list(paper.MAX_ERROR),
-            "joint_drift_rad": list(paper.DRIFT),
-            "max_kinetic_index": list(paper.KINETIC_INDEX),
-        },
+        "paper": {key: list(printed) for key, printed in _PAPER.items()},
         "variants": variants,
         "laps": {
             name: {key: values[key] for key in ("lap_drift_rad", "max_position_error_m", "status")}
-            for name, values in zip(DRIFTERS, laps, strict=True)
+            for name, values in laps
         },
     }
-
-
-def _verdicts(rows: Mapping[str, list[Any]]) -> dict[str, Verdict]:
-    """On each of the paper's rows; on its kinetic index as it is printed and divided by dt."""
-    pairs = {
-        "max_position_error_m": paper.MAX_ERROR,
-        "joint_drift_rad": paper.DRIFT,
-        "max_kinetic_index": paper.KINETIC_INDEX,
-        "max_kinetic_index_times_dt": paper.KINETIC_INDEX,
-    }
-    return {key: judge_row(paper.WEIGHTS, printed, rows[key]) for key, printed in pairs.items()}

@@ -1,6 +1,6 @@
 r"""Table II: noise and filter, on and off, over many seeds that all cases share.
 
-What theory expects without a filter: in the task's space the position error of a converged run is
+Theory without a filter: in the task's space the position error of a converged run is
 an Ornstein-Uhlenbeck process, driven by J n at every step and drawn back at the rate of the
 position gain :math:`\delta`. With velocity noise of standard deviation :math:`\sigma` its mean
 squared error per axis is
@@ -14,7 +14,8 @@ robot moves by it, :math:`\delta^2` times that (docs/theory.md).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,7 @@ import numpy as np
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import NOISE_ENTRIES, NoiseEntry
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import HeartRun
-from iiwa_dnn.studies.scope import Scope
+from iiwa_dnn.studies.runs import HeartRun, Scope
 from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference
 from iiwa_dnn.studies.verdicts import judge_change, judge_row
 
@@ -40,7 +40,7 @@ MEASURES = {"max_position_error_m": paper.CASES_MAX_ERROR, "mse_position_error_m
 
 
 def cells(scope: Scope) -> list[HeartRun]:
-    """The runs: for each mode, two without noise, then for each entry all seeds twice."""
+    """List the runs: for each mode two without noise, then for each entry all seeds twice."""
     runs = []
     for mode in MODES.values():
         base = replace(mode, dt=scope.dt, duration=scope.duration)
@@ -55,30 +55,28 @@ def cells(scope: Scope) -> list[HeartRun]:
 
 
 def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """The table, beside the paper's, with its verdicts.
+    """Lay out the table beside the paper's, with its verdicts, in JSON types.
 
     Args:
-        scope: What was run.
+        scope: Sizes of the experiments.
         results: The numbers of `cells`, in that order.
-
-    Returns:
-        The table in JSON types.
     """
-    left = iter(results)
     modes: dict[str, Any] = {}
-    growth: dict[str, list[float | None]] = {}
-    for name in MODES:
-        quiet = [next(left) for _ in range(2)]
-        modes[name] = {}
-        growth[name] = [run["amplification"] for run in quiet]
+    growth: dict[str, float | None] = {}
+    size = len(results) // len(MODES)
+    for i, name in enumerate(MODES):
+        part = results[i * size : (i + 1) * size]
+        growths = [run["amplification"] for run in part if run["amplification"] is not None]
+        growth[name] = max(growths, default=None)
+        left, modes[name] = iter(part), {}
+        quiet = list(islice(left, 2))
         for entry in NOISE_ENTRIES:
-            noisy = [[next(left) for _ in range(scope.seeds)] for _ in range(2)]
-            growth[name] += [run["amplification"] for runs in noisy for run in runs]
-            modes[name][entry] = {key: _measure(key, quiet, noisy) for key in MEASURES} | {
-                "theory_noise_mse_m2": _theory(entry, quiet[0], scope)
-            }
+            noisy = [list(islice(left, scope.seeds)) for _ in range(2)]
+            measures = {key: _measure(key, quiet, noisy) for key in MEASURES}
+            theory = {"theory_noise_mse_m2": _theory(entry, quiet[0], scope)}
+            modes[name][entry] = measures | theory
     return {
-        "scope": scope.to_json(),
+        "scope": asdict(scope),
         "weight": paper.WEIGHT,
         "noise": paper.NOISE,
         "filter_window": paper.WINDOW,
@@ -86,17 +84,14 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
         "paper": {key: list(values) for key, values in MEASURES.items()},
         "paper_changes": {key: _paper_changes(values) for key, values in MEASURES.items()},
         "modes": modes,
-        "amplification": {
-            name: max((value for value in values if value is not None), default=None)
-            for name, values in growth.items()
-        },
+        "amplification": growth,
     }
 
 
 def _measure(
     key: str, quiet: Sequence[Mapping[str, Any]], noisy: Sequence[Sequence[Mapping[str, Any]]]
 ) -> dict[str, Any]:
-    """One measure of the four cases, and what noise and filter change in it."""
+    """Lay out one measure of the four cases, and its changes by noise and filter."""
     still = [values[key] for values in quiet]
     plain, filtered = (np.array([values[key] for values in runs], float) for runs in noisy)
     cases = [*map(Estimate.exact, still), estimate(plain), estimate(filtered)]
@@ -118,12 +113,12 @@ def _measure(
 
 
 def _relative(difference: Estimate, base: float) -> Estimate:
-    """A difference as a share of what it is compared with."""
+    """Relate a difference to the mean that it is a change of."""
     return Estimate(difference.mean / base, difference.half_width / base, difference.samples)
 
 
 def _paper_changes(values: Sequence[float]) -> dict[str, float]:
-    """The same relative changes out of the paper's four numbers."""
+    """Compute the same relative changes from the paper's four numbers."""
     quiet, quiet_filtered, noisy, noisy_filtered = values
     return {
         "filter, with noise": noisy_filtered / noisy - 1.0,
@@ -133,7 +128,7 @@ def _paper_changes(values: Sequence[float]) -> dict[str, float]:
 
 
 def _theory(entry: NoiseEntry, quiet: Mapping[str, Any], scope: Scope) -> float | None:
-    """The mean squared error that theory expects noise to add [m^2]; None where it says nothing."""
+    """Compute the mean squared error that noise adds [m^2]; None where there is no theory."""
     if entry == "network":
         return None
     gain = DoubleIndicator().position_gain

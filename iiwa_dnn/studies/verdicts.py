@@ -14,7 +14,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.studies.statistics import Estimate, trend
 
 FACTOR = 2.0
-"""How far a number may be off and still count as reproduced."""
+"""Largest factor between a number and the paper's that still counts as reproduced."""
 
 NEGLIGIBLE = 1e-3
 """A relative change below this is none, however narrow its interval; the paper's least is 0.015."""
@@ -24,13 +24,13 @@ Level = Literal["reproduced", "same trend", "not reproduced"]
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of one row of the paper's numbers.
+    """A verdict on one row of the paper's numbers.
 
     Attributes:
         level: The verdict.
         ratios: Ours over the paper's, entry by entry; None where either is missing.
-        ours: Which way ours goes.
-        paper: Which way the paper's goes.
+        ours: Direction of ours.
+        paper: Direction of the paper's.
     """
 
     level: Level
@@ -39,18 +39,13 @@ class Verdict:
     paper: str
 
     def to_json(self) -> dict[str, Any]:
-        """The verdict in JSON types, for a table."""
+        """Return the verdict in JSON types, for a table."""
         return {
             "verdict": self.level,
             "ours_over_paper": list(self.ratios),
             "our_trend": self.ours,
             "paper_trend": self.paper,
         }
-
-
-def within_factor(ratio: float | None) -> bool:
-    """Whether ours is within `FACTOR` of the paper's, ratio being ours over the paper's."""
-    return ratio is not None and 1.0 / FACTOR <= ratio <= FACTOR
 
 
 def judge_row(
@@ -83,13 +78,13 @@ def judge_row(
         return Verdict("not reproduced", ratios, "unknown", paper_trend)
     our_trend = trend(at, mine)
     level: Level = "same trend" if our_trend == paper_trend else "not reproduced"
-    if all(within_factor(ratios[i]) for i, _ in known):
+    if all(_within_factor(ratios[i]) for i, _ in known):
         level = "reproduced"
     return Verdict(level, ratios, our_trend, paper_trend)
 
 
 def judge_change(paper: float, ours: Estimate) -> Verdict:
-    """Judge a relative change, such as what the filter does to the error.
+    """Judge a relative change, such as that of the error by the filter.
 
     Args:
         paper: The paper's relative change; -0.1 is a tenth less.
@@ -103,12 +98,16 @@ def judge_change(paper: float, ours: Estimate) -> Verdict:
     mine, said = _direction(ours), _direction(Estimate.exact(paper))
     level: Level = "not reproduced"
     if mine == said and said != "no effect shown":
-        level = "reproduced" if within_factor(ratio) else "same trend"
+        level = "reproduced" if _within_factor(ratio) else "same trend"
     return Verdict(level, (ratio,), mine, said)
 
 
+def _within_factor(ratio: float | None) -> bool:
+    return ratio is not None and 1.0 / FACTOR <= ratio <= FACTOR
+
+
 def _direction(change: Estimate) -> str:
-    """Which way a relative change goes, as far as its interval tells."""
+    """Name the direction of a relative change, as far as its interval tells."""
     if change.sign == 0 or abs(change.mean) < NEGLIGIBLE:
         return "no effect shown"
     return "raises" if change.sign > 0 else "lowers"

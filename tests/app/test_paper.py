@@ -12,7 +12,7 @@ from iiwa_dnn.app import paper as paper_cli
 from iiwa_dnn.app.paper import figure_runs, reproduce_paper
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.studies import runs
-from iiwa_dnn.studies.scope import QUICK, Scope
+from iiwa_dnn.studies.runs import QUICK, Scope
 
 TABLES = ("table1.json", "table2.json", "ablation.json")
 TINY = ("--quick", "--duration", "0.002", "--seeds", "2")
@@ -49,7 +49,7 @@ def test_again_nothing_is_computed_and_the_tables_keep_their_bytes(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = {name: (folder / name).read_bytes() for name in TABLES}
-    monkeypatch.setattr(runs.HeartRun, "simulation", lambda self: pytest.fail("computed again"))
+    monkeypatch.setattr(runs.HeartRun, "run", lambda self: pytest.fail("computed again"))
     command = [*TINY, "--workers", "1", "--out", str(folder), "--quiet", "--no-plots"]
     assert reproduce_paper(command) == 0
     assert {name: (folder / name).read_bytes() for name in TABLES} == before

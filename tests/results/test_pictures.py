@@ -16,7 +16,7 @@ pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
 pytestmark = needs_opengl
 
 from iiwa_dnn.results import pictures  # noqa: E402 - only where there is something to draw with
-from iiwa_dnn.results.rendering import ArmRenderer, sample_at  # noqa: E402
+from iiwa_dnn.results.pictures import ArmRenderer, sample_at  # noqa: E402
 
 
 @pytest.fixture(scope="module")

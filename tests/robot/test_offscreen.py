@@ -72,7 +72,7 @@ def test_each_library_that_is_there_draws(library):
     result = run_python(
         "import sys; sys.path.insert(0, 'tests')\n"
         "from helpers_physics import papers_robot, heart_without_physics\n"
-        "from iiwa_dnn.results.rendering import ArmRenderer\n"
+        "from iiwa_dnn.results.pictures import ArmRenderer\n"
         "robot = papers_robot(); record = heart_without_physics(robot, 500)\n"
         "with ArmRenderer(robot, record, 80, 60) as renderer: image = renderer.draw(9)\n"
         "print('spread', image.std())",

@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from helpers_paper import made_up_tables
-from iiwa_dnn.studies.paper_findings import findings
-from iiwa_dnn.studies.paper_report import write_paper_report
+from iiwa_dnn.studies.paper_report import findings, write_paper_report
 
 
 @pytest.fixture(scope="module")

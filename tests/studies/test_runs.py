@@ -12,8 +12,7 @@ from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import HeartRun, lap_drift, measure, total_variation
-from iiwa_dnn.studies.scope import FULL, QUICK, Scope
+from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, lap_drift, measure, total_variation
 
 SHORT = HeartRun(duration=3e-3, keep_record=True)
 

@@ -8,8 +8,7 @@ import pytest
 from helpers_paper import SCOPE, by_weight, choice, noisy_case, values
 from iiwa_dnn.simulation import NOISE_ENTRIES
 from iiwa_dnn.studies import ablation, paper, table1, table2
-from iiwa_dnn.studies.runs import HeartRun
-from iiwa_dnn.studies.scope import FULL, QUICK
+from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun
 
 
 def test_the_papers_own_table1_is_reproduced() -> None:

@@ -11,7 +11,7 @@ from iiwa_dnn.app.viewer.playback import Playback
 from iiwa_dnn.app.viewer.server import import_viser
 from iiwa_dnn.app.viewer.stage import DESIRED_COLOUR, DRAWN_COLOUR, Stage
 from iiwa_dnn.results.metrics import orientation_error, position_error
-from iiwa_dnn.results.panels import envelope
+from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import FloatArray, Record
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
