@@ -1,11 +1,11 @@
-"""What every network is: an ODE for one program, and how its state is read."""
+"""Dynamic neural network: an ODE for one quadratic program, and the reading of its state."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,16 @@ class Flow(NamedTuple):
 
     rates: Callable[[Vector], Vector]
     jacobian: Callable[[Vector], Matrix]
+
+
+class CompiledForm(NamedTuple):
+    """The compiled loops of the projection network, which stand in for a network's methods.
+
+    Attributes:
+        project: Whether x goes through its bounds.
+    """
+
+    project: bool
 
 
 @dataclass(frozen=True)
@@ -53,7 +63,7 @@ class Network(ABC):
 
     @abstractmethod
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
-        """Write what a state (state_size,) stands for, ``[x | y | z | z_box]``, into `point`.
+        """Write the point ``[x | y | z | z_box]`` of a state (state_size,) into `point`.
 
         Returns:
             Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
@@ -68,10 +78,25 @@ class Network(ABC):
             state: Where given, (state_size,), the bound need only hold around there.
         """
 
+    @property
+    def compiled(self) -> CompiledForm | None:
+        """Compiled loops that integrate exactly this network; None where there are none."""
+        return None
+
     def initial_state(self, qp: QP) -> Vector:
-        """The state at rest before any problem was seen: zero, (size,)."""
+        """The state at rest before any problem was seen: zero, (state_size,)."""
         return np.zeros(self.state_size(qp))
 
     def rates(self, qp: QP, state: Vector) -> Vector:
         """The right-hand side, rho ds/dt, of shape (state_size,)."""
         return self.flow(qp).rates(state)
+
+    def settings(self) -> dict[str, Any]:
+        """Name and parameters, as values that JSON can hold."""
+        return settings_of(self)
+
+
+def settings_of(part: Any) -> dict[str, Any]:
+    """Name a network or an integrator, a dataclass, and its fields as values of JSON types."""
+    fields = {name: np.asarray(value).tolist() for name, value in asdict(part).items()}
+    return {"name": type(part).__name__, **fields}

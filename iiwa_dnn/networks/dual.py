@@ -28,7 +28,7 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -72,11 +72,11 @@ class DualNetwork(Network):
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
         """Write the point that the state stands for; returns its residuals."""
         n, m, p = qp.sizes
+        check_size("point", point, 2 * n + m + p)
         rows, _, _ = _two_sided(qp)
         x = _solved(qp, rows.T @ state - qp.q)
         known = np.concatenate([x, -state[: p + m]])
-        primal, dual, gap = kkt_point(qp.data, n, m, p, known, point)
-        return primal, dual, gap
+        return kkt_point(qp.data, n, m, p, known, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""A step, in units of rho, below which explicit Euler is stable on every active set.

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -63,8 +63,10 @@ class PrimalDualNetwork(Network):
 
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
         """Write the point that the state stands for; returns its residuals."""
-        primal, dual, gap = kkt_point(qp.data, *qp.sizes, state, point)
-        return primal, dual, gap
+        n, m, p = qp.sizes
+        check_size("state", state, n + m + p)
+        check_size("point", point, 2 * n + m + p)
+        return kkt_point(qp.data, n, m, p, state, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """A step, in units of rho, below which explicit Euler gets nearer to every solution."""

@@ -25,11 +25,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.base import CompiledForm, Flow, Network
 from iiwa_dnn.qp.dense import extreme_eigenvalues
-from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger, offsets
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size, compiled, larger, offsets
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
+
+_METHODS = ("state_size", "flow", "read", "stable_step")
+"""Methods that the compiled loops stand in for."""
 
 
 @dataclass(frozen=True)
@@ -40,14 +43,26 @@ class ProjectionNetwork(Network):
         rho: Time constant [s].
         primal_projection: Whether x goes through its bounds, as in the paper. Without it the
             bounds act through their multipliers alone; the equilibria are the same, and a
-            backward Euler step becomes a convex problem (`iiwa_dnn.networks.integrators.implicit`).
+            backward Euler step becomes a convex problem
+            (`iiwa_dnn.networks.integrators.backward_euler`).
     """
 
     primal_projection: bool = True
 
+    @property
+    def compiled(self) -> CompiledForm | None:
+        """The compiled loops, unless a subclass overrides a method that they stand in for."""
+        own = type(self)
+        if own is not ProjectionNetwork and any(
+            getattr(own, name) is not getattr(ProjectionNetwork, name) for name in _METHODS
+        ):
+            return None
+        return CompiledForm(self.primal_projection)
+
     def state_size(self, qp: QP) -> int:
         """Number of states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
-        return 3 * qp.q.size + qp.b.size + qp.h.size
+        n, m, p = qp.sizes
+        return 3 * n + p + m
 
     def flow(self, qp: QP) -> Flow:
         """The right-hand side and its derivative for this program."""
@@ -62,8 +77,9 @@ class ProjectionNetwork(Network):
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
         """Write the point that the state stands for; returns its residuals."""
         n, m, p = qp.sizes
-        residuals: tuple[float, float, float] = kkt_point(qp.data, n, m, p, state, point)
-        return residuals
+        check_size("state", state, 3 * n + m + p)
+        check_size("point", point, 2 * n + m + p)
+        return kkt_point(qp.data, n, m, p, state, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""A step, in units of rho, below which explicit Euler is stable.
@@ -89,7 +105,7 @@ class ProjectionNetwork(Network):
             active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
         else:
             active = self._field(qp, state, np.empty(state.size))
-        return float(stable_step(qp.data, n, m, p, active))
+        return stable_step(qp.data, n, m, p, active)
 
     def _jacobian(self, qp: QP, state: Vector) -> Matrix:
         """The derivative of the rates, (state_size, state_size)."""
@@ -111,6 +127,7 @@ class ProjectionNetwork(Network):
     def _field(self, qp: QP, state: Vector, rates: Vector) -> Vector:
         """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""
         n, m, p = qp.sizes
+        check_size("state", state, 3 * n + m + p)
         active = np.empty(m + 2 * n)
         field(qp.data, n, m, p, self.primal_projection, state, rates, active)
         return active
@@ -185,7 +202,8 @@ def stable_step(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
     for i in range(n):
         K[i * n + i] += active[m + i] + active[m + n + i]
     _, coupling = extreme_eigenvalues(K, n)
-    K[:] = data[: n * n]
+    for k in range(n * n):
+        K[k] = data[k]
     smallest, largest = extreme_eigenvalues(K, n)
     # Passive multipliers and clipped variables decay at rate one: never more than 2.
     bound = 2.0 / max(largest, 1.0)

@@ -19,6 +19,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from iiwa_dnn.errors import InvalidInputError
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -46,3 +48,9 @@ def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
 def larger(largest: float, value: float) -> float:
     """The larger of two; unlike with max(), a NaN once seen stays."""
     return value if value > largest or value != value else largest
+
+
+def check_size(argument: str, array: Vector, size: int) -> None:
+    """Raise InvalidInputError unless a flat array has this size: compiled code does not look."""
+    if array.shape != (size,):
+        raise InvalidInputError(argument, f"has shape {array.shape}, not ({size},)", array)

@@ -1,15 +1,15 @@
-"""What every integrator does: advance a network by a time, or until it has settled."""
+"""Integrator of a network: it advances a state by a time, or until the network has settled."""
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
-from iiwa_dnn.networks import Network
+from iiwa_dnn.networks.base import Network, settings_of
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
-"""How far a network was advanced, and the residuals of the point it stands for.
+"""Progress of a network, and the residuals of the point that its state stands for.
 
 ``(iterations, network_time, primal, dual, gap)``: linear systems solved (implicit) or steps taken
 (explicit), the time that passed in units of rho, and qpsolvers' three residuals. A plain tuple,
@@ -36,11 +36,23 @@ class Integrator(Protocol):
         Args:
             network: The network.
             qp: The program, which does not change meanwhile.
-            state: Where to start, (size,); holds the last state afterwards.
+            state: Start, (size,); holds the last state afterwards.
             point: Output ``[x | y | z | z_box]`` of size n + p + m + n.
             tol: Absolute tolerance on each residual.
 
         Returns:
-            What was reached, above `tol` if the budget of steps ended first.
+            The progress and the residuals, above `tol` if the budget of steps ended first.
         """
         ...
+
+    def settings(self) -> dict[str, Any]:
+        """Name and parameters, as values that JSON can hold."""
+        ...
+
+
+class Settings:
+    """The `settings` of an integrator that is a dataclass."""
+
+    def settings(self) -> dict[str, Any]:
+        """Name and parameters, as values that JSON can hold."""
+        return settings_of(self)

@@ -10,24 +10,24 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks import Network, ProjectionNetwork
-from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.networks.base import Network
+from iiwa_dnn.networks.integrators.base import Settings, Settled
+from iiwa_dnn.networks.integrators.continuation import within
 from iiwa_dnn.networks.projection import field
-from iiwa_dnn.qp.layout import Vector, compiled
+from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Residuals
 
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""
 
 
 @dataclass(frozen=True)
-class ExplicitEuler:
+class ExplicitEuler(Settings):
     r"""Explicit Euler: ``s <- s + h F(s)``, of order 1.
 
-    One control step of the paper is h = 1.11 in units of rho, where its own heart needs h < 0.155
-    (PAPER: one Euler step a control step is unstable; the projections only hide it). So a
-    duration is cut into sub-steps below `Network.stable_step`.
+    One control step of the paper is h = 1.11 in units of rho, where its own heart needs h < 0.155:
+    one Euler step a control step is unstable, and the projections only hide it. So a duration is
+    cut into sub-steps below `Network.stable_step`.
 
     Attributes:
         substeps: Sub-steps per `advance`; None computes how many are needed for stability.
@@ -70,10 +70,10 @@ class ExplicitEuler:
         taken, rate_tol = 0, tol
         while True:
             taken += _steps(network, qp, state, step, self.max_steps - taken, rate_tol)
-            residuals = Residuals(*network.read(qp, state, point))
+            primal, dual, gap = network.read(qp, state, point)
             # The gap weighs the rates with the multipliers, so they may have to be smaller still.
-            if residuals.largest <= tol or taken >= self.max_steps or rate_tol < 1e-3 * tol:
-                return taken, taken * step, *residuals
+            if within(primal, dual, gap, tol) or taken >= self.max_steps or rate_tol < 1e-3 * tol:
+                return taken, taken * step, primal, dual, gap
             rate_tol *= 0.1
 
     def _stable_step(self, network: Network, qp: QP, state: Vector | None) -> float:
@@ -87,12 +87,12 @@ class ExplicitEuler:
 
 def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol: float) -> int:
     """Take up to `count` steps, until the largest rate is at most `tol`; returns how many."""
-    if isinstance(network, ProjectionNetwork):
+    form = network.compiled
+    if form is not None:
         n, m, p = qp.sizes
-        taken, _ = explicit_euler(
-            qp.data, n, m, p, network.primal_projection, state, step, count, tol
-        )
-        return int(taken)
+        check_size("state", state, 3 * n + m + p)
+        taken, _ = explicit_euler(qp.data, n, m, p, form.project, state, step, count, tol)
+        return taken
     flow = network.flow(qp)
     for done in range(count):
         rates = flow.rates(state)

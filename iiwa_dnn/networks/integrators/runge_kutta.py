@@ -1,31 +1,34 @@
 r"""An adaptive explicit Runge-Kutta method: Bogacki and Shampine's pair of orders 3 and 2.
 
-Each step is taken by the method of order 3 and judged by the one of order 2 that comes with it; the
-next one is as long as the tolerance allows. Where the field is stiff the error estimate feels the
-edge of stability and holds the step below it, so no stable step has to be known beforehand: it
-serves singular P too.
+Each step is taken by the method of order 3 and judged by the embedded one of order 2. Where the
+field is stiff the error estimate feels the edge of stability and holds the step below it, so no
+stable step has to be known beforehand: it serves singular P too.
 
 Source: P. Bogacki, L. F. Shampine, "A 3(2) pair of Runge-Kutta formulas", Applied Mathematics
-Letters 2 (1989).
+Letters 2 (1989), as `scipy.integrate.RK23` implements it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
-from iiwa_dnn.networks import Flow, Network
-from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.networks.base import Network
+from iiwa_dnn.networks.integrators.base import Settings, Settled
+from iiwa_dnn.networks.integrators.continuation import within
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
+_LEAST_RTOL = 100.0 * float(np.finfo(float).eps)
+"""Relative tolerance below which scipy warns and takes this one."""
+
 
 @dataclass(frozen=True)
-class AdaptiveRungeKutta:
+class AdaptiveRungeKutta(Settings):
     """Bogacki-Shampine 3(2), of order 3, with a step that follows its own error estimate.
 
     Attributes:
@@ -53,61 +56,54 @@ class AdaptiveRungeKutta:
             Steps taken, rejected ones included.
 
         Raises:
-            NoSolutionError: `max_steps` did not suffice.
+            NoSolutionError: `max_steps` did not suffice, or the state is no longer a number.
         """
-        time, step, taken = 0.0, min(duration, 0.1), 0
-        flow = network.flow(qp)
-        slope = flow.rates(state)
-        while time < duration:
-            if taken >= self.max_steps:
-                raise NoSolutionError(f"{taken} steps were not enough for {duration:g} rho")
-            step = min(step, duration - time)
-            new, last, error = _step(flow, state, slope, step)
-            taken += 1
-            accepted = self.atol + self.rtol * np.maximum(np.abs(state), np.abs(new))
-            size = float(np.abs(error / accepted).max())
-            if size <= 1.0:
-                time = duration if step == duration - time else time + step
-                state[:], slope = new, last
-            step *= _factor(size)
-        return taken
+        if not duration > 0.0:
+            return 0
+        stepper = _stepper(network, qp, state, duration, max(self.rtol, _LEAST_RTOL), self.atol)
+        while stepper.status == "running":
+            if _steps(stepper) >= self.max_steps:
+                raise NoSolutionError(
+                    f"{_steps(stepper)} steps were not enough for {duration:g} rho"
+                )
+            message = stepper.step()
+        state[:] = stepper.y
+        if stepper.status == "failed":
+            raise NoSolutionError(f"the network cannot be followed: {message}")
+        return _steps(stepper)
 
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`."""
-        time, step, rate_tol = 0.0, 0.1, tol
-        atol = min(self.atol, 0.1 * tol)
-        flow = network.flow(qp)
-        slope = flow.rates(state)
-        taken = 0
-        for taken in range(self.max_steps):
-            if not np.abs(slope).max() > rate_tol:
+        atol, rate_tol = min(self.atol, 0.1 * tol), tol
+        stepper = _stepper(network, qp, state, np.inf, _LEAST_RTOL, atol)
+        while True:
+            state[:] = stepper.y
+            rate, taken = float(np.abs(stepper.f).max()), _steps(stepper)
+            done = stepper.status == "failed" or taken >= self.max_steps
+            if done or not rate > rate_tol:
                 primal, dual, gap = network.read(qp, state, point)
                 # The gap weighs the rates with the multipliers: they may have to be smaller still.
-                if max(primal, dual, gap) <= tol or rate_tol < 1e-3 * tol:
-                    return taken, time, primal, dual, gap
+                if done or within(primal, dual, gap, tol) or rate_tol < 1e-3 * tol:
+                    return taken, float(stepper.t), primal, dual, gap
                 rate_tol *= 0.5
-            new, last, error = _step(flow, state, slope, step)
-            # On the way to rest, what counts is an error that is small beside what is left to go.
-            size = float(np.abs(error).max() / (atol + 0.01 * np.abs(slope).max()))
-            if size <= 1.0:
-                time += step
-                state[:], slope = new, last
-            step *= _factor(size)
-        return taken + 1, time, *network.read(qp, state, point)
+            # On the way to rest, an error that is small beside the rest of the way is accepted.
+            stepper.atol = atol + 0.01 * rate
+            stepper.step()
 
 
-def _step(flow: Flow, state: Vector, first: Vector, step: float) -> tuple[Vector, Vector, Vector]:
-    """The new state, its slope (the next step's first), and the estimate of the error."""
-    second = flow.rates(state + 0.5 * step * first)
-    third = flow.rates(state + 0.75 * step * second)
-    new = state + step * (2.0 * first + 3.0 * second + 4.0 * third) / 9.0
-    last = flow.rates(new)
-    error = step * (-5.0 * first / 72.0 + second / 12.0 + third / 9.0 - last / 8.0)
-    return new, last, error
+def _stepper(
+    network: Network, qp: QP, state: Vector, duration: float, rtol: float, atol: float
+) -> Any:
+    """Start scipy's integrator at a state (size,)."""
+    from scipy.integrate import RK23  # 0.3 s that only this integrator needs
+
+    rates = network.flow(qp).rates
+    return RK23(
+        lambda _, s: rates(s), 0.0, state, duration,
+        rtol=rtol, atol=atol, first_step=min(duration, 0.1),
+    )  # fmt: skip
 
 
-def _factor(size: float) -> float:
-    """How much longer the next step may be; shorter after one that was not accepted."""
-    if not size > 0.0:
-        return 5.0 if size == 0.0 else 0.2
-    return min(5.0, max(0.2, 0.9 / float(np.cbrt(size))))
+def _steps(stepper: Any) -> int:
+    """Count the steps that were tried: three evaluations each, after the first of all."""
+    return int(stepper.nfev - 1) // 3
