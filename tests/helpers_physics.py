@@ -12,7 +12,7 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
-from iiwa_dnn.app.track import PAPER_START
+from iiwa_dnn.studies.paper import START as PAPER_START
 
 ROOT = Path(__file__).parents[1]
 START = np.array(PAPER_START)

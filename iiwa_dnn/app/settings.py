@@ -1,265 +1,171 @@
-"""What each command can be told: one dataclass a command, its fields the options.
+"""Settings files, and the folders of runs that they tell apart.
 
-The text under a field is its help on the command line; its name is its key in a settings file.
+Every run keeps its options in its folder, in a TOML file that repeats it. A folder belongs to the
+run that its settings file describes: that run may write it again, no other one may unasked.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+import sys
+from collections.abc import Collection
+from dataclasses import fields
+from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Any, TypeVar
 
-from tyro.conf import FlagCreatePairsOff, Positional, arg
+import tomli_w
 
-from iiwa_dnn.control.controller import Mode
-from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.schemes.double_indicator import Kinetic
-from iiwa_dnn.schemes.orientation import Orientation
-from iiwa_dnn.simulation import NoiseEntry
-from iiwa_dnn.simulation.motion import Motion
+from iiwa_dnn.app.arguments import option, read
+from iiwa_dnn.app.options import RunOptions
+from iiwa_dnn.errors import FileError, IiwaDnnError, NotFoundError
+from iiwa_dnn.files import one_line, prepare_folder, write_text
 
-Check = Literal["proxqp", "osqp", "both", "none"]
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
-SettingsFile = Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")]
-Quiet = Annotated[bool, arg(aliases=["-q"], help_behavior_hint=""), FlagCreatePairsOff]
-Verbose = Annotated[bool, arg(aliases=["-v"], help_behavior_hint=""), FlagCreatePairsOff]
-Switch = Annotated[bool, arg(help_behavior_hint=""), FlagCreatePairsOff]
-Text = Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")]
-Count = Annotated[int | None, arg(metavar="N", help_behavior_hint="")]
-Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
-Posture = Annotated[tuple[float, ...], arg(metavar="RAD", help_behavior_hint="")]
-Limit = Annotated[str | None, arg(metavar="RAD", help_behavior_hint="")]
-Share = Annotated[float | None, arg(metavar="SHARE", help_behavior_hint="")]
-Rows = Annotated[Orientation, arg(metavar="ROWS")]
-Reference = Annotated[Check, arg(metavar="SOLVER")]
-Folder = Annotated[Path, arg(metavar="DIR")]
+S = TypeVar("S")
+
+SETTINGS_FILE = "settings.toml"
+"""Name of the settings in a run's folder."""
+
+# They say how a run is shown and kept, not what it is, and stay out of its settings file.
+_NOT_KEPT = {"settings", "out", "overwrite", "quiet", "verbose"}
+# They stand in the file, but a run with other values is still the same run.
+_NOT_COMPARED = {"plots", "pictures", "video", "workers", "dask"}
 
 
-@dataclass(frozen=True)
-class TrackSettings:
-    """Draw the paper's heart with a robot arm; the network solves every step's quadratic
-    program and other solvers check it. Defaults: the paper's experiment. Exit code 0: all
-    checks agreed; 1: a step did not, or broke a limit; 2: bad input.
-    """  # noqa: D205
+def read_settings(kind: type[S], path: Path) -> S:
+    """Read the options in a settings file.
 
-    settings: SettingsFile = None
-    """take what is not given here from a TOML file"""
-    robot: Annotated[str, arg(metavar="NAME|URDF")] = "iiwa7"
-    """robot"""
-    tip: Annotated[str | None, arg(metavar="FRAME", help_behavior_hint="")] = None
-    """frame that draws (the end of the chain)"""
-    lock: Names = ()
-    """joints to hold still"""
-    q0: Posture = ()
-    """start (the paper's for iiwa7)"""
-    mode: Annotated[Mode, arg(metavar="MODE")] = "converged"
-    """converged or continuous"""
-    weight: Annotated[float, arg(metavar="XI")] = 0.2
-    """xi in [0, 1]"""
-    orientation: Rows = "so3"
-    """so3, block, or none: position only"""
-    kinetic: Annotated[Kinetic, arg(metavar="G")] = "identity"
-    """identity or inertia"""
-    joint_limit: Limit = None
-    """of every joint, or datasheet (iiwa7: 2.5)"""
-    speed: Annotated[float, arg(metavar="SHARE")] = 1.0
-    """velocity limits, of the data sheet's"""
-    policy: Annotated[Policy, arg(metavar="POLICY")] = "slow"
-    """without a solution: slow, relax, stop, raise"""
-    dt: Annotated[float, arg(metavar="S")] = 1e-4
-    """control period"""
-    duration: Annotated[float, arg(metavar="S")] = 10.0
-    """length"""
-    scale: Annotated[float, arg(metavar="M")] = 3.45e-3
-    """heart's a"""
-    motion: Annotated[Motion, arg(metavar="METHOD")] = "euler"
-    """euler, midpoint or rk4"""
-    noise: Annotated[float, arg(metavar="RAD/S")] = 0.0
-    """standard deviation"""
-    noise_at: Annotated[NoiseEntry, arg(metavar="WHERE")] = "velocity"
-    """velocity, network or measurement [rad]"""
-    filter_window: Annotated[int, arg(metavar="N")] = 1
-    """moving average"""
-    gain: Annotated[float, arg(metavar="1/S")] = 10.2
-    """feedback of position and orientation"""
-    integral_gain: Annotated[float, arg(metavar="1/S^2")] = 0.0
-    """feedback of the error's integral"""
-    seed: Annotated[int, arg(metavar="N")] = 0
-    """of the noise"""
-    check: Reference = "proxqp"
-    """proxqp, osqp, both or none"""
-    tolerance: Annotated[float, arg(metavar="RAD/S")] = 1e-6
-    """gap to the reference"""
-    out: Folder = Path("runs/heart")
-    """where to"""
-    plots: Switch = True
-    """write no figures"""
-    quiet: Quiet = False
-    """no progress bar and no summary"""
-    verbose: Verbose = False
-    """tell what is run and written, and where an error is"""
+    Args:
+        kind: Dataclass of the command's options.
+        path: A TOML file whose keys are options.
+
+    Returns:
+        The options; where the file does not set ``out``, it is the file's folder.
+
+    Raises:
+        FileError: The file cannot be read, is not TOML, is another command's, or has a wrong value.
+        NotFoundError: A key is not an option.
+    """
+    words = _words(kind, path)
+    try:
+        return read(kind, "", words)
+    except IiwaDnnError as error:
+        raise FileError(path, str(error)) from error
 
 
-@dataclass(frozen=True)
-class PaperSettings:
-    """Run every experiment of the paper and put each number beside the paper's. A run that was
-    cut short goes on where it was. Exit code 0: all runs completed; 1: one was not; 2: bad
-    input.
-    """  # noqa: D205
+def save_settings(options: RunOptions, folder: Path) -> Path:
+    """Write ``settings.toml``, from which ``--settings`` repeats the run.
 
-    settings: SettingsFile = None
-    """take what is not given here from a TOML file"""
-    quick: Switch = False
-    """1 s of motion and 5 seeds: to see that all works"""
-    seeds: Count = None
-    """noises in Table II (100)"""
-    duration: Annotated[float | None, arg(metavar="S", help_behavior_hint="")] = None
-    """length of each run (10)"""
-    workers: Count = None
-    """processes (one for each core)"""
-    dask: Annotated[str | None, arg(metavar="ADDRESS", help_behavior_hint="")] = None
-    """a Dask cluster, or local: start one here"""
-    out: Folder = Path("runs/paper")
-    """where to"""
-    plots: Switch = True
-    """write no figures"""
-    quiet: Quiet = False
-    """no progress bar and no summary"""
-    verbose: Verbose = False
-    """tell what is run and written, and where an error is"""
+    A file that describes the same run already is left as it is, since a person may have written it.
+
+    Args:
+        options: Options of the run. Where it went to and how much it printed are left out.
+        folder: The run's folder; it must exist.
+
+    Returns:
+        The file.
+
+    Raises:
+        FileError: If it cannot be written.
+    """
+    path = folder / SETTINGS_FILE
+    values = _values(options)
+    if not _same(_values_in(path, options), values):
+        head = f"# iiwa_dnn {version('iiwa-dnn')}; to repeat the run: --settings with this file"
+        write_text(path, f"{head}\n\n{tomli_w.dumps({'command': options.command, **values})}")
+    return path
 
 
-@dataclass(frozen=True)
-class PhysicsSettings:
-    """Draw the paper's heart with an arm that has masses and motors, in MuJoCo: the network's
-    velocities, a torque loop under them, every step checked. Disturbances: none by default.
-    Exit code 0: all checks agreed; 1: a step did not, or broke a limit; 2: bad input, or a
-    package is missing.
-    """  # noqa: D205
+def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:
+    """Prepare the folder of a run, unless it holds anything but an earlier pass of the same run.
 
-    settings: SettingsFile = None
-    """take what is not given here from a TOML file"""
-    robot: Annotated[str, arg(metavar="NAME|URDF")] = "iiwa7"
-    """robot"""
-    tip: Annotated[str | None, arg(metavar="FRAME", help_behavior_hint="")] = None
-    """frame that draws (the end of the chain)"""
-    q0: Posture = ()
-    """start (the paper's for iiwa7)"""
-    weight: Annotated[float, arg(metavar="XI")] = 0.2
-    """xi in [0, 1]"""
-    orientation: Rows = "so3"
-    """so3, block, or none: position only"""
-    joint_limit: Limit = None
-    """of every joint, or datasheet (iiwa7: 2.5)"""
-    dt: Annotated[float, arg(metavar="S")] = 1e-3
-    """control period"""
-    physics_dt: Annotated[float, arg(metavar="S")] = 2.5e-4
-    """at most 1e-3"""
-    duration: Annotated[float, arg(metavar="S")] = 10.0
-    """length"""
-    scale: Annotated[float, arg(metavar="M")] = 3.45e-3
-    """heart's a"""
-    seed: Annotated[int, arg(metavar="N")] = 0
-    """of mass errors and encoder noise"""
-    disturb: Switch = False
-    """the next five at the size in brackets"""
-    mass_error: Share = None
-    """of each link, up or down (0.1)"""
-    friction: Share = None
-    """of the torque limit (0.01)"""
-    encoder_noise: Annotated[float | None, arg(metavar="RAD", help_behavior_hint="")] = None
-    """standard deviation (1e-05)"""
-    encoder_bits: Count = None
-    """a turn has 2^N (18)"""
-    delay: Count = None
-    """control periods, of a command (1)"""
-    push: Annotated[
-        tuple[float, float, float] | None, arg(metavar="FX FY FZ", help_behavior_hint="")
-    ] = None
-    """force on the tip, in the world's axes [N]"""
-    push_at: Annotated[float, arg(metavar="S")] = 5.0
-    """when"""
-    push_for: Annotated[float, arg(metavar="S")] = 0.2
-    """how long"""
-    check: Reference = "proxqp"
-    """proxqp, osqp, both or none"""
-    tolerance: Annotated[float, arg(metavar="RAD/S")] = 1e-6
-    """gap to the reference"""
-    out: Folder = Path("runs/physics")
-    """where to"""
-    plots: Switch = True
-    """draw no curves"""
-    pictures: Switch = True
-    """draw no arm"""
-    video: Switch = True
-    """make no video"""
-    quiet: Quiet = False
-    """no progress bar and no summary"""
-    verbose: Verbose = False
-    """tell what is run and written, and where an error is"""
+    Args:
+        options: Options of the run; with ``overwrite`` the folder may hold anything.
+        resumes: Names in the folder from which a sweep goes on. A sweep of another size may go on
+            in the same folder, since its finished cells stay.
+
+    Returns:
+        The folder.
+
+    Raises:
+        FileError: The folder holds something else, or cannot be written to.
+    """
+    folder = options.out
+    if folder.is_dir() and not options.overwrite:
+        try:
+            held = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
+        except OSError as error:
+            raise FileError(folder, f"cannot be read ({one_line(error)})") from error
+        if options.settings is not None and options.settings.parent.resolve() == folder.resolve():
+            held -= {options.settings.name} - {SETTINGS_FILE}
+        there = _values_in(folder / SETTINGS_FILE, options)
+        own = there is not None and (bool(resumes) or _same(there, _values(options)))
+        if held - set(resumes) and not own:
+            raise FileError(
+                folder, "holds another run or other files: choose another --out, or --overwrite"
+            )
+    return prepare_folder(folder)
 
 
-@dataclass(frozen=True)
-class NoiseSettings:
-    """Compare what helps against noise and other disturbances of the joint velocity: error
-    against smoothness of the command. A run that was cut short goes on where it was. Exit
-    code 0: all runs completed; 1: one was not; 2: bad input.
-    """  # noqa: D205
-
-    settings: SettingsFile = None
-    """take what is not given here from a TOML file"""
-    seeds: Annotated[int, arg(metavar="N")] = 100
-    """noises"""
-    duration: Annotated[float, arg(metavar="S")] = 2.0
-    """of each run"""
-    workers: Count = None
-    """processes (one for each core)"""
-    out: Folder = Path("runs/noise")
-    """where to"""
-    quiet: Quiet = False
-    """no progress bar and no table"""
-    verbose: Verbose = False
-    """tell what is written, and where an error is"""
+def _values_in(path: Path, options: RunOptions) -> dict[str, Any] | None:
+    """Return the values in a settings file of the same command; None if there is no such file."""
+    try:
+        return _values(read_settings(type(options), path)) if path.is_file() else None
+    except IiwaDnnError:
+        return None
 
 
-@dataclass(frozen=True)
-class ViewSettings:
-    """Replay a run in the browser, or drive the arm live: drag its target while the controller
-    follows. Exit code 0: ended by Ctrl-C; 2: bad input, or a package is missing.
-    """  # noqa: D205
-
-    run: Positional[Annotated[Path | None, arg(metavar="RUN", help_behavior_hint="")]] = None
-    """a run's folder or record (none: live)"""
-    robot: Annotated[str | None, arg(metavar="NAME|URDF", help_behavior_hint="")] = None
-    """robot (the record's, or iiwa7)"""
-    tip: Annotated[str | None, arg(metavar="FRAME", help_behavior_hint="")] = None
-    """frame that follows (the record's, or the chain's end)"""
-    lock: Names = ()
-    """joints to hold still"""
-    host: Annotated[str, arg(metavar="ADDRESS")] = "127.0.0.1"
-    """0.0.0.0 lets others in"""
-    port: Annotated[int, arg(metavar="N")] = 8080
-    """0 takes a free one"""
-    verbose: Verbose = False
-    """tell where an error is"""
+def _same(there: dict[str, Any] | None, here: dict[str, Any]) -> bool:
+    """Whether two sets of values describe the same run."""
+    if there is None:
+        return False
+    return all(there.get(key) == here.get(key) for key in {*there, *here} - _NOT_COMPARED)
 
 
-@dataclass(frozen=True)
-class SolveSettings:
-    """Solve the quadratic program in an .npz file of arrays: P and q, and of G and h, A and b,
-    lb, ub those that there are. Exit code 0: solved; 1: no answer within the tolerance; 2: bad
-    input.
-    """  # noqa: D205
+def _values(options: RunOptions) -> dict[str, Any]:
+    """Values of the options that a settings file keeps; paths are made absolute."""
+    values: dict[str, Any] = {}
+    for field in fields(options):
+        value = getattr(options, field.name)
+        if field.name in _NOT_KEPT or value is None or value == ():
+            continue
+        if field.name in ("robot", "reference") and (
+            os.sep in value or value.endswith((".urdf", ".csv"))
+        ):
+            value = str(Path(value).resolve())
+        values[field.name] = list(value) if isinstance(value, tuple) else value
+    return values
 
-    file: Positional[Annotated[Path, arg(metavar="FILE")]]
-    """the program, written with numpy.savez"""
-    tol: Annotated[float, arg(metavar="TOL")] = 1e-9
-    """largest residual that counts as solved"""
-    check: Reference = "none"
-    """also ask proxqp, osqp or both"""
-    out: Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")] = None
-    """write the answer there too, as .npz"""
-    quiet: Quiet = False
-    """print nothing but why there is no answer"""
-    verbose: Verbose = False
-    """print the multipliers too, and where an error is"""
+
+def _words(kind: type[Any], path: Path) -> list[str]:
+    """Return the command line that a settings file stands for."""
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
+        raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
+    command = values.pop("command", kind.command)
+    if command != kind.command:
+        raise FileError(path, f"holds settings of {command!r}, not of {kind.command!r}")
+    asked_for = ("settings", "overwrite")  # by a person, on the command line
+    known = {field.name: field.default for field in fields(kind) if field.name not in asked_for}
+    words = [f"--out={path.parent}"]
+    for key, value in values.items():
+        name = key.replace("-", "_")
+        if name not in known:
+            raise NotFoundError(f"setting in {path}", key, known)
+        if isinstance(known[name], bool):
+            if not isinstance(value, bool):
+                raise FileError(path, f"{key} must be true or false, not {value!r}")
+            words.append(option(name) if value else option(f"no_{name}"))
+        elif isinstance(value, list):
+            words += [option(name), *map(str, value)]
+        elif isinstance(value, dict | bool):
+            raise FileError(path, f"{key} must be a text, a number or a list, not {value!r}")
+        else:
+            words.append(f"{option(name)}={value}")
+    return words

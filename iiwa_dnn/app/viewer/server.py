@@ -1,4 +1,4 @@
-"""Opening the page: viser, its address, and the look that all pages share."""
+"""The page's server: viser, its address, and the look of the page."""
 
 from __future__ import annotations
 
@@ -15,29 +15,24 @@ HOST, PORT = "127.0.0.1", 8080
 
 
 def import_viser() -> Any:
-    """Viser's Python package.
-
-    Raises:
-        MissingDependencyError: If it is not installed.
-    """
+    """Return viser's Python package, or raise a MissingDependencyError."""
     try:
         return importlib.import_module("viser")
     except ImportError as error:
-        raise MissingDependencyError(
-            "the Python package viser", "pip install 'iiwa-dnn[view]'"
-        ) from error
+        remedy = "pip install 'iiwa-dnn[view]'"
+        raise MissingDependencyError("the Python package viser", remedy) from error
 
 
-def open_server(title: str, host: str = HOST, port: int = PORT) -> Any:
+def open_server(title: str, host: str, port: int) -> Any:
     """Serve an empty page.
 
     Args:
-        title: What stands above the page's controls.
+        title: Title above the page's controls.
         host: Address to listen on; ``"0.0.0.0"`` lets other machines in.
         port: Port to listen on; 0 takes a free one.
 
     Returns:
-        The ``viser.ViserServer``; its ``stop`` closes it.
+        The ``viser.ViserServer``.
 
     Raises:
         MissingDependencyError: If viser is not installed.
@@ -45,7 +40,7 @@ def open_server(title: str, host: str = HOST, port: int = PORT) -> Any:
     """
     viser = import_viser()
     port = _checked_port(host, port)
-    with redirect_stdout(StringIO()):  # its banner; who asked for the page tells the address
+    with redirect_stdout(StringIO()):  # its banner; the command prints the address
         server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
     # No logo that links to the web, and no button that asks a relay for a public address.
     server.gui.configure_theme(
@@ -56,14 +51,8 @@ def open_server(title: str, host: str = HOST, port: int = PORT) -> Any:
     return server
 
 
-def close_server(server: Any) -> None:
-    """Close a page."""
-    with redirect_stdout(StringIO()):
-        server.stop()
-
-
 def _checked_port(host: str, port: int) -> int:
-    """The port if it is free (viser would take another one without a word), or a free one for 0."""
+    """Return the port if it is free, or a free one for 0; viser would take another one silently."""
     try:
         family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
         with socket.socket(family, socket.SOCK_STREAM) as probe:
