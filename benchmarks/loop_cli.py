@@ -9,7 +9,7 @@ from tqdm import tqdm
 from benchmarks.settings import BenchLoopSettings
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files, run_command
-from iiwa_dnn.app.settings import claim_folder, save_settings
+from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.errors import MissingDependencyError
 
 

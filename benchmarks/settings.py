@@ -6,40 +6,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from iiwa_dnn.app.options import Count, Folder, RunOptions, Seconds
+from iiwa_dnn.app.options import Count, Folder, RunOptions, Time
 
 
 @dataclass(frozen=True)
 class BenchSettings(RunOptions):
-    """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP.
-
-    Exit code 0: done; 2: bad input, or a package is missing.
-    """
+    """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP."""
 
     command: ClassVar[str] = "solvers"
-    out: Folder = Path("runs/bench")
-    steps: Count = 5000
-    """number of steps in a stream of programs"""
-    cold: Count = 1000
-    """number of random programs of each size"""
-    batch: Count = 100_000
-    """number of programs in the batch"""
+    out: Folder = Path("runs/bench")  # folder that the results are written to
+    steps: Count = 5000  # number of steps in a stream of programs
+    cold: Count = 1000  # number of random programs of each size
+    batch: Count = 100_000  # number of programs in the batch
 
 
 @dataclass(frozen=True)
 class BenchLoopSettings(RunOptions):
-    """Measure the control loop beside Pink's, whole runs, start-up and memory.
-
-    Exit code 0: done; 2: bad input, or a package is missing.
-    """
+    """Measure the control loop beside Pink's, whole runs, start-up and memory."""
 
     command: ClassVar[str] = "loop"
-    out: Folder = Path("runs/bench_loop")
-    steps: Count = 20_000
-    """number of steps beside Pink"""
-    duration: Seconds = 10.0
-    """length of a whole run [s]"""
-    dt: Seconds = 1e-4
-    """control period [s]"""
-    rounds: Count = 3
-    """number of repetitions of all that is not a step"""
+    out: Folder = Path("runs/bench_loop")  # folder that the results are written to
+    steps: Count = 20_000  # number of steps beside Pink
+    duration: Time = 10.0  # length of a whole run [s]
+    dt: Time = 1e-4  # control period [s]
+    rounds: Count = 3  # number of repetitions of all that is not a step

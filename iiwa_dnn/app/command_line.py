@@ -1,53 +1,58 @@
-"""A command from its words to its exit code, and the words that all commands print."""
+"""A command from its words, and its settings file, to its exit code.
+
+tyro reads the words and writes the help. It reports a wrong word in a box of many lines and ends
+the process; here it is one line. So tyro hands an unknown option back unread, and lets a wrong
+value through as a `_Wrong`; both are refused after it.
+"""
 
 from __future__ import annotations
 
+import io
 import sys
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from contextlib import redirect_stderr
+from dataclasses import Field, fields, replace
+from difflib import get_close_matches
+from inspect import getdoc
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
+import tyro
 from tqdm import tqdm
+from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
-from iiwa_dnn.app.arguments import read
 from iiwa_dnn.app.interrupts import ended_by_signals
-from iiwa_dnn.app.settings import read_settings
-from iiwa_dnn.errors import IiwaDnnError, NoSolutionError
+from iiwa_dnn.app.options import EXIT_CODES
+from iiwa_dnn.errors import (
+    FileError,
+    IiwaDnnError,
+    InvalidInputError,
+    NoSolutionError,
+    NotFoundError,
+)
+from iiwa_dnn.files import one_line
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 S = TypeVar("S")
 
 
-def parse(kind: type[S], prog: str, words: Sequence[str]) -> S:
-    """Read a command's words, over the options in the file that ``--settings`` names.
+_HINT = "(--help lists the options)"
 
-    Args:
-        kind: Dataclass of the command's options.
-        prog: Name of the command in its help.
-        words: The words, without the program's name.
 
-    Returns:
-        The options.
-
-    Raises:
-        IiwaDnnError: A word or the file is wrong.
-        SystemExit: After ``--help``, with code 0.
-    """
-    options = read(kind, prog, words)
-    file = getattr(options, "settings", None)
-    if file is None:
-        return options
-    start: Any = read_settings(kind, file)
-    options = read(kind, prog, words, replace(start, quiet=False, verbose=False))
-    shown = {name: True for name in ("quiet", "verbose") if getattr(start, name)}
-    return replace(options, **shown)
+class _Wrong(str):
+    """The reason why an option's words are not accepted, in the place of its value."""
 
 
 def run_command(
     kind: type[S], prog: str, run: Callable[[S], int], words: Sequence[str] | None = None
 ) -> int:
-    """Parse the words, run the command, and turn the package's errors into one line.
+    """Read a command's words, run it, and turn the package's errors into one line.
 
     Args:
         kind: Dataclass of the command's options.
@@ -64,7 +69,7 @@ def run_command(
     """
     options: S | None = None
     try:
-        options = parse(kind, prog, sys.argv[1:] if words is None else list(words))
+        options = parse(kind, prog, sys.argv[1:] if words is None else words)
         with ended_by_signals():
             return run(options)
     except IiwaDnnError as error:
@@ -79,6 +84,137 @@ def fail(prog: str, error: IiwaDnnError) -> int:
     return 1 if isinstance(error, NoSolutionError) else 2
 
 
+def parse(kind: type[S], prog: str, words: Sequence[str]) -> S:
+    """Read a command's words, over the options in the file that ``--settings`` names.
+
+    Raises:
+        IiwaDnnError: A word or the file is wrong.
+        SystemExit: After ``--help``, with code 0.
+    """
+    options = _read(kind, prog, words)
+    file = getattr(options, "settings", None)
+    if file is None:
+        return options
+    start: Any = read_settings(kind, file)
+    options = _read(kind, prog, words, replace(start, quiet=False, verbose=False))
+    return replace(options, **{name: True for name in ("quiet", "verbose") if getattr(start, name)})
+
+
+def read_settings(kind: type[S], path: Path) -> S:
+    """Read the options in a TOML file; where it does not set ``out``, that is the file's folder.
+
+    Raises:
+        FileError: The file cannot be read, is not TOML, is another command's, or has a wrong value.
+        NotFoundError: A key is not an option.
+    """
+    words = _words(kind, path)
+    try:
+        return _read(kind, "", words)
+    except IiwaDnnError as error:
+        raise FileError(path, str(error)) from error
+
+
+def _words(kind: type[Any], path: Path) -> list[str]:
+    """Return the command line that a settings file stands for."""
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
+        raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
+    command = values.pop("command", kind.command)
+    if command != kind.command:
+        raise FileError(path, f"holds settings of {command!r}, not of {kind.command!r}")
+    asked_for = ("settings", "overwrite")  # by a person, on the command line
+    known = {field.name: field.default for field in fields(kind) if field.name not in asked_for}
+    words = [f"--out={path.parent}"]
+    for key, value in values.items():
+        name = key.replace("-", "_")
+        if name not in known:
+            raise NotFoundError(f"setting in {path}", key, known)
+        if isinstance(known[name], bool):
+            if not isinstance(value, bool):
+                raise FileError(path, f"{key} must be true or false, not {value!r}")
+            words.append(_option(name) if value else _option(f"no_{name}"))
+        elif isinstance(value, list):
+            words += [_option(name), *map(str, value)]
+        elif isinstance(value, dict | bool):
+            raise FileError(path, f"{key} must be a text, a number or a list, not {value!r}")
+        else:
+            words.append(f"{_option(name)}={value}")
+    return words
+
+
+def _option(field: str) -> str:
+    return "--" + field.replace("_", "-")
+
+
+def _read(kind: type[S], prog: str, words: Sequence[str], default: S | None = None) -> S:
+    """Read words over default options; see `parse` for the errors."""
+    names: dict[str, Field[Any]] = {_option(field.name): field for field in fields(kind)}  # type: ignore[arg-type]
+    many = (bool, tuple)
+    for word, following in pairwise([*words, "--"]):
+        takes_one = word in names and not isinstance(names[word].default, many)
+        if takes_one and (following.startswith("--") or following in ("-q", "-v", "-h")):
+            raise InvalidInputError(word, f"a value is missing {_HINT}")
+    start: Any = kind() if default is None else default
+    # tyro knows only the form of a switch that changes it: --no-plots, or --plots over a file.
+    switches = {name: getattr(start, field.name) for name, field in names.items()}
+    idle = {k if on else f"--no-{k[2:]}" for k, on in switches.items() if isinstance(on, bool)}
+    about = f"{getdoc(kind)}\n\n{EXIT_CODES}"
+    try:
+        options: S
+        with redirect_stderr(io.StringIO()):
+            options, unread = tyro.cli(
+                kind, prog=prog, description=about, args=[w for w in words if w not in idle],
+                default=start, return_unknown_args=True, registry=_registry,
+            )  # fmt: skip
+    except SystemExit as end:
+        if not end.code:
+            raise
+        raise IiwaDnnError(f"not understood: {' '.join(words)} {_HINT}") from None
+    for word in unread:
+        if not word.startswith("-"):
+            raise IiwaDnnError(f"one argument too many: {word!r} {_HINT}")
+        near = get_close_matches(word.partition("=")[0][2:], [name[2:] for name in names], n=1)
+        hint = f"; did you mean: --{near[0]}" if near else ""
+        raise IiwaDnnError(f"no option {word!r}{hint} {_HINT}")
+    for name, field in names.items():
+        value = getattr(options, field.name)
+        if isinstance(value, _Wrong):
+            raise InvalidInputError(name, value)
+    return options
+
+
+_registry = ConstructorRegistry()
+_asking = False
+
+
+@_registry.primitive_rule
+def _lenient(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
+    """Take tyro's own rule for a type, and let what it refuses through as a `_Wrong`."""
+    global _asking
+    if _asking or info.type is bool:
+        return None
+    _asking = True  # so that tyro's own rule is found, not this one again
+    try:
+        spec = ConstructorRegistry.get_primitive_spec(info)
+    finally:
+        _asking = False
+    if not isinstance(spec, PrimitiveConstructorSpec):
+        return None
+    convert, parts = spec.instance_from_str, get_args(info.type) or (info.type,)
+    wanted = "a whole number" if int in parts else "numbers" if ... in parts else "a number"
+    if spec.choices is not None:
+        wanted = f"one of {', '.join(spec.choices)}"
+
+    def attempt(words: list[str]) -> Any:
+        try:
+            return convert(words)
+        except ValueError:
+            return _Wrong(f"must be {wanted}, not {' '.join(words)!r}")
+
+    return replace(spec, choices=None, instance_from_str=attempt)
+
+
 def list_files(folder: Path) -> None:
     """Print the files in a folder with their sizes, one a line."""
     for file in sorted(path for path in folder.iterdir() if path.is_file()):
@@ -87,10 +223,5 @@ def list_files(folder: Path) -> None:
 
 def progress_bar(total: int, unit: str, quiet: bool) -> Any:
     """Return a progress bar; it is not shown where standard error is not a terminal."""
-    return tqdm(
-        total=total,
-        unit=unit,
-        unit_scale=unit == "step",
-        dynamic_ncols=True,
-        disable=True if quiet else None,
-    )
+    hidden, in_thousands = True if quiet else None, unit == "step"
+    return tqdm(total=total, unit=unit, unit_scale=in_thousands, dynamic_ncols=True, disable=hidden)

@@ -6,11 +6,11 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
+from importlib.metadata import version
 from typing import Annotated, Any, Union
 
 import tyro
 
-from iiwa_dnn.app.arguments import CONFIG
 from iiwa_dnn.app.command_line import fail, run_command
 from iiwa_dnn.app.options import COMMANDS
 from iiwa_dnn.errors import NotFoundError
@@ -19,10 +19,7 @@ PROG = "iiwa-dnn"
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Run the command that the words name.
-
-    Args:
-        words: Command line without the program's name; None takes the process's own.
+    """Run the command that the words name; None takes the process's own.
 
     Returns:
         The command's exit code; 2 for an unknown command, after one line on standard error.
@@ -34,16 +31,16 @@ def main(words: Sequence[str] | None = None) -> int:
     if name in COMMANDS:
         return run(name, rest)
     if name == "--version":
-        print(PROG, import_module("iiwa_dnn").__version__)
-        return 0
-    if name not in ("-h", "--help"):
+        print(PROG, version(PROG))
+    elif name in ("-h", "--help"):
+        describe_commands("--help")
+    else:
         return fail(PROG, NotFoundError("command", name, COMMANDS))
-    describe_commands("--help")
     return 0
 
 
 def run(name: str, words: Sequence[str] | None = None, prog: str | None = None) -> int:
-    """Run one command, the function ``run`` of the module that has its name.
+    """Run one command: the function ``run`` of the module that has its name.
 
     Args:
         name: The command, a key of `iiwa_dnn.app.options.COMMANDS`.
@@ -68,4 +65,4 @@ def describe_commands(*words: str) -> None:
     )
     about = "Robot arms driven by dynamic neural networks that solve a program at every step."
     with suppress(SystemExit):
-        tyro.cli(Union[kinds], prog=PROG, description=about, args=words, config=CONFIG)  # noqa: UP007
+        tyro.cli(Union[kinds], prog=PROG, description=about, args=words)  # noqa: UP007

@@ -7,8 +7,8 @@ from typing import Any
 
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files
+from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import NoiseOptions
-from iiwa_dnn.app.settings import claim_folder, save_settings
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.report import markdown_table

@@ -14,8 +14,8 @@ from typing import Any
 
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files
+from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import PaperOptions
-from iiwa_dnn.app.settings import claim_folder, save_settings
 from iiwa_dnn.files import write_json
 from iiwa_dnn.studies import ablation, paper, table1, table2
 from iiwa_dnn.studies.paper_findings import findings

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.arguments import option
 from iiwa_dnn.app.command_line import list_files, progress_bar
+from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import ArmOptions, Check, TrackOptions
-from iiwa_dnn.app.settings import claim_folder, save_settings
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
@@ -123,7 +122,7 @@ def path(options: ArmOptions) -> Reference:
     for other in _PATH_OPTIONS:
         value = getattr(options, other)
         if other not in own and value != getattr(ArmOptions, other):
-            raise InvalidInputError(option(other), f"is no option of the path {name!r}", value)
+            raise InvalidInputError(f"--{other}", f"is no option of the path {name!r}", value)
     if name not in _PATHS:
         return Waypoints.from_csv(name)
     return _PATHS[name](**{key: getattr(options, key) for key in _PATH_OPTIONS if key in own})

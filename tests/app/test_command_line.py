@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from iiwa_dnn.app.command_line import parse, run_command
+from iiwa_dnn.app.folders import save_settings
 from iiwa_dnn.app.main import run
 from iiwa_dnn.app.options import COMMANDS, TrackOptions
-from iiwa_dnn.app.settings import save_settings
 
 SHORT = ("--dt", "1e-3", "--duration", "0.05", "--no-plots", "--quiet")
 
@@ -53,8 +53,10 @@ def test_help_names_the_quantity_and_the_unit_of_every_option(
             assert any(row.startswith(f"{field.name.upper()}  ") for row in rows)
             continue
         (words,) = [shown[k] for k in shown if re.search(rf"--(no-)?{option}(?![\w-])", k)]
-        assert words, option
-        if "float" in str(field.type) or field.type in ("Seconds", "MaybeSeconds", "Length"):
+        assert words
+        assert not words.startswith("(default"), option
+        quantities = ("_Length", "_Speed", "_Number", "_Vector", "_Push", "_Angles", "_AnyAngle")
+        if field.type in ("Time", "_AnyTime", "_AnyShare", *quantities):
             assert re.search(r"\[.+\]|share|program's units", words), (option, words)
 
 

@@ -1,18 +1,20 @@
-"""The page: replay and live mode on one stage, and the loop that keeps it moving."""
+"""The page: its server, replay and live mode on one stage, and the loop that keeps it moving."""
 
 from __future__ import annotations
 
+import socket
 import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
+from importlib import import_module
 from io import StringIO
 from typing import Any
 
 from iiwa_dnn.app.viewer.follower import Follower
 from iiwa_dnn.app.viewer.live import LivePanel
 from iiwa_dnn.app.viewer.replay import ReplayPanel
-from iiwa_dnn.app.viewer.server import HOST, PORT, open_server
 from iiwa_dnn.app.viewer.stage import Stage
+from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.robot import Robot
@@ -38,8 +40,8 @@ class Page:
         q0: Vector,
         record: Record | None = None,
         scheme: DoubleIndicator | None = None,
-        host: str = HOST,
-        port: int = PORT,
+        host: str = "127.0.0.1",
+        port: int = 8080,
     ) -> None:
         """Serve the page; `run` or `tick` moves it.
 
@@ -48,7 +50,7 @@ class Page:
             q0: Joint positions at the start of the live mode [rad], (n,).
             record: Run to replay; without one the page starts in live mode.
             scheme: Scheme of the live mode; None takes the defaults.
-            host: Address to listen on; the default is the local machine only.
+            host: Address to listen on; ``"0.0.0.0"`` lets other machines in.
             port: Port to listen on; 0 takes a free one.
 
         Raises:
@@ -56,7 +58,7 @@ class Page:
             InvalidInputError: If the address cannot be listened on, or `q0` is not acceptable.
         """
         follower = Follower(robot, q0, scheme)
-        self.server = open_server(f"{robot.name} · iiwa_dnn", host, port)
+        self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
         self.stage = Stage(self.server, robot)
         if record is not None:
             mode: Any = self.server.gui.add_button_group("mode", ("replay", "live"))
@@ -101,3 +103,36 @@ class Page:
         """Close the page."""
         with redirect_stdout(StringIO()):  # viser says so
             self.server.stop()
+
+
+def _open_server(title: str, host: str, port: int) -> Any:
+    """Serve an empty page with a title, in the look of the project."""
+    try:
+        viser: Any = import_module("viser")
+    except ImportError as error:
+        remedy = "pip install 'iiwa-dnn[view]'"
+        raise MissingDependencyError("the Python package viser", remedy) from error
+    port = _checked_port(host, port)
+    with redirect_stdout(StringIO()):  # its banner; the command prints the address
+        server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
+    # No logo that links to the web, and no button that asks a relay for a public address.
+    server.gui.configure_theme(
+        control_width="large", show_logo=False, show_share_button=False, brand_color=(255, 102, 0)
+    )
+    server.gui.set_panel_label(title)
+    server.scene.set_up_direction("+z")
+    return server
+
+
+def _checked_port(host: str, port: int) -> int:
+    """Return the port if it is free, or a free one for 0; viser would take another one silently."""
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((host, port))
+            return int(probe.getsockname()[1])
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        problem = f"cannot listen on {host}:{port}: {reason}"
+        raise InvalidInputError("port", problem, port) from error

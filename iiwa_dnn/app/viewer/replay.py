@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.app.viewer import readout
-from iiwa_dnn.app.viewer.server import import_viser
-from iiwa_dnn.app.viewer.stage import DESIRED_COLOUR, DRAWN_COLOUR, Stage
+from iiwa_dnn.app.viewer.stage import Stage
 from iiwa_dnn.results.decimation import envelope
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
+_DESIRED_COLOUR, _DRAWN_COLOUR = (70, 80, 100), (220, 0, 30)
 _CURVE_POINTS = 300
 
 
@@ -73,7 +73,7 @@ class ReplayPanel:
         self._turn = orientation_error(record)
         self._shown: tuple[float, bool] | None = None
         self._since_readout = np.inf
-        stage.line("desired", record.position_desired, DESIRED_COLOUR, 2.0)
+        stage.line("desired", record.position_desired, _DESIRED_COLOUR, 2.0)
         stage.look_at(record.position_desired.mean(axis=0))
         gui = stage.server.gui
         folders = gui.add_folder("Replay"), gui.add_folder("State")
@@ -105,7 +105,7 @@ class ReplayPanel:
         k = self.sample
         self._stage.show(self.record.q[k])
         if k > 0:
-            self._stage.line("drawn", self.record.position[: k + 1], DRAWN_COLOUR, 4.0)
+            self._stage.line("drawn", self.record.position[: k + 1], _DRAWN_COLOUR, 4.0)
         self._stage.set_line_visible("drawn", k > 0)
         paused = self._shown is None or not self.playback.playing
         if paused or self._since_readout >= readout.PERIOD:
@@ -161,7 +161,8 @@ class ReplayPanel:
         good = np.isfinite(values) & (values > 0.0)
         if good.sum() < 2:
             return
-        uplot = import_viser().uplot
+        from viser import uplot  # of an extra
+
         times, _, _, greatest = envelope(t[good], values[good], _CURVE_POINTS)
         self._stage.server.gui.add_uplot(
             (np.ascontiguousarray(times), np.log10(greatest)),

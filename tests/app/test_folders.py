@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from iiwa_dnn.app.folders import SETTINGS_FILE, claim_folder, save_settings
 from iiwa_dnn.app.main import run
 from iiwa_dnn.app.options import NoiseOptions, PhysicsOptions, TrackOptions
-from iiwa_dnn.app.settings import SETTINGS_FILE, claim_folder, save_settings
 from iiwa_dnn.errors import FileError
 
 SHORT = ("--dt", "1e-3", "--duration", "0.02", "--check", "none", "--no-plots", "-q")
