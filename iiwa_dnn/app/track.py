@@ -38,6 +38,12 @@ CHECKS: dict[Check, tuple[str, ...]] = {
 _PATHS = {path.name: path for path in (Heart, Circle, Line, Lissajous)}
 _PATH_OPTIONS = ("scale", "radius", "offset", "amplitudes", "period")
 
+# Options that are arguments of a simulation under the same name.
+_HANDED_ON = (
+    "dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "integral_gain",
+    "policy", "seed",
+)  # fmt: skip
+
 More = Callable[[Record, Path], list[Path]]
 Last = Callable[[Record, Path], None] | None
 
@@ -57,17 +63,8 @@ def run(options: TrackOptions) -> int:
         ),
         path(options).anchored(Configuration(robot, q0)),
         q0,
-        dt=options.dt,
-        duration=options.duration,
-        mode=options.mode,
-        motion=options.motion,
-        noise=options.noise,
-        noise_at=options.noise_at,
-        filter_window=options.filter_window,
-        integral_gain=options.integral_gain,
-        policy=options.policy,
-        seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),
+        **{name: getattr(options, name) for name in _HANDED_ON},
     )
     return draw(options, simulation)
 
