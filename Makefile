@@ -28,6 +28,7 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'setup: installing into $(VENV), 2 GB on disk in the end; the first time takes some minutes'
 	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,sim,view,dev]'
+	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
 
 heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart

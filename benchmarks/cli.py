@@ -10,8 +10,8 @@ from tqdm import tqdm
 
 from benchmarks.settings import BenchSettings
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files, run_command, save_settings
-from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.app.command_line import list_files, run_command
+from iiwa_dnn.app.folders import claim_folder, save_settings
 
 
 def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
@@ -30,7 +30,7 @@ def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_sol
 def _bench(options: BenchSettings) -> int:
     for name in ("steps", "cold", "batch"):
         checks.integer(f"--{name}", getattr(options, name), 50)
-    folder = prepare_folder(options.out)
+    folder = claim_folder(options)
     # Here, since the peers are in an extra.
     from benchmarks.measurement import (
         CHUNK,

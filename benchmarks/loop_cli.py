@@ -8,9 +8,9 @@ from tqdm import tqdm
 
 from benchmarks.settings import BenchLoopSettings
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files, run_command, save_settings
+from iiwa_dnn.app.command_line import list_files, run_command
+from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.errors import MissingDependencyError
-from iiwa_dnn.files import prepare_folder
 
 
 def bench_loop(arguments: Sequence[str] | None = None, prog: str = "bench_loop") -> int:
@@ -31,7 +31,7 @@ def _bench(options: BenchLoopSettings) -> int:
     checks.integer("--rounds", options.rounds, 1)
     checks.positive("--duration", options.duration)
     checks.positive("--dt", options.dt)
-    folder = prepare_folder(options.out)
+    folder = claim_folder(options)
     try:
         from benchmarks.control import measure_runs, measure_steps, profile_step
     except ImportError as error:

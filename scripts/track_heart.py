@@ -2,7 +2,7 @@
 
 import sys
 
-from iiwa_dnn.app.track import track_heart
+from iiwa_dnn.app.main import run
 
 if __name__ == "__main__":
-    sys.exit(track_heart())
+    sys.exit(run("track", prog="track_heart"))

@@ -12,12 +12,12 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
-from iiwa_dnn.app.track import PAPER_START
+from iiwa_dnn.robot.arms import STARTS
 from iiwa_dnn.simulation import Disturbances
 from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 ROOT = Path(__file__).parents[1]
-START = np.array(PAPER_START)
+START = np.array(STARTS["iiwa7"])
 
 
 def papers_robot() -> Robot:

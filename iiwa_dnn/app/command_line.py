@@ -1,32 +1,38 @@
-"""Arguments into settings, settings into a file and back, and what goes wrong into one line.
+"""A command from its words, and its settings file, to its exit code.
 
-tyro reads the arguments and writes the help. What it says of an argument that is wrong fills a box
-of many lines; here it is cut down to its first sentence and a hint.
+tyro reads the words and writes the help. It reports a wrong word in a box of many lines and ends
+the process; here it is one line. So tyro hands an unknown option back unread, and lets a wrong
+value through as a `_Wrong`; both are refused after it.
 """
 
 from __future__ import annotations
 
-import argparse
-import contextlib
 import io
-import os
-import re
 import sys
 import traceback
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr
+from dataclasses import Field, fields, replace
 from difflib import get_close_matches
-from importlib.metadata import version
+from inspect import getdoc
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar, get_args
 
-import tomli_w
 import tyro
 from tqdm import tqdm
+from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from iiwa_dnn.app.interrupts import ended_by_signals
-from iiwa_dnn.errors import FileError, IiwaDnnError, NoSolutionError, NotFoundError
-from iiwa_dnn.files import one_line, write_text
+from iiwa_dnn.app.options import EXIT_CODES
+from iiwa_dnn.errors import (
+    FileError,
+    IiwaDnnError,
+    InvalidInputError,
+    NoSolutionError,
+    NotFoundError,
+)
+from iiwa_dnn.files import one_line
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -35,134 +41,178 @@ else:
 
 S = TypeVar("S")
 
-SETTINGS_FILE = "settings.toml"
-"""Name of the settings in a run's folder."""
 
-# They say how a run is shown and kept, not what it is, and stay out of a run's settings file.
-_NOT_KEPT = ("settings", "out", "quiet", "verbose")
+_HINT = "(--help lists the options)"
 
 
-def parse(kind: type[S], prog: str, arguments: Sequence[str] | None = None) -> S:
-    """Read a command's arguments, over those of the file that ``--settings`` names.
-
-    Args:
-        kind: One of the dataclasses of `iiwa_dnn.app.settings`.
-        prog: What the command is called in messages.
-        arguments: Command line without the program's name; None takes the process's own.
-
-    Returns:
-        The settings.
-
-    Raises:
-        SystemExit: After ``--help`` with code 0; with code 2 where an argument or the file is
-            wrong, after one line on standard error.
-    """
-    given = sys.argv[1:] if arguments is None else list(arguments)
-    file = _settings_file(kind, given)
-    if file is None:
-        return _parse(kind, prog, given)
-    try:
-        from_file = _parse(kind, f"{prog}: error: {file}", tokens(kind, file))
-    except IiwaDnnError as error:
-        _exit(prog, error)
-    return _parse(kind, prog, given, from_file)
+class _Wrong(str):
+    """The reason why an option's words are not accepted, in the place of its value."""
 
 
 def run_command(
-    kind: type[S], prog: str, run: Callable[[S], int], arguments: Sequence[str] | None = None
+    kind: type[S], prog: str, run: Callable[[S], int], words: Sequence[str] | None = None
 ) -> int:
-    """Parse the arguments, run the command, and turn the package's errors into one line.
+    """Read a command's words, run it, and turn the package's errors into one line.
 
     Args:
-        kind: The command's settings.
-        prog: What the command is called in messages.
-        run: Takes the settings and returns the exit code.
-        arguments: As in `parse`.
+        kind: Dataclass of the command's options.
+        prog: Name of the command in messages.
+        run: The command; it takes the options and returns the exit code.
+        words: Command line without the program's name; None takes the process's own.
 
     Returns:
         The exit code; after an error of the package 2, or 1 where a step had no solution.
-        ``--verbose`` shows the error in full first.
+        ``--verbose`` prints the error's traceback first.
 
     Raises:
-        SystemExit: Ctrl-C or SIGTERM came (`iiwa_dnn.app.interrupts`), or as in `parse`.
+        SystemExit: After ``--help``, or when Ctrl-C or SIGTERM came (`iiwa_dnn.app.interrupts`).
     """
-    settings = parse(kind, prog, arguments)
+    options: S | None = None
     try:
+        options = parse(kind, prog, sys.argv[1:] if words is None else words)
         with ended_by_signals():
-            return run(settings)
+            return run(options)
     except IiwaDnnError as error:
-        if getattr(settings, "verbose", False):
+        if getattr(options, "verbose", False):
             traceback.print_exc()
-        print(_error_line(prog, error), file=sys.stderr)
-        return 1 if isinstance(error, NoSolutionError) else 2
+        return fail(prog, error)
 
 
-def save_settings(settings: Any, folder: Path) -> Path:
-    """Write ``settings.toml``, from which ``--settings`` repeats the run.
+def fail(prog: str, error: IiwaDnnError) -> int:
+    """Print an error in one line, whatever stands in a file's name, and return its exit code."""
+    print(f"{prog}: error: {' '.join(str(error).split())}", file=sys.stderr)
+    return 1 if isinstance(error, NoSolutionError) else 2
 
-    Where the run went to and how much it said are left out. A path of a robot is made absolute.
 
-    Args:
-        settings: The command's settings.
-        folder: The run's folder; it must exist.
-
-    Returns:
-        The file written.
+def parse(kind: type[S], prog: str, words: Sequence[str]) -> S:
+    """Read a command's words, over the options in the file that ``--settings`` names.
 
     Raises:
-        FileError: If it cannot be written.
+        IiwaDnnError: A word or the file is wrong.
+        SystemExit: After ``--help``, with code 0.
     """
-    values: dict[str, Any] = {}
-    for field in fields(settings):
-        value = getattr(settings, field.name)
-        if field.name in _NOT_KEPT or value is None or value == ():
-            continue
-        if field.name == "robot" and (value.endswith(".urdf") or os.sep in value):
-            value = str(Path(value).resolve())
-        values[field.name] = list(value) if isinstance(value, tuple) else value
-    head = f"# iiwa_dnn {version('iiwa-dnn')}; to repeat the run: --settings with this file\n\n"
-    path = folder / SETTINGS_FILE
-    write_text(path, head + tomli_w.dumps(values))
-    return path
+    options = _read(kind, prog, words)
+    file = getattr(options, "settings", None)
+    if file is None:
+        return options
+    start: Any = read_settings(kind, file)
+    options = _read(kind, prog, words, replace(start, quiet=False, verbose=False))
+    return replace(options, **{name: True for name in ("quiet", "verbose") if getattr(start, name)})
 
 
-def tokens(kind: type[Any], path: Path) -> list[str]:
-    """The command-line arguments that a settings file stands for.
-
-    Args:
-        kind: The command's settings.
-        path: A TOML file whose keys are fields of `kind`.
-
-    Returns:
-        The arguments; what their values are worth is for the parser to say.
+def read_settings(kind: type[S], path: Path) -> S:
+    """Read the options in a TOML file; where it does not set ``out``, that is the file's folder.
 
     Raises:
-        FileError: The file cannot be read, is not TOML, or has a value that is no option's.
+        FileError: The file cannot be read, is not TOML, is another command's, or has a wrong value.
         NotFoundError: A key is not an option.
     """
+    words = _words(kind, path)
     try:
-        values: Mapping[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+        return _read(kind, "", words)
+    except IiwaDnnError as error:
+        raise FileError(path, str(error)) from error
+
+
+def _words(kind: type[Any], path: Path) -> list[str]:
+    """Return the command line that a settings file stands for."""
+    try:
+        values = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
         raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
-    known = {field.name: field.default for field in fields(kind) if field.name != "settings"}
-    found: list[str] = []
+    command = values.pop("command", kind.command)
+    if command != kind.command:
+        raise FileError(path, f"holds settings of {command!r}, not of {kind.command!r}")
+    asked_for = ("settings", "overwrite")  # by a person, on the command line
+    known = {field.name: field.default for field in fields(kind) if field.name not in asked_for}
+    words = [f"--out={path.parent}"]
     for key, value in values.items():
         name = key.replace("-", "_")
         if name not in known:
             raise NotFoundError(f"setting in {path}", key, known)
-        option = "--" + name.replace("_", "-")
         if isinstance(known[name], bool):
             if not isinstance(value, bool):
                 raise FileError(path, f"{key} must be true or false, not {value!r}")
-            if value != known[name]:
-                found.append(option if value else f"--no-{option[2:]}")
+            words.append(_option(name) if value else _option(f"no_{name}"))
         elif isinstance(value, list):
-            found += [option, *map(str, value)]
+            words += [_option(name), *map(str, value)]
         elif isinstance(value, dict | bool):
             raise FileError(path, f"{key} must be a text, a number or a list, not {value!r}")
         else:
-            found.append(f"{option}={value}")
-    return found
+            words.append(f"{_option(name)}={value}")
+    return words
+
+
+def _option(field: str) -> str:
+    return "--" + field.replace("_", "-")
+
+
+def _read(kind: type[S], prog: str, words: Sequence[str], default: S | None = None) -> S:
+    """Read words over default options; see `parse` for the errors."""
+    names: dict[str, Field[Any]] = {_option(field.name): field for field in fields(kind)}  # type: ignore[arg-type]
+    many = (bool, tuple)
+    for word, following in pairwise([*words, "--"]):
+        takes_one = word in names and not isinstance(names[word].default, many)
+        if takes_one and (following.startswith("--") or following in ("-q", "-v", "-h")):
+            raise InvalidInputError(word, f"a value is missing {_HINT}")
+    start: Any = kind() if default is None else default
+    # tyro knows only the form of a switch that changes it: --no-plots, or --plots over a file.
+    switches = {name: getattr(start, field.name) for name, field in names.items()}
+    idle = {k if on else f"--no-{k[2:]}" for k, on in switches.items() if isinstance(on, bool)}
+    about = f"{getdoc(kind)}\n\n{EXIT_CODES}"
+    try:
+        options: S
+        with redirect_stderr(io.StringIO()):
+            options, unread = tyro.cli(
+                kind, prog=prog, description=about, args=[w for w in words if w not in idle],
+                default=start, return_unknown_args=True, registry=_registry,
+            )  # fmt: skip
+    except SystemExit as end:
+        if not end.code:
+            raise
+        raise IiwaDnnError(f"not understood: {' '.join(words)} {_HINT}") from None
+    for word in unread:
+        if not word.startswith("-"):
+            raise IiwaDnnError(f"one argument too many: {word!r} {_HINT}")
+        near = get_close_matches(word.partition("=")[0][2:], [name[2:] for name in names], n=1)
+        hint = f"; did you mean: --{near[0]}" if near else ""
+        raise IiwaDnnError(f"no option {word!r}{hint} {_HINT}")
+    for name, field in names.items():
+        value = getattr(options, field.name)
+        if isinstance(value, _Wrong):
+            raise InvalidInputError(name, value)
+    return options
+
+
+_registry = ConstructorRegistry()
+_asking = False
+
+
+@_registry.primitive_rule
+def _lenient(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
+    """Take tyro's own rule for a type, and let what it refuses through as a `_Wrong`."""
+    global _asking
+    if _asking or info.type is bool:
+        return None
+    _asking = True  # so that tyro's own rule is found, not this one again
+    try:
+        spec = ConstructorRegistry.get_primitive_spec(info)
+    finally:
+        _asking = False
+    if not isinstance(spec, PrimitiveConstructorSpec):
+        return None
+    convert, parts = spec.instance_from_str, get_args(info.type) or (info.type,)
+    wanted = "a whole number" if int in parts else "numbers" if ... in parts else "a number"
+    if spec.choices is not None:
+        wanted = f"one of {', '.join(spec.choices)}"
+
+    def attempt(words: list[str]) -> Any:
+        try:
+            return convert(words)
+        except ValueError:
+            return _Wrong(f"must be {wanted}, not {' '.join(words)!r}")
+
+    return replace(spec, choices=None, instance_from_str=attempt)
 
 
 def list_files(folder: Path) -> None:
@@ -172,80 +222,6 @@ def list_files(folder: Path) -> None:
 
 
 def progress_bar(total: int, unit: str, quiet: bool) -> Any:
-    """A progress bar; none where standard error is not a terminal, or all should be quiet."""
-    return tqdm(
-        total=total,
-        unit=unit,
-        unit_scale=unit == "step",
-        dynamic_ncols=True,
-        disable=True if quiet else None,
-    )
-
-
-def unknown_command(prog: str, name: str, available: Sequence[str]) -> NoReturn:
-    """End the process with code 2 and a line that names the commands near to the one given."""
-    _exit(prog, NotFoundError("command", name, available))
-
-
-def _settings_file(kind: type[Any], arguments: list[str]) -> Path | None:
-    """What ``--settings`` names; None where it is not given, or not as it should be."""
-    if not any(field.name == "settings" for field in fields(kind)):
-        return None
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False)
-    parser.add_argument("--settings", type=Path)
-    try:
-        found, _ = parser.parse_known_args(arguments)
-    except argparse.ArgumentError:  # the whole parser says it better
-        return None
-    file: Path | None = found.settings
-    return file
-
-
-def _parse(kind: type[S], prog: str, arguments: list[str], default: S | None = None) -> S:
-    said = io.StringIO()
-    options: dict[str, Any] = {} if default is None else {"default": default}
-    try:
-        # Only what tyro says on standard error is an error; its help goes its own way.
-        with contextlib.redirect_stderr(said):
-            settings: S = tyro.cli(
-                kind,
-                prog=prog,
-                args=arguments,
-                config=(tyro.conf.HelptextFromCommentsOff,),
-                **options,
-            )
-        return settings
-    except SystemExit as end:
-        if end.code:
-            print(f"{_prefix(prog)}{_first_sentence(kind, said.getvalue())}", file=sys.stderr)
-        raise
-
-
-def _first_sentence(kind: type[Any], box: str) -> str:
-    """What stands in tyro's box above its first rule, and a hint."""
-    lines = [line.strip("│ ") for line in box.splitlines()]
-    # The title is in the frame, or has a rule below it where the terminal cannot show frames.
-    parts = "\n".join("" if line[:1] in "╭╰" else line for line in lines)
-    texts = [" ".join(part.split()) for part in re.split(r"^[─-]{3,}$", parts, flags=re.MULTILINE)]
-    text = next(iter(texts[0 if "╭" in box else 1 :]), "").rstrip(".") or "not understood"
-    options = ["--" + field.name.replace("_", "-") for field in fields(kind)]
-    wrong = [word.strip(",") for word in text.split() if word.startswith("--")]
-    near = [match for word in wrong for match in get_close_matches(word, options, 1)]
-    if text.startswith("Unrecognized") and near:
-        return f"{text}; did you mean {' '.join(near)}? (--help lists the options)"
-    return f"{text} (--help lists the options)"
-
-
-def _prefix(prog: str) -> str:
-    # A file's own errors come with their place in the prefix already.
-    return f"{prog}: " if ": error: " in prog else f"{prog}: error: "
-
-
-def _error_line(prog: str, error: IiwaDnnError) -> str:
-    # One line, whatever stands in a file's name.
-    return f"{prog}: error: {' '.join(str(error).split())}"
-
-
-def _exit(prog: str, error: IiwaDnnError) -> NoReturn:
-    print(_error_line(prog, error), file=sys.stderr)
-    raise SystemExit(2)
+    """Return a progress bar; it is not shown where standard error is not a terminal."""
+    hidden, in_thousands = True if quiet else None, unit == "step"
+    return tqdm(total=total, unit=unit, unit_scale=in_thousands, dynamic_ncols=True, disable=hidden)

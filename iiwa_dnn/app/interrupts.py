@@ -1,4 +1,4 @@
-"""What a script does when it is told to end: no traceback, whole files, the usual exit code."""
+"""Ctrl-C and SIGTERM in the middle of a command: no traceback, whole files, the usual exit code."""
 
 from __future__ import annotations
 
@@ -10,25 +10,19 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
 
-INTERRUPTED = 130
-"""Exit code after Ctrl-C (SIGINT): 128 and the signal's number."""
-
-TERMINATED = 143
-"""Exit code after SIGTERM, which ``kill`` sends, and systems that shut down."""
-
-_CODES = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
+_CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}  # as of a shell: 128 and the signal's number
 _WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM end what is inside, or a function decorated with it, in order.
+    """Let Ctrl-C and SIGTERM end the block, or a function decorated with it, in order.
 
     Both become an exception, so that half-written files are removed on its way out
     (`iiwa_dnn.files.write_atomically`) and worker processes end.
 
     Raises:
-        SystemExit: A signal came; the code is ``INTERRUPTED`` or ``TERMINATED``.
+        SystemExit: A signal came; the code is 130 after Ctrl-C, 143 after SIGTERM.
     """
     told: list[signal.Signals] = []
 
@@ -37,7 +31,7 @@ def ended_by_signals() -> Iterator[None]:
         warnings.simplefilter("ignore")  # that work is given up is no news
         if number == signal.SIGINT:
             raise KeyboardInterrupt  # as always: some parts clean up at it
-        raise SystemExit(TERMINATED)
+        raise SystemExit(_CODES[told[-1]])
 
     # Python hands signals to the main thread only, and lets no other one ask for them.
     in_charge = threading.current_thread() is threading.main_thread()
@@ -47,7 +41,7 @@ def ended_by_signals() -> Iterator[None]:
     except BaseException:
         if not told:
             raise
-        # Whatever else went wrong on the way out, as in processes that were just being started.
+        # Anything else that went wrong on the way out, as in processes that were being started.
         print(_WORDS[told[0]], file=sys.stderr)
         raise SystemExit(_CODES[told[0]]) from None
     finally:

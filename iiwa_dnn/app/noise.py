@@ -1,58 +1,54 @@
-"""``noise``: the means against noise compared; one sweep, a table, a report."""
+"""``noise``: a sweep over disturbances and countermeasures, with a table and a report."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from iiwa_dnn.app.command_line import list_files, run_command, save_settings
-from iiwa_dnn.app.settings import NoiseSettings
+from iiwa_dnn import checks
+from iiwa_dnn.app.command_line import list_files
+from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.files import prepare_folder, write_json, write_text
+from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.studies import noise_study
 from iiwa_dnn.studies.sweeps import Sweep
 
-
-def study_noise(arguments: Sequence[str] | None = None, prog: str = "noise_study") -> int:
-    """Run every pair of disturbance and countermeasure; the script ``noise_study.py``.
-
-    Args:
-        arguments: Command line without the program's name; None takes the process's own.
-        prog: What the command is called in messages.
-
-    Returns:
-        0: all runs were completed. 1: one was not. 2: bad input, one line on standard error.
-    """
-    return run_command(NoiseSettings, prog, _study, arguments)
+_HEAD = (
+    "countermeasure", "MSE [m²]", "MSE without / with", "max error [m]", "last error [m]",
+    "command [rad/s²]", "motion [rad/s²]",
+)  # fmt: skip
 
 
-def _study(settings: NoiseSettings) -> int:
-    seeds, duration = settings.seeds, settings.duration
+def run(options: NoiseOptions) -> int:
+    """Run every disturbance with every countermeasure, and return the exit code."""
+    seeds, duration = options.seeds, options.duration
     if seeds < 2:
         raise InvalidInputError("seeds", f"must be at least 2, not {seeds}")
-    if not noise_study.SETTLED_AFTER < duration < 1e3:
-        least = noise_study.SETTLED_AFTER
+    least = noise_study.SETTLED_AFTER
+    if not least < duration < 1e3:
         problem = f"must be above {least:g} and below 1000 s, not {duration:g}"
         raise InvalidInputError("duration", problem)
-    folder = prepare_folder(settings.out)
+    checks.integer("workers", 1 if options.workers is None else options.workers, 1)
+    folder = claim_folder(options, resumes=("cells",))
     sweep = Sweep(noise_study.measure, folder / "cells")
     cells = noise_study.cells(seeds, duration)
-    results = sweep.run(cells, workers=settings.workers, quiet=settings.quiet)
+    results = sweep.run(cells, workers=options.workers, quiet=options.quiet)
     rows = noise_study.tabulate(seeds, duration, results)
+    save_settings(options, folder)
     write_json(folder / "noise.json", rows)
     text = _report(rows, seeds, duration)
     write_text(folder / "report.md", text)
-    save_settings(settings, folder)
-    if not settings.quiet:
+    if not options.quiet:
         print(text, end="")
-        if settings.verbose:
+        if options.verbose:
             list_files(folder)
     return 0 if all(row["completed"] for row in rows) else 1
 
 
 def _report(rows: Sequence[Mapping[str, Any]], seeds: int, duration: float) -> str:
-    """The table, one part for each disturbance."""
+    """Return the report: one table for each disturbance."""
     parts = [
         "# Means against noise",
         f"{duration:g} s of the heart at 1e-4 s, {seeds} seeds where there is chance. Errors and "
@@ -62,11 +58,7 @@ def _report(rows: Sequence[Mapping[str, Any]], seeds: int, duration: float) -> s
     ]
     for kind in noise_study.DISTURBANCES:
         cells = [_cells(row) for row in rows if row["disturbance"] == kind]
-        head = (
-            "countermeasure", "MSE [m²]", "MSE without / with", "max error [m]", "last error [m]",
-            "command [rad/s²]", "motion [rad/s²]",
-        )  # fmt: skip
-        parts += [f"## {kind}", markdown_table(head, cells)]
+        parts += [f"## {kind}", markdown_table(_HEAD, cells)]
     return "\n\n".join(parts) + "\n"
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import zipfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,8 @@ import numpy as np
 import qpsolvers
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.app.command_line import run_command
-from iiwa_dnn.app.settings import SolveSettings
+from iiwa_dnn import checks
+from iiwa_dnn.app.options import SolveOptions
 from iiwa_dnn.app.track import CHECKS
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.files import one_line, write_atomically
@@ -24,17 +23,25 @@ from iiwa_dnn.qp.program import QP
 ARRAYS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 
-def solve(arguments: Sequence[str] | None = None, prog: str = "solve") -> int:
-    """Solve the program in a file and print the answer with its residuals.
-
-    Args:
-        arguments: Command line without the program's name; None takes the process's own.
-        prog: What the command is called in messages.
-
-    Returns:
-        0: solved. 1: no answer within the tolerance. 2: bad input, one line on standard error.
-    """
-    return run_command(SolveSettings, prog, _solve, arguments)
+def run(options: SolveOptions) -> int:
+    """Solve the program, print or write its solution with the residuals; return the exit code."""
+    if options.file is None:
+        raise InvalidInputError("FILE", "is missing (--help lists the options)")
+    if options.out is not None and options.out.resolve() == options.file.resolve():
+        raise InvalidInputError("--out", f"is the program's own file {options.file}", options.out)
+    checks.positive("tol", options.tol)
+    qp = load_problem(options.file)
+    solution = solve_problem(qp, tol=options.tol)
+    if options.out is not None and solution.found:
+        # The file's name is taken as it is; numpy would put .npz behind it.
+        parts = {"x": solution.x, "y": solution.y, "z": solution.z, "z_box": solution.z_box}
+        kept: dict[str, Any] = {k: value for k, value in parts.items() if value is not None}
+        write_atomically(options.out, lambda file: np.savez(file, **kept))
+    if not options.quiet:
+        print("\n".join(_lines(qp, solution, options)))
+    elif not solution.found:
+        print(f"{solution.extras['status']}: {_residuals(solution)}", file=sys.stderr)
+    return 0 if solution.found else 1
 
 
 def load_problem(path: Path) -> QP:
@@ -72,41 +79,22 @@ def load_problem(path: Path) -> QP:
     return qp
 
 
-def _solve(settings: SolveSettings) -> int:
-    if settings.tol <= 0.0 or not np.isfinite(settings.tol):
-        raise InvalidInputError("tol", f"must be a finite number above 0, not {settings.tol}")
-    qp = load_problem(settings.file)
-    solution = solve_problem(qp, tol=settings.tol)
-    if settings.out is not None and solution.found:
-        # The file's name is taken as it is; numpy would put .npz behind it.
-        parts = {"x": solution.x, "y": solution.y, "z": solution.z, "z_box": solution.z_box}
-        kept: dict[str, Any] = {k: value for k, value in parts.items() if value is not None}
-        write_atomically(settings.out, lambda file: np.savez(file, **kept))
-    if not settings.quiet:
-        print("\n".join(_lines(qp, solution, settings)))
-    elif not solution.found:
-        said = f"{solution.extras['status']}: {_residuals(solution)}"
-        print(said, file=sys.stderr)
-    return 0 if solution.found else 1
-
-
-def _lines(qp: QP, solution: qpsolvers.Solution, settings: SolveSettings) -> list[str]:
+def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[str]:
     n, m, p = qp.sizes
     extras = solution.extras
     lines = [
         f"program    {n} variables, {m} inequalities, {p} equalities",
         f"status     {extras['status']} after {extras['iterations']:,} linear systems",
-        f"residuals  {_residuals(solution)}, tolerance {settings.tol:.3g}",
+        f"residuals  {_residuals(solution)}, tolerance {options.tol:.3g}",
     ]
     if not solution.found:
         return [*lines, f"last x     {_numbers(extras['last_x'])} (not an answer)"]
     lines += [f"objective  {solution.obj:.12g}", f"x          {_numbers(solution.x)}"]
-    if settings.verbose:
-        for name in ("y", "z", "z_box"):
-            value = getattr(solution, name)
-            if value is not None:
-                lines.append(f"{name:<11}{_numbers(value)}")
-    check = CrossCheck(CHECKS[settings.check])
+    for name in ("y", "z", "z_box") if options.verbose else ():
+        value = getattr(solution, name)
+        if value is not None:
+            lines.append(f"{name:<11}{_numbers(value)}")
+    check = CrossCheck(CHECKS[options.check])
     agreement = check.check(qp, np.asarray(solution.x))
     for i, name in enumerate(check.solvers):
         gap, objective = agreement.solution_gap[0, i], agreement.objective_gap[0, i]
@@ -116,9 +104,8 @@ def _lines(qp: QP, solution: qpsolvers.Solution, settings: SolveSettings) -> lis
 
 
 def _residuals(solution: qpsolvers.Solution) -> str:
-    extras = solution.extras
     named = {"primal": "primal_residual", "dual": "dual_residual", "gap": "duality_gap"}
-    return ", ".join(f"{name} {extras[key]:.3g}" for name, key in named.items())
+    return ", ".join(f"{name} {solution.extras[key]:.3g}" for name, key in named.items())
 
 
 def _numbers(values: ArrayLike | None) -> str:

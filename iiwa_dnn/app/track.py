@@ -1,36 +1,31 @@
-"""``track``: the heart drawn, and what the commands that run an arm share.
-
-Exit code 0: done, and every check agreed. 1: a step disagreed, was not solved, or broke a limit.
-2: bad input, one line on standard error. 130 and 143: ended by Ctrl-C, by SIGTERM.
-"""
+"""``track``: an arm draws a path; and the parts that all commands with an arm share."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files, progress_bar, run_command, save_settings
-from iiwa_dnn.app.settings import Check, TrackSettings
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.files import prepare_folder
+from iiwa_dnn.app.command_line import list_files, progress_bar
+from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.options import ArmOptions, Check, TrackOptions
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.references import Heart
+from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
 from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import Simulation
 from iiwa_dnn.studies import paper
-
-PAPER_START = paper.START
-PAPER_LIMIT = paper.JOINT_LIMIT
 
 CHECKS: dict[Check, tuple[str, ...]] = {
     "proxqp": ("proxqp",),
@@ -39,66 +34,24 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "none": (),
 }
 
+_PATHS = {path.name: path for path in (Heart, Circle, Line, Lissajous)}
+_PATH_OPTIONS = ("scale", "radius", "offset", "amplitudes", "period")
 
-def track_heart(arguments: Sequence[str] | None = None, prog: str = "track_heart") -> int:
-    """Draw the heart, check every step, write the run; the script of the same name.
+# Options that are arguments of a simulation under the same name.
+_HANDED_ON = (
+    "dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "integral_gain",
+    "policy", "seed",
+)  # fmt: skip
 
-    Args:
-        arguments: Command line without the program's name; None takes the process's own.
-        prog: What the command is called in messages.
-
-    Returns:
-        The exit code.
-    """
-    return run_command(TrackSettings, prog, _track, arguments)
-
-
-def _track(settings: TrackSettings) -> int:
-    simulation = _simulation(settings)
-    folder = prepare_folder(settings.out)
-    with progress_bar(simulation.steps, "step", settings.quiet) as bar:
-        record = simulation.run(bar.update)
-    metrics = save_run(record, folder, plots=settings.plots)
-    save_settings(settings, folder)
-    return report_run(metrics, failures(record), folder, settings.quiet, settings.verbose)
+More = Callable[[Record, Path], list[Path]]
+Last = Callable[[Record, Path], None] | None
 
 
-def report_run(
-    metrics: Mapping[str, Any], reasons: Sequence[str], folder: Path, quiet: bool, verbose: bool
-) -> int:
-    """Say how a run went: all of it, or with `quiet` only why it failed.
-
-    Args:
-        metrics: As in metrics.json.
-        reasons: Why it failed (`iiwa_dnn.results.failures.failures`).
-        folder: Where it was written.
-        quiet: Print no summary; the reasons go to standard error.
-        verbose: Name the settings and the files too.
-
-    Returns:
-        The exit code, 1 where there is a reason.
-    """
-    if not quiet:
-        if verbose:
-            print(settings_lines(metrics))
-        print(summary(metrics, reasons))
-        print(f"written to {folder}")
-        if verbose:
-            list_files(folder)
-    elif reasons:
-        print("\n".join(reasons), file=sys.stderr)
-    return 1 if reasons else 0
-
-
-def _simulation(options: TrackSettings) -> Simulation:
-    """The run that the options ask for, every argument checked and nothing written."""
-    robot = load_robot(options.robot, tip=options.tip, locked=options.lock)
-    is_papers = robot.name == "iiwa7"
-    q0 = np.array(options.q0) if options.q0 else start_posture(robot, is_papers)
-    robot = limited(robot, options.joint_limit, is_papers)
+def run(options: TrackOptions) -> int:
+    """Draw the path, check every step, write the run, and return the exit code."""
+    robot, q0 = arm(options, options.lock)
     robot = robot.with_limits(velocity=checks.positive("speed", options.speed) * robot.dq_max)
-    start = Configuration(robot, q0)
-    return Simulation(
+    simulation = Simulation(
         robot,
         DoubleIndicator(
             weight=options.weight,
@@ -107,43 +60,102 @@ def _simulation(options: TrackSettings) -> Simulation:
             orientation=options.orientation,
             kinetic=options.kinetic,
         ),
-        Heart(scale=options.scale).anchored(start),
+        path(options).anchored(Configuration(robot, q0)),
         q0,
-        dt=options.dt,
-        duration=options.duration,
-        mode=options.mode,
-        motion=options.motion,
-        noise=options.noise,
-        noise_at=options.noise_at,
-        filter_window=options.filter_window,
-        integral_gain=options.integral_gain,
-        policy=options.policy,
-        seed=options.seed,
         check=CrossCheck(CHECKS[options.check], options.tolerance),
+        **{name: getattr(options, name) for name in _HANDED_ON},
     )
+    return draw(options, simulation)
 
 
-def start_posture(robot: Robot, is_papers: bool) -> Vector:
-    """Where to start [rad], (n,): the posture known for the robot, or the middle of each range."""
-    known = PAPER_START if is_papers else ARMS[robot.name].start if robot.name in ARMS else ()
+def draw(options: ArmOptions, simulation: Any, more: More | None = None, last: Last = None) -> int:
+    """Carry out a run whose arguments are checked, write it into its folder and print its summary.
+
+    Args:
+        options: Options of the command.
+        simulation: The run; it has ``steps``, and ``run`` takes a function for progress.
+        more: Draws more figures into the folder and returns their files.
+        last: Writes more files into the folder, after the report.
+
+    Returns:
+        The exit code: 1 where a step disagreed, was not solved or broke a limit, else 0.
+    """
+    folder = claim_folder(options)
+    with progress_bar(simulation.steps, "step", options.quiet) as bar:
+        record = simulation.run(bar.update)
+    save_settings(options, folder)
+    metrics = save_run(record, folder, plots=options.plots, more=more)
+    if last is not None:
+        last(record, folder)
+    reasons = failures(record)
+    if not options.quiet:
+        if options.verbose:
+            print(settings_lines(metrics))
+        print(summary(metrics, reasons))
+        print(f"written to {folder}")
+        if options.verbose:
+            list_files(folder)
+    elif reasons:
+        print("\n".join(reasons), file=sys.stderr)
+    return 1 if reasons else 0
+
+
+def path(options: ArmOptions) -> Reference:
+    """Return the path that the options name, before it is anchored.
+
+    Raises:
+        NotFoundError: There is no path of this name.
+        FileError: The CSV file cannot be read, or holds no path.
+        InvalidInputError: An option is out of range, or is given and another path's.
+    """
+    name = options.reference
+    if name in _PATHS:
+        own = [field.name for field in fields(_PATHS[name])]
+    elif name.lower().endswith(".csv"):
+        own = []
+    else:
+        raise NotFoundError("path", name, (*_PATHS, "FILE.csv"))
+    for other in _PATH_OPTIONS:
+        value = getattr(options, other)
+        if other not in own and value != getattr(ArmOptions, other):
+            raise InvalidInputError(f"--{other}", f"is no option of the path {name!r}", value)
+    if name not in _PATHS:
+        return Waypoints.from_csv(name)
+    return _PATHS[name](**{key: getattr(options, key) for key in _PATH_OPTIONS if key in own})
+
+
+def arm(options: ArmOptions, locked: Sequence[str] = ()) -> tuple[Robot, Vector]:
+    """Return the robot with its position limits, and its start posture [rad], (n,)."""
+    robot = load_robot(options.robot, tip=options.tip, locked=locked)
+    q0 = np.array(options.q0) if options.q0 else start_posture(robot)
+    return limited(robot, options.joint_limit), q0
+
+
+def start_posture(robot: Robot) -> Vector:
+    """Return the posture known for the robot, or the middle of each joint's range [rad], (n,)."""
+    starts = {"iiwa7": paper.START, **{name: arm.start for name, arm in ARMS.items()}}
+    known = starts.get(robot.name, ())
     if robot.dof == len(known):
         return np.array(known)
     middle = 0.5 * (robot.q_lower + robot.q_upper)
     return np.where(np.isfinite(middle), middle, 0.0)
 
 
-def limited(robot: Robot, limit: str | None, is_papers: bool) -> Robot:
-    """The robot with the position limits that were asked for."""
+def limited(robot: Robot, limit: str | None = None) -> Robot:
+    """Return the robot with a position limit of every joint [rad], or the data sheet's limits.
+
+    Raises:
+        InvalidInputError: The limit is neither a positive angle nor ``datasheet``.
+    """
     if limit is None:
-        limit = str(PAPER_LIMIT) if is_papers else "datasheet"
+        limit = str(paper.JOINT_LIMIT) if robot.name == "iiwa7" else "datasheet"
     if limit == "datasheet":
         return robot
     try:
         value = float(limit)
     except ValueError:
-        raise InvalidInputError(
-            "--joint-limit", f"must be an angle in rad or 'datasheet', not {limit!r}", limit
-        ) from None
-    if not value > 0:
-        raise InvalidInputError("--joint-limit", f"must be a positive angle, not {limit}", limit)
+        value = 0.0
+    if not value > 0.0:
+        problem = f"must be a positive angle [rad] or 'datasheet', not {limit!r}"
+        raise InvalidInputError("--joint-limit", problem, limit)
     return robot.with_limits(lower=-value, upper=value)

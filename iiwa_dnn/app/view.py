@@ -1,43 +1,35 @@
-"""``view``: the page in the browser; which record, which robot, which address."""
+"""``view``: the page in the browser, for a run or live."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
-from iiwa_dnn.app.command_line import run_command
-from iiwa_dnn.app.live.page import Page, limits_of, scheme_of
-from iiwa_dnn.app.settings import ViewSettings
+import numpy as np
+
+from iiwa_dnn.app.options import ViewOptions
 from iiwa_dnn.app.track import limited, start_posture
+from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot, load_robot
+from iiwa_dnn.schemes import DoubleIndicator
 
 
-def view(
-    arguments: Sequence[str] | None = None,
-    stop: Callable[[], bool] = lambda: False,
-    prog: str = "view",
-) -> int:
-    """Open the page and keep it moving; the script ``view.py``.
-
-    Args:
-        arguments: Command line without the program's name; None takes the process's own.
-        stop: Asked at every tick whether to end; Ctrl-C ends it too.
-        prog: What the command is called in messages.
-
-    Returns:
-        The exit code: 0, or 2 for bad input or a missing package.
-    """
-    return run_command(ViewSettings, prog, lambda settings: _view(settings, stop), arguments)
-
-
-def _view(settings: ViewSettings, stop: Callable[[], bool]) -> int:
-    record = None if settings.run is None else load_run(settings.run)
-    robot, q0 = _robot(record, settings.robot, settings.tip, settings.lock)
-    scheme = None if record is None else scheme_of(record)
-    page = Page(robot, q0, record, scheme, settings.host, settings.port)
+def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
+    """Open the page and keep it moving until `stop` returns True, or Ctrl-C; return 0."""
+    record = None if options.run is None else load_run(options.run)
+    recorded = {} if record is None else record.settings
+    name, tip = options.robot or recorded.get("robot", "iiwa7"), options.tip or recorded.get("tip")
+    robot = load_robot(name, tip=tip, locked=options.lock)
+    if record is None:
+        page = Page(limited(robot), start_posture(robot), host=options.host, port=options.port)
+    elif robot.dof != record.dof:
+        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
+        raise InvalidInputError("--robot", problem, options.robot)
+    else:
+        robot, scheme = limits_of(record, robot), scheme_of(record)
+        page = Page(robot, record.q[0], record, scheme, options.host, options.port)
     print(f"open {page.address} in a browser; Ctrl-C ends it", flush=True)
     try:
         page.run(stop)
@@ -49,7 +41,7 @@ def _view(settings: ViewSettings, stop: Callable[[], bool]) -> int:
 
 
 def load_run(path: Path) -> Record:
-    """The record in a run's folder, or in a file.
+    """Load the record in a run's folder, or in a file.
 
     Raises:
         FileError: If there is none.
@@ -61,17 +53,18 @@ def load_run(path: Path) -> Record:
     return Record.load(path)
 
 
-def _robot(
-    record: Record | None, name: str | None, tip: str | None, locked: Sequence[str]
-) -> tuple[Robot, Vector]:
-    """The robot to show and where it starts, once it is seen to fit the record."""
-    if record is None:
-        robot = load_robot(name or "iiwa7", tip=tip, locked=locked)
-        is_papers = robot.name == "iiwa7"
-        return limited(robot, None, is_papers), start_posture(robot, is_papers)
-    recorded = str(record.settings["robot"])
-    robot = load_robot(name or recorded, tip=tip or record.settings.get("tip"), locked=locked)
-    if robot.dof != record.dof:
-        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
-        raise InvalidInputError("--robot", problem, name)
-    return limits_of(record, robot), record.q[0]
+def scheme_of(record: Record) -> DoubleIndicator:
+    """Return the scheme of a record, without its home; the default where it is of another kind."""
+    settings = dict(record.settings.get("scheme") or {})
+    if settings.pop("name", None) != DoubleIndicator().settings()["name"]:
+        return DoubleIndicator()
+    return DoubleIndicator(**{**settings, "home": None})
+
+
+def limits_of(record: Record, robot: Robot) -> Robot:
+    """Return the robot with the limits of a record, where None is no limit."""
+    lower, upper, speed = (
+        np.array([unlimited if value is None else value for value in record.settings[key]])
+        for key, unlimited in (("q_lower", -np.inf), ("q_upper", np.inf), ("dq_max", np.inf))
+    )
+    return robot.with_limits(lower=lower, upper=upper, velocity=speed)

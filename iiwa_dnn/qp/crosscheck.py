@@ -130,7 +130,9 @@ class CrossCheck:
                 self._ask(name, problem, sizes, points[i, j])
         residuals = np.empty((count, k))
         largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
-        for i, j in np.argwhere(~(residuals <= self.reference_tolerance) & askable[:, np.newaxis]):
+        believed = residuals <= self.reference_tolerance
+        believed[~askable] = True  # nobody is asked
+        for i, j in np.argwhere(~believed):
             second = self._second_opinion(self.solvers[j], programs[i], sizes)
             if second is not None:
                 points[i, j], residuals[i, j] = second

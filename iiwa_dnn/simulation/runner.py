@@ -154,8 +154,8 @@ class Simulation:
             "seed": seed,
             "tol": solver.tol,
             "rho": network.rho,
-            "network": _named(network),
-            "integrator": _named(settler if mode == "converged" else follower),
+            "network": network.settings(),
+            "integrator": (settler if mode == "converged" else follower).settings(),
             "scheme": scheme.settings(),
             "rows": self._rows,
             "reference": reference.settings(),
@@ -344,10 +344,6 @@ class Simulation:
             **self._incidents.arrays(steps),
             wall_time_s=wall_time,
         )
-
-
-def _named(part: Any) -> dict[str, Any]:
-    return part.settings() if hasattr(part, "settings") else {"name": type(part).__name__}
 
 
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")

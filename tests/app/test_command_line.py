@@ -3,37 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
+import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from iiwa_dnn.app.command_line import parse, save_settings
-from iiwa_dnn.app.settings import (
-    NoiseSettings,
-    PaperSettings,
-    PhysicsSettings,
-    SolveSettings,
-    TrackSettings,
-    ViewSettings,
-)
-from iiwa_dnn.app.track import track_heart
+from iiwa_dnn.app.command_line import parse, run_command
+from iiwa_dnn.app.folders import save_settings
+from iiwa_dnn.app.main import run
+from iiwa_dnn.app.options import COMMANDS, TrackOptions
 
-ALL = (
-    NoiseSettings,
-    TrackSettings,
-    PaperSettings,
-    PhysicsSettings,
-    ViewSettings,
-    SolveSettings,
-)
 SHORT = ("--dt", "1e-3", "--duration", "0.05", "--no-plots", "--quiet")
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     """The one line that a refusal prints."""
-    with pytest.raises(SystemExit) as end:
-        parse(TrackSettings, "track", arguments)
-    assert end.value.code == 2
+    code = run_command(TrackOptions, "track", lambda _: pytest.fail("not refused"), arguments)
+    assert code == 2
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("track: error: ")
@@ -41,39 +28,49 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     return captured.err
 
 
-@pytest.mark.parametrize("kind", ALL)
-def test_help_fits_a_screen_and_says_something_of_every_option(
-    kind: type, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_names_the_quantity_and_the_unit_of_every_option(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
     with pytest.raises(SystemExit) as end:
-        parse(kind, "x", ["--help"])
+        parse(COMMANDS[name], "x", ["--help"])
     assert end.value.code == 0
     text = capsys.readouterr().out
-    # The description is left to the terminal to wrap.
-    lines = [part for line in text.splitlines() for part in (line[i : i + 80] for i in
-             range(0, max(len(line), 1), 80))]  # fmt: skip
-    assert len(lines) <= 45
     assert "\x1b" not in text
-    for field in dataclasses.fields(kind):
+    lines = [line for line in text.splitlines() if line.strip("│╭╰╮╯─- ")]
+    rows = [line.strip("│ ") for line in lines]
+    # An option's row, and the rows of its help that follow: at most two of them.
+    starts = [i for i, row in enumerate(rows) if row.startswith("-")]
+    shown = {}
+    for start, end_ in pairwise([*starts, len(rows)]):
+        assert end_ - start <= 3, rows[start]
+        option, _, words = rows[start].partition("  ")
+        shown[option] = " ".join([words.strip(), *rows[start + 1 : end_]])
+    for field in dataclasses.fields(COMMANDS[name]):
         option = field.name.replace("_", "-")
-        rows = [line.strip("│ ") for line in text.splitlines()]
-        shown = [row for row in rows if row.startswith("-") and f"-{option} " in row]
-        assert shown or field.name in ("run", "file"), option
-        assert all(len(row.split("  ", 1)) == 2 for row in shown), option
+        if field.name in ("run", "file", "shell"):
+            assert any(row.startswith(f"{field.name.upper()}  ") for row in rows)
+            continue
+        (words,) = [shown[k] for k in shown if re.search(rf"--(no-)?{option}(?![\w-])", k)]
+        assert words
+        assert not words.startswith("(default"), option
+        quantities = ("_Length", "_Speed", "_Number", "_Vector", "_Push", "_Angles", "_AnyAngle")
+        if field.type in ("Time", "_AnyTime", "_AnyShare", *quantities):
+            assert re.search(r"\[.+\]|share|program's units", words), (option, words)
 
 
 def test_settings_come_back_from_their_file(tmp_path: Path) -> None:
     settings = parse(
-        TrackSettings,
+        TrackOptions,
         "track",
         ["--q0", "-1e-3", "-.5", "2", "--lock", "a b", 'c"d', "--robot", "x/ö.urdf", "--no-plots",
          "--joint-limit", "datasheet", "--noise", "1e-300", "--seed", "7", "--out", "elsewhere"],
     )  # fmt: skip
     file = save_settings(settings, tmp_path)
-    again = parse(TrackSettings, "track", ["--settings", str(file)])
+    again = parse(TrackOptions, "track", ["--settings", str(file)])
     expected = dataclasses.replace(
-        settings, settings=file, robot=str(Path("x/ö.urdf").resolve()), out=Path("runs/heart")
+        settings, settings=file, robot=str(Path("x/ö.urdf").resolve()), out=tmp_path
     )
     assert again == expected
 
@@ -81,10 +78,14 @@ def test_settings_come_back_from_their_file(tmp_path: Path) -> None:
 def test_what_is_given_counts_more_than_the_file(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text('weight = 0.7\nfilter-window = 3\nq0 = [1, 2.5]\nplots = false\nout = "here"\n')
-    settings = parse(TrackSettings, "track", ["--weight", "0.1", "--settings", str(file)])
+    settings = parse(TrackOptions, "track", ["--weight", "0.1", "--settings", str(file)])
     assert (settings.weight, settings.filter_window, settings.q0) == (0.1, 3, (1.0, 2.5))
     assert (settings.plots, settings.out) == (False, Path("here"))
-    assert parse(TrackSettings, "track", [f"--settings={file}", "--plots"]).plots
+    assert parse(TrackOptions, "track", [f"--settings={file}", "--plots"]).plots
+    # Without a place of its own, a run is written beside its file.
+    file.write_text("quiet = true")
+    settings = parse(TrackOptions, "track", [f"--settings={file}", "-q", "-v", "--no-plots"])
+    assert (settings.out, settings.quiet, settings.verbose) == (tmp_path, True, True)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +97,9 @@ def test_what_is_given_counts_more_than_the_file(tmp_path: Path) -> None:
         ("[weight]\nxi = 1", ("weight must be",)),
         ("weight = true", ("weight must be",)),
         ("plots = 1", ("plots must be true or false",)),
-        ("seed = 1.5", ("--seed", "'1.5'")),
+        ("seed = 1.5", ("--seed: must be a whole number", "'1.5'")),
+        ('command = "noise"', ("'noise'", "'track'")),
+        ("overwrite = true", ("no setting", "'overwrite'")),
         ('mode = "slow"', ("'slow'", "--mode")),
         ("help = true", ("no setting", "'help'")),
         ('settings = "x"', ("no setting", "'settings'")),
@@ -119,17 +122,42 @@ def test_a_missing_file_and_one_that_is_no_text(
     assert "TOML" in refused(capsys, "--settings", str(tmp_path / "bytes.toml"))
 
 
-def test_hints(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "did you mean --weight?" in refused(capsys, "--wieght", "3")
-    assert "'converged'" in refused(capsys, "--mode", "konverged")
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--wieght", "3"], "no option '--wieght'; did you mean: --weight"),
+        (["--wieght=3"], "no option '--wieght=3'; did you mean: --weight"),
+        (["--qqq"], "no option '--qqq' (--help lists the options)"),
+        (["--mode", "konverged"], "--mode: must be one of converged, continuous, not 'konverged'"),
+        (["--dt", "fast"], "--dt: must be a number, not 'fast'"),
+        (["--duration", "long"], "--duration: must be a number, not 'long'"),
+        (["--seed", "1.5"], "--seed: must be a whole number, not '1.5'"),
+        (["--q0", "0", "up"], "--q0: must be numbers, not '0 up'"),
+        (["--offset", "1", "2", "--reference", "line"], "offset: must have shape (3,)"),
+        (["--weight"], "--weight: a value is missing"),
+        (["--weight", "-q"], "--weight: a value is missing"),
+        (["--weight", "--dt", "1e-3"], "--weight: a value is missing"),
+        (["--weight", "-x"], "not understood: --weight -x"),
+        (["--no-plots", "3"], "one argument too many: '3'"),
+    ],
+)
+def test_a_wrong_word_is_named_in_one_line(
+    arguments: list[str], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("track", [*arguments, "--out", str(tmp_path / "run")], prog="track") == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"track: error: {words}")
+    assert captured.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_run_is_repeated_bit_for_bit(tmp_path: Path) -> None:
     # OSQP repeats itself to the last digit, ProxQP does not.
     chosen = ("--noise", "0.01", "--seed", "5", "--filter-window", "4", "--check", "osqp")
-    assert track_heart([*SHORT, *chosen, "--weight", "0.3", "--out", str(tmp_path / "a")]) == 0
+    assert run("track", [*SHORT, *chosen, "--weight", "0.3", "--out", str(tmp_path / "a")]) == 0
     file = str(tmp_path / "a" / "settings.toml")
-    assert track_heart(["--settings", file, "-q", "--out", str(tmp_path / "b")]) == 0
+    assert run("track", ["--settings", file, "-q", "--out", str(tmp_path / "b")]) == 0
     for name in ("record.npz", "settings.toml"):
         assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
 
@@ -139,7 +167,7 @@ def test_quiet_and_verbose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     out = ("--out", str(tmp_path), "--check", "none")
     said = []
     for more in ("-q", "--seed=0", "-v"):
-        assert track_heart([*loud, *out, more]) == 0
+        assert run("track", [*loud, *out, more]) == 0
         captured = capsys.readouterr()
         assert captured.err == ""
         said.append(captured.out)
@@ -149,7 +177,7 @@ def test_quiet_and_verbose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert "verdict" in said[2]
     assert "record.npz" in said[2]
     assert "initial joint positions" in said[2]
-    assert track_heart(["--robot", "iiwa8", "-v"]) == 2
+    assert run("track", ["--robot", "iiwa8", "-v"]) == 2
     error = capsys.readouterr().err
     assert error.startswith("Traceback")
-    assert error.splitlines()[-1] == ("track_heart: error: no robot 'iiwa8'; did you mean: iiwa7")
+    assert error.splitlines()[-1] == "iiwa-dnn track: error: no robot 'iiwa8'; did you mean: iiwa7"

@@ -10,9 +10,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core import event
 
 import iiwa_dnn
-from iiwa_dnn.app.main import COMMANDS, main
+from iiwa_dnn.app.main import main
+from iiwa_dnn.app.options import COMMANDS
 
 SCRIPTS = {"track": "track_heart"}
 
@@ -32,8 +34,8 @@ def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> Non
     for arguments in ([], ["--help"], ["-h"]):
         assert main(arguments) == 0
         text = capsys.readouterr().out
-        assert all(f"\n  {name} " in text for name in COMMANDS)
-        assert text.count("\n") < 24
+        assert all(re.search(rf"^│? +• {name} +\w", text, re.MULTILINE) for name in COMMANDS)
+        assert text.count("\n") < 32
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"iiwa-dnn {iiwa_dnn.__version__}\n"
 
@@ -68,9 +70,7 @@ def test_a_command_and_its_script_have_one_help(
 def test_an_unknown_command_is_one_line(
     arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(SystemExit) as end:
-        main(arguments)
-    assert end.value.code == 2
+    assert main(arguments) == 2
     error = capsys.readouterr().err
     assert words in error
     assert error.count("\n") == 1
@@ -93,6 +93,27 @@ def test_completion_knows_commands_and_options() -> None:
     checked = subprocess.run([bash, "-n"], input=done.stdout, text=True, capture_output=True)
     assert (checked.returncode, checked.stderr) == (0, "")
     assert all(name in done.stdout for name in (*COMMANDS, "--filter-window"))
+
+
+def test_after_the_warm_up_runs_compile_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["warm-up"]) == 0
+    said = capsys.readouterr()
+    assert re.fullmatch(r"compiled in \d+ s\n", said.out)
+    assert said.err == ""  # the progress line is for terminals
+    short = ("--dt", "1e-3", "--duration", "0.02", "-q", "--no-plots", "--overwrite")
+    runs = (
+        ((), 0),
+        (("--noise", "0.01", "--filter-window", "10", "--orientation", "none"), 0),
+        (("--mode", "continuous", "--orientation", "block"), 0),
+        (("--motion", "rk4", "--kinetic", "inertia", "--reference", "circle"), 0),
+        (("--scale", "0.1", "--speed", "0.01"), 1),  # steps without a solution
+    )
+    with event.install_recorder("numba:compile") as compiled:
+        for arguments, code in runs:
+            assert main(["track", *short, *arguments, "--out", str(tmp_path)]) == code
+    assert [entry.data["dispatcher"] for _, entry in compiled.buffer] == []
 
 
 def test_importing_the_package_does_not_import_the_command_line() -> None:

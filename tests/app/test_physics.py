@@ -10,7 +10,7 @@ import pytest
 
 from helpers_physics import needs_opengl, run_python
 from iiwa_dnn import Record
-from iiwa_dnn.app.physics import simulate_physics
+from iiwa_dnn.app.main import main
 from iiwa_dnn.robot import offscreen
 
 QUICK = ("--duration", "0.05", "--quiet", "--no-plots")
@@ -27,7 +27,7 @@ def mujoco():
 def run(capsys, *arguments: str) -> tuple[int, str, str]:
     """Exit code, standard output and standard error."""
     try:
-        code = simulate_physics(arguments)
+        code = main(["physics", *arguments])
     except SystemExit as end:
         code = int(end.code or 0)
     out, err = capsys.readouterr()
@@ -67,7 +67,8 @@ def test_disturbances_one_by_one(capsys, tmp_path):
         "mass_error": 0.1, "friction": 0.02, "encoder_noise": 1e-5, "encoder_bits": 18,
         "delay": 0, "push": None,
     }  # fmt: skip
-    assert run(capsys, *arguments)[0] == 0
+    assert run(capsys, *arguments)[0] == 2  # another run lies there
+    assert run(capsys, *arguments, "--overwrite")[0] == 0
     settings = Record.load(tmp_path / "record.npz").settings["physics"]["disturbances"]
     assert not any(settings.values())
     assert sorted(path.name for path in tmp_path.iterdir()) == [
@@ -137,8 +138,8 @@ def test_without_the_extra_one_line_says_what_to_install(tmp_path, missing, argu
             pytest.skip("no OpenGL: on Debian, apt-get install libosmesa6")
     result = run_python(
         f"import sys; sys.modules['{missing}'] = None\n"
-        "from iiwa_dnn.app.physics import simulate_physics\n"
-        f"sys.exit(simulate_physics({[*arguments, '--out', str(tmp_path)]!r}))"
+        "from iiwa_dnn.app.main import main\n"
+        f"sys.exit(main({['physics', *arguments, '--out', str(tmp_path)]!r}))"
     )
     assert result.returncode == 2
     assert "pip install 'iiwa-dnn[sim]'" in result.stderr

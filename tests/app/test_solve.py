@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import qpsolvers
 
-from iiwa_dnn.app.solve import solve
+from iiwa_dnn.app.main import run
 
 # min ||x - c||^2 / 2 on a line with bounds.
 PROGRAM: dict[str, Any] = {
@@ -29,7 +29,7 @@ def test_the_answer_is_printed_and_written(
 ) -> None:
     out = tmp_path / "answer"
     file = saved(tmp_path, **PROGRAM)
-    assert solve([file, "--check", "both", "-v", "--out", str(out)]) == 0
+    assert run("solve", [file, "--check", "both", "-v", "--out", str(out)]) == 0
     lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
     problem = qpsolvers.Problem(**{name: np.array(part) for name, part in PROGRAM.items()})
     expected = qpsolvers.solve_problem(problem, solver="proxqp", eps_abs=1e-11)
@@ -44,24 +44,24 @@ def test_the_answer_is_printed_and_written(
 
 def test_inequalities_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = saved(tmp_path, P=np.eye(2), q=np.zeros(2), G=[[-1.0, -1.0]], h=[-2.0])
-    assert solve([file]) == 0
+    assert run("solve", [file]) == 0
     assert "x          1 1\n" in capsys.readouterr().out
 
 
 def test_no_solution_is_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = saved(tmp_path, **{**PROGRAM, "b": [5.0]})
     out = tmp_path / "answer"
-    assert solve([file, "--out", str(out)]) == 1
+    assert run("solve", [file, "--out", str(out)]) == 1
     assert "not an answer" in capsys.readouterr().out
     assert not out.exists()
-    assert solve([file, "-q"]) == 1
+    assert run("solve", [file, "-q"]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("primal infeasible: primal ")
 
 
 def test_quiet_prints_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert solve([saved(tmp_path, **PROGRAM), "-q"]) == 0
+    assert run("solve", [saved(tmp_path, **PROGRAM), "-q"]) == 0
     assert capsys.readouterr() == ("", "")
 
 
@@ -80,9 +80,9 @@ def test_quiet_prints_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 def test_bad_programs_are_one_line_and_2(
     change: dict[str, Any], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert solve([saved(tmp_path, **{**PROGRAM, **change})]) == 2
+    assert run("solve", [saved(tmp_path, **{**PROGRAM, **change})]) == 2
     error = capsys.readouterr().err
-    assert error.startswith("solve: error: ")
+    assert error.startswith("iiwa-dnn solve: error: ")
     assert words in error
     assert error.count("\n") == 1
 
@@ -95,7 +95,15 @@ def test_what_is_no_archive(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     (tmp_path / "empty.npz").write_bytes(b"")
     saved(tmp_path, P=np.eye(2))
     for name in ("one.npy", "text.npz", "half.npz", "empty.npz", "none.npz", ".", "qp.npz"):
-        assert solve([str(tmp_path / name)]) == 2, name
+        assert run("solve", [str(tmp_path / name)]) == 2, name
         assert capsys.readouterr().err.count("\n") == 1, name
-    assert solve([str(whole), "--tol", "0"]) == 2
-    assert "tol" in capsys.readouterr().err
+    for arguments, words in (
+        ([str(whole), "--tol", "0"], "tol"),
+        ([], "FILE: is missing"),
+        ([str(whole), str(whole)], "one argument too many"),
+        ([str(whole), "--out", str(tmp_path / "." / "qp.npz")], "the program's own file"),
+    ):
+        assert run("solve", arguments) == 2
+        error = capsys.readouterr().err
+        assert words in error
+        assert error.count("\n") == 1

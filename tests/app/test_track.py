@@ -18,7 +18,7 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0, dh_pose
 from iiwa_dnn.app import track as cli
-from iiwa_dnn.app.track import track_heart
+from iiwa_dnn.app.main import run as run_command
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution
@@ -33,7 +33,7 @@ QUICK = [*SHORT, "--no-plots"]
 def call(arguments: list[str]) -> int:
     """The exit code, whether the parser ends the process or the function returns."""
     try:
-        return track_heart(arguments)
+        return run_command("track", arguments, prog="track_heart")
     except SystemExit as end:
         return int(str(end.code))
 
@@ -218,7 +218,7 @@ def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.Mo
     )
     expected = {
         "dt": 1e-4,
-        "duration": 10.0,
+        "duration": None,  # the reference's
         "mode": "converged",
         "motion": "euler",
         "noise": 0.0,
@@ -226,6 +226,7 @@ def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.Mo
         "seed": 0,
     }
     assert expected.items() <= asked.items()
+    assert asked["reference"].duration == 10.0
     assert (asked["check"].solvers, asked["check"].tolerance) == (("proxqp",), 1e-6)
 
 
@@ -251,6 +252,49 @@ def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
     position, _ = dh_pose(np.insert(record["q"], 2, 0.0, axis=1))
     np.testing.assert_allclose(record["position"], position, rtol=0, atol=1e-12)
     assert metrics["max_position_error_m"] < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "far"),
+    [
+        ("circle", {"radius": 0.03}, [-0.06, 0.0, 0.0]),
+        ("line", {"offset": [0.0, -0.05, 0.02]}, [0.0, -0.05, 0.02]),
+        ("lissajous", {"amplitudes": [0.02, 0.01, 0.03]}, [0.0, 0.0, 0.0]),
+        ("heart", {"scale": 1e-3}, [0.0, -0.022, 0.0]),
+    ],
+)
+def test_paths(name: str, arguments: dict[str, Any], far: list[float], tmp_path: Path) -> None:
+    words = [
+        word
+        for key, value in arguments.items()
+        for word in (f"--{key}", *map(str, value if isinstance(value, list) else [value]))
+    ]
+    slow = ("--dt", "2e-3", "--duration", "2.5", "--check", "none")
+    record, metrics = run(tmp_path, "--reference", name, "--period", "5", *words, *slow)
+    expected = {"name": name, "period": 5.0, **arguments}
+    assert expected.items() <= metrics["settings"]["reference"].items()
+    # Half a period from the start, as each path's own formula has it.
+    moved = record["position"][-1] - record["position"][0]
+    np.testing.assert_allclose(moved, far, rtol=0, atol=2e-5)
+    # The run is repeated from its settings, beside which it is written.
+    again = call(["--settings", str(tmp_path / "settings.toml"), "-q"])
+    assert again == 0
+    np.testing.assert_array_equal(results(tmp_path)[0]["q"], record["q"])
+
+
+def test_a_path_from_a_csv_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = ["t,x,y,z", "0,0,0,0", "0.1,0.002,0,-0.001", "0.2,0.003,0.001,0"]
+    (tmp_path / "path.csv").write_text("\n".join(rows))
+    monkeypatch.chdir(tmp_path)
+    csv = ["--dt", "1e-3", "--no-plots", "--reference", "path.csv", "--out", "run"]
+    assert call(csv) == 0
+    record, metrics = results(tmp_path / "run")
+    assert metrics["steps"] == 200  # its own duration
+    moved = record["position"][[100, -1]] - record["position"][0]
+    np.testing.assert_allclose(moved, [[2e-3, 0, -1e-3], [3e-3, 1e-3, 0]], rtol=0, atol=1e-5)
+    # From anywhere: the file's path is kept in full.
+    monkeypatch.chdir(tmp_path / "run")
+    assert call(["--settings", "settings.toml", "-q"]) == 0
 
 
 # Exit code 1
@@ -419,6 +463,11 @@ def nan_in_urdf(folder: Path) -> list[str]:
     return written(folder, text.replace('xyz="0 0 0.1925"', 'xyz="0 nan 0.1925"'))
 
 
+def bad_csv(folder: Path) -> list[str]:
+    (folder / "path.csv").write_text("x,y,z\n0,0,0\n")
+    return ["--reference", str(folder / "path.csv")]
+
+
 def below_a_file(folder: Path) -> list[str]:
     (folder / "file").write_text("in the way")
     return ["--out", str(folder / "file" / "run")]
@@ -505,6 +554,15 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "an argument too many": (["heart"], "heart"),
     "an option without its value": (["--weight"], "--weight"),
     "continuous and RK4": (["--mode", "continuous", "--motion", "rk4"], "continuous"),
+    "unknown path": (["--reference", "hart"], "no path 'hart'; did you mean: heart"),
+    "no file of points": (["--reference", "none.csv"], "none.csv: No such file"),
+    "a bad file of points": (bad_csv, "line 1: the header must be t,x,y,z"),
+    "another path's option": (["--radius", "0.1"], "--radius: is no option of the path 'heart'"),
+    "period 0": (["--period", "0"], "period"),
+    "radius 0": (["--reference", "circle", "--radius", "0"], "radius"),
+    "offset 0": (["--reference", "line", "--offset", "0", "0", "0"], "offset"),
+    "offset too short": (["--reference", "line", "--offset", "1"], "offset"),
+    "amplitudes 0": (["--reference", "lissajous", "--amplitudes", "0", "0", "0"], "amplitudes"),
     "out below a file": (below_a_file, "file"),
     "out a file": (a_file, "file"),
 }
@@ -550,7 +608,7 @@ def test_a_full_or_broken_disk_is_one_line_and_keeps_the_old_run(
         raise OSError(code, os.strerror(code))
 
     monkeypatch.setattr(os, "fsync", fail)  # where the system tells of it at the latest
-    assert call([*QUICK, "--seed", "1", "--out", str(tmp_path)]) == 2
+    assert call([*QUICK, "--seed", "1", "--overwrite", "--out", str(tmp_path)]) == 2
     captured = capsys.readouterr()
     assert captured.err.count("\n") == 1
     assert os.strerror(code) in captured.err

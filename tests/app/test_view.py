@@ -11,8 +11,9 @@ import pytest
 from helpers_physics import heart_without_physics, papers_robot, run_python
 from helpers_records import make_record
 from iiwa_dnn import Configuration, DoubleIndicator, PseudoInverse, load_robot
-from iiwa_dnn.app.live.page import limits_of, scheme_of
-from iiwa_dnn.app.view import view
+from iiwa_dnn.app.command_line import run_command
+from iiwa_dnn.app.options import ViewOptions
+from iiwa_dnn.app.view import limits_of, run, scheme_of
 
 needs_viser = pytest.mark.usefixtures("viser")
 
@@ -43,7 +44,9 @@ def opened(capsys, *arguments: str) -> tuple[int, str, str]:
         return len(asked) > 1 or bool(asked.append(""))
 
     try:
-        code = view((*arguments, "--port", "0"), stop)
+        code = run_command(
+            ViewOptions, "view", lambda options: run(options, stop), (*arguments, "--port", "0")
+        )
     except SystemExit as end:
         code = int(end.code or 0)
     out, err = capsys.readouterr()
@@ -63,7 +66,7 @@ def test_ctrl_c_ends_it(capsys, run_folder):
     def interrupt() -> bool:
         raise KeyboardInterrupt
 
-    assert view((str(run_folder), "--port", "0"), interrupt) == 0
+    assert run(ViewOptions(run_folder, port=0), interrupt) == 0
 
 
 @needs_viser
@@ -97,7 +100,7 @@ def test_a_folder_without_a_run_and_a_robot_that_does_not_fit(capsys, tmp_path, 
 def test_without_the_extra_one_line_says_what_to_install():
     result = run_python(
         "import sys; sys.modules['viser'] = None\n"
-        "from iiwa_dnn.app.view import view; sys.exit(view([]))"
+        "from iiwa_dnn.app.main import main; sys.exit(main(['view']))"
     )
     assert result.returncode == 2
     assert "pip install 'iiwa-dnn[view]'" in result.stderr

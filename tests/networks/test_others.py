@@ -19,8 +19,8 @@ from iiwa_dnn import (
     ProjectionNetwork,
     Status,
 )
-from iiwa_dnn.app.track import PAPER_START
 from iiwa_dnn.networks import Network
+from iiwa_dnn.studies.paper import START as PAPER_START
 
 OTHERS = [DualNetwork(), PrimalDualNetwork()]
 NETWORKS = [ProjectionNetwork(), ProjectionNetwork(primal_projection=False), *OTHERS]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from helpers_simulation import heart, paper_start, run
-from iiwa_dnn.app.noise import study_noise
+from iiwa_dnn.app.main import main
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import VelocityDisturbance
 from iiwa_dnn.studies import noise_study
@@ -65,14 +65,14 @@ def test_the_script_writes_a_report_and_goes_on_where_it_was(
         {name: noise_study.COUNTERMEASURES[name] for name in few},
     )
     arguments = ["--seeds", "2", "--duration", "1.1", "--workers", "1", "--out", str(tmp_path)]
-    assert study_noise(arguments) == 0
+    assert main(["noise", *arguments]) == 0
     first = capsys.readouterr().out
     assert first.count("| gain |") == len(noise_study.DISTURBANCES)
     assert (tmp_path / "report.md").read_text() == first
     cells = len(list((tmp_path / "cells").glob("*.json")))
     assert cells == 2 * (4 + 2 * 2)
     before = {path: path.stat().st_mtime_ns for path in (tmp_path / "cells").iterdir()}
-    assert study_noise(arguments) == 0
+    assert main(["noise", *arguments]) == 0
     assert capsys.readouterr().out == first
     assert {path: path.stat().st_mtime_ns for path in (tmp_path / "cells").iterdir()} == before
 
@@ -83,7 +83,8 @@ def test_the_script_writes_a_report_and_goes_on_where_it_was(
 def test_bad_input_is_one_line(
     bad: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert study_noise([*bad, "--out", str(tmp_path / "run")]) == 2
+    assert main(["noise", *bad, "--out", str(tmp_path / "run")]) == 2
     captured = capsys.readouterr()
     assert captured.err.count("\n") == 1
-    assert captured.err.startswith("noise_study: error: ")
+    assert not (tmp_path / "run").exists()
+    assert captured.err.startswith("iiwa-dnn noise: error: ")

@@ -1,23 +1,26 @@
-"""What the page says in words and bars: pure functions that return HTML."""
+"""Words and bars on the page: pure functions that return HTML."""
 
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from iiwa_dnn.results.record import FloatArray
+
+PERIOD = 0.1
+"""Time between two updates of words and bars [s]; the robot moves at every tick."""
 
 _NEAR = 0.9  # share of the way from the middle to a limit from which on a bar is red
 _ROW = "display:flex;align-items:center;gap:6px;margin:3px 0;font-size:12px"
 
 
 def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
-    """Joint angles as marks on bars that reach from limit to limit.
+    """Draw joint positions as marks on bars that reach from limit to limit.
 
     Args:
-        q: Joint angles [rad], (n,).
+        q: Joint positions [rad], (n,).
         lower: Lower limits [rad], (n,); infinite for none.
         upper: Upper limits [rad], (n,).
 
@@ -26,11 +29,10 @@ def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
     """
     rows = []
     for i, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True), 1):
+        share, ends, near = 0.5, ("-", "-"), False
         if np.isfinite(low) and np.isfinite(high):
             share = (angle - low) / (high - low)
             ends, near = (f"{low:.2f}", f"{high:.2f}"), abs(2.0 * share - 1.0) > _NEAR
-        else:
-            share, ends, near = 0.5, ("-", "-"), False
         place = 100.0 * float(np.clip(share, 0.0, 1.0))
         colour = "#d6001c" if near else "#1c7ed6"
         rows.append(
@@ -47,7 +49,7 @@ def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
 
 
 def facts(values: Mapping[str, str]) -> str:
-    """Named values, one a row, as HTML; the text may hold anything."""
+    """Return named values, one a row, as HTML; the text may hold anything."""
     rows = "".join(
         f'<div style="{_ROW}"><span style="flex:1;color:#666">{html.escape(name)}</span>'
         f'<b style="font-variant-numeric:tabular-nums">{html.escape(value)}</b></div>'
@@ -57,13 +59,8 @@ def facts(values: Mapping[str, str]) -> str:
 
 
 def length(metres: float) -> str:
-    """A length in the unit that suits its size."""
+    """Return a length in the unit that suits its size."""
     for unit, size in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
         if abs(metres) >= size:
             return f"{metres / size:.3g} {unit}"
     return f"{metres:.2g} m"
-
-
-def limits(values: Sequence[float | None], unlimited: float) -> FloatArray:
-    """Limits out of a record's settings, (n,); None there is no limit."""
-    return np.array([unlimited if value is None else value for value in values])

@@ -11,7 +11,6 @@ from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
 
-DESIRED_COLOUR, DRAWN_COLOUR = (70, 80, 100), (220, 0, 30)
 _PIECES = 400  # straight pieces that a path is drawn with, at most
 
 
@@ -51,7 +50,7 @@ class Stage:
         self._lines: dict[str, Any] = {}
 
     def show(self, q: FloatArray) -> None:
-        """Move the robot to joint angles (n,) [rad]."""
+        """Move the robot to joint positions (n,) [rad]."""
         with self.server.atomic():
             poses = joint_poses(self.robot, q, self._data)
             for joint, pose in zip(self._joints, poses, strict=True):
@@ -60,14 +59,7 @@ class Stage:
     def line(
         self, name: str, points: FloatArray, colour: tuple[int, int, int], width: float
     ) -> None:
-        """Draw a path, or draw it anew.
-
-        Args:
-            name: What it is called.
-            points: The path [m], (M, 3).
-            colour: Red, green, blue, 0 to 255.
-            width: Its width [pixel].
-        """
+        """Draw a path through points (M, 3) [m], or draw it anew; its width is in pixels."""
         points = points[np.linspace(0, len(points) - 1, min(len(points), _PIECES + 1)).astype(int)]
         pieces = np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
         if name in self._lines:
@@ -96,6 +88,6 @@ class Stage:
 
 
 def wxyz(rotation: FloatArray) -> FloatArray:
-    """A rotation (3, 3) as the quaternion [w, x, y, z] that viser takes."""
+    """Return a rotation (3, 3) as the quaternion [w, x, y, z] that viser takes."""
     x, y, z, w = pin.Quaternion(rotation).coeffs()
     return np.array([w, x, y, z])

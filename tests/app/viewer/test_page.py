@@ -13,7 +13,7 @@ import pytest
 from helpers_browser import needs_browser, open_browser, picture, requested, wait_for
 from helpers_physics import START, heart_without_physics, papers_robot
 from iiwa_dnn import InvalidInputError
-from iiwa_dnn.app.live.page import Page
+from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.robot.shapes import joint_poses
 
 pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import pytest
 
-from iiwa_dnn.app.viewer.playback import Playback
+from iiwa_dnn.app.viewer.replay import Playback
 
 
 def test_it_stands_still_until_it_is_told_to_play():
     playback = Playback(0.0, 10.0)
     playback.advance(3.0)
     assert playback.time == 0.0
-    playback.play()
+    playback.toggle()
     playback.advance(3.0)
     assert playback.time == 3.0
-    playback.pause()
+    playback.toggle()
     playback.advance(3.0)
     assert playback.time == 3.0
 
@@ -22,7 +22,7 @@ def test_it_stands_still_until_it_is_told_to_play():
 @pytest.mark.parametrize("speed", [0.1, 1.0, 5.0])
 def test_speed(speed):
     playback = Playback(2.0, 10.0, 2.0, speed)
-    playback.play()
+    playback.toggle()
     playback.advance(1.0)
     assert playback.time == pytest.approx(2.0 + speed)
 

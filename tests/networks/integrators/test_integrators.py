@@ -17,7 +17,7 @@ from iiwa_dnn import (
     ProjectionNetwork,
     load_robot,
 )
-from iiwa_dnn.app.track import PAPER_START
+from iiwa_dnn.studies.paper import START as PAPER_START
 
 
 def heart_qp(orientation: str = "so3") -> QP:

@@ -16,6 +16,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Target
@@ -30,6 +31,7 @@ TIP_SPEED, TIP_RATE = 0.25, 1.0
 LEAST_SINGULAR_VALUE = 0.05
 """Of the Jacobian's: below it, leaving at 0.1 m/s would ask for 2 rad/s of the joints."""
 
+_GAINS = ("drift_gain", "position_gain", "orientation_gain", "limit_gain")
 _SHARES = (1.0, 0.3, 0.1, 0.03, 0.0)
 _AT_REST = np.zeros(3)
 
@@ -71,7 +73,8 @@ class Follower:
             robot: The robot.
             q0: Joint positions at the start [rad], (n,); also the posture to come back to, where
                 the scheme has none.
-            scheme: Weight, gains and kinetic index; None takes the defaults.
+            scheme: Weight, gains and kinetic index; None takes the defaults. Gains above 1 / dt,
+                as a run of a shorter period may have, are lowered to it.
             dt: Control period [s].
 
         Raises:
@@ -82,6 +85,8 @@ class Follower:
         start = Configuration(robot, q0, self._scratch)
         self._q = start.q
         scheme = DoubleIndicator() if scheme is None else scheme
+        lowered = {name: min(getattr(scheme, name), 1.0 / dt) for name in _GAINS}
+        scheme = replace(scheme, **lowered)
         self._controller = Controller(robot, scheme.anchored(start), dt=dt, policy="stop")
         self._command: Command | None = None
         self._level = 0  # which share of the error to try first
@@ -101,8 +106,13 @@ class Follower:
         """Change parameters of the scheme: ``weight``, ``position_gain`` and so on.
 
         Raises:
-            InvalidInputError: If one is out of range; nothing has changed then.
+            InvalidInputError: If one is out of range; nothing has changed then. A gain must be at
+                most 1 / dt: above it, one period's step overshoots the error that it corrects.
         """
+        for name in _GAINS:
+            if parameters.get(name, 0.0) * self.dt > 1.0:
+                most = f"must be at most 1 / dt = {1.0 / self.dt:g} 1/s, not {parameters[name]:g}"
+                raise InvalidInputError(name, most, parameters[name])
         self._controller.scheme = replace(self.scheme, **parameters)  # type: ignore[arg-type]
 
     def step(self, position: FloatArray, rotation: FloatArray) -> FollowerState:

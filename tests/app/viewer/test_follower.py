@@ -8,9 +8,8 @@ import pytest
 
 from helpers_physics import START, papers_robot
 from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, InvalidInputError
-from iiwa_dnn.app.live import Follower
-from iiwa_dnn.app.live.follower import TIP_RATE, TIP_SPEED
-from iiwa_dnn.app.live.panel import describe
+from iiwa_dnn.app.viewer.follower import TIP_RATE, TIP_SPEED, Follower
+from iiwa_dnn.app.viewer.live import describe
 
 
 @pytest.fixture
@@ -76,6 +75,13 @@ def test_tuning(robot):
     with pytest.raises(InvalidInputError, match="weight"):
         follower.tune(weight=2.0)
     assert follower.scheme.weight == 0.9
+    # Above 1 / dt, a step of a period would overshoot.
+    with pytest.raises(InvalidInputError, match=r"position_gain: must be at most 1 / dt = 200 1/s"):
+        follower.tune(position_gain=1e4)
+    assert follower.scheme.position_gain == 3.0
+    follower.tune(position_gain=200.0)
+    quick = Follower(robot, START, DoubleIndicator(drift_gain=1e4, limit_gain=1e3)).scheme
+    assert (quick.drift_gain, quick.limit_gain) == (200.0, 200.0)
     # A smaller gain: a slower approach.
     start = Configuration(robot, START)
     position = start.position + np.array([0.0, 0.0, 0.02])

@@ -1,0 +1,106 @@
+"""Folders of runs: each belongs to the run that its settings file describes.
+
+That run may write it again, no other one may unasked.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+from dataclasses import fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from iiwa_dnn.app.command_line import read_settings
+from iiwa_dnn.app.options import RunOptions
+from iiwa_dnn.errors import FileError, IiwaDnnError
+from iiwa_dnn.files import one_line, prepare_folder, write_text
+
+SETTINGS_FILE = "settings.toml"
+"""Name of the settings in a run's folder."""
+
+# They say how a run is shown and kept, not what it is, and stay out of its settings file.
+_NOT_KEPT = {"settings", "out", "overwrite", "quiet", "verbose"}
+# They stand in the file, but a run with other values is still the same run.
+_NOT_COMPARED = {"plots", "pictures", "video", "workers", "dask"}
+
+
+def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:
+    """Prepare the folder of a run, unless it holds anything but an earlier pass of the same run.
+
+    Args:
+        options: Options of the run; with ``overwrite`` the folder may hold anything.
+        resumes: Names in the folder from which a sweep goes on. A sweep of another size may go on
+            in the same folder, since its finished cells stay.
+
+    Returns:
+        The folder.
+
+    Raises:
+        FileError: The folder holds something else, or cannot be written to.
+    """
+    folder = options.out
+    if folder.is_dir() and not options.overwrite:
+        try:
+            held = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
+        except OSError as error:
+            raise FileError(folder, f"cannot be read ({one_line(error)})") from error
+        if options.settings is not None and options.settings.parent.resolve() == folder.resolve():
+            held -= {options.settings.name} - {SETTINGS_FILE}
+        there = _values_in(folder, options)
+        own = there is not None and (bool(resumes) or _same(there, _values(options)))
+        if held - set(resumes) and not own:
+            hint = "choose another --out, or --overwrite"
+            raise FileError(folder, f"holds another run or other files: {hint}")
+    return prepare_folder(folder)
+
+
+def save_settings(options: RunOptions, folder: Path) -> Path:
+    """Write ``settings.toml`` into a run's folder, from which ``--settings`` repeats the run.
+
+    Where the run went to and how much it printed are left out. A file that describes the same run
+    already is left as it is, since a person may have written it.
+
+    Raises:
+        FileError: If it cannot be written.
+    """
+    values = _values(options)
+    if not _same(_values_in(folder, options), values):
+        head = f"# iiwa_dnn {version('iiwa-dnn')}; to repeat the run: --settings with this file"
+        text = f"{head}\n\n{tomli_w.dumps({'command': options.command, **values})}"
+        write_text(folder / SETTINGS_FILE, text)
+    return folder / SETTINGS_FILE
+
+
+def _values_in(folder: Path, options: RunOptions) -> dict[str, Any] | None:
+    """Return the values in a folder's settings file; None if the same command did not write it."""
+    path = folder / SETTINGS_FILE
+    try:
+        return _values(read_settings(type(options), path)) if path.is_file() else None
+    except IiwaDnnError:
+        return None
+
+
+def _same(there: dict[str, Any] | None, here: dict[str, Any]) -> bool:
+    """Whether two sets of values describe the same run."""
+    if there is None:
+        return False
+    return all(there.get(key) == here.get(key) for key in {*there, *here} - _NOT_COMPARED)
+
+
+def _values(options: RunOptions) -> dict[str, Any]:
+    """Values of the options that a settings file keeps; paths are made absolute."""
+    values: dict[str, Any] = {}
+    for field in fields(options):
+        value = getattr(options, field.name)
+        if field.name in _NOT_KEPT or value is None or value == ():
+            continue
+        if field.name in ("robot", "reference") and (
+            os.sep in value or value.endswith((".urdf", ".csv"))
+        ):
+            value = str(Path(value).resolve())
+        values[field.name] = list(value) if isinstance(value, tuple) else value
+    return values

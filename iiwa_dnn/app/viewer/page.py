@@ -1,0 +1,138 @@
+"""The page: its server, replay and live mode on one stage, and the loop that keeps it moving."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from importlib import import_module
+from io import StringIO
+from typing import Any
+
+from iiwa_dnn.app.viewer.follower import Follower
+from iiwa_dnn.app.viewer.live import LivePanel
+from iiwa_dnn.app.viewer.replay import ReplayPanel
+from iiwa_dnn.app.viewer.stage import Stage
+from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
+from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.schemes import DoubleIndicator
+
+TICK = 1.0 / 30.0
+"""Time between two pictures [s]."""
+
+
+class Page:
+    """A page that replays a record, follows a target live, or both in turn.
+
+    Attributes:
+        server: The ``viser.ViserServer``.
+        stage: Its three-dimensional part.
+        replay: The replay; None without a record.
+        live: The live mode.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        q0: Vector,
+        record: Record | None = None,
+        scheme: DoubleIndicator | None = None,
+        host: str = "127.0.0.1",
+        port: int = 8080,
+    ) -> None:
+        """Serve the page; `run` or `tick` moves it.
+
+        Args:
+            robot: The robot, with the limits that both modes show and the live mode keeps.
+            q0: Joint positions at the start of the live mode [rad], (n,).
+            record: Run to replay; without one the page starts in live mode.
+            scheme: Scheme of the live mode; None takes the defaults.
+            host: Address to listen on; ``"0.0.0.0"`` lets other machines in.
+            port: Port to listen on; 0 takes a free one.
+
+        Raises:
+            MissingDependencyError: If viser is not installed.
+            InvalidInputError: If the address cannot be listened on, or `q0` is not acceptable.
+        """
+        follower = Follower(robot, q0, scheme)
+        self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
+        self.stage = Stage(self.server, robot)
+        if record is not None:
+            mode: Any = self.server.gui.add_button_group("mode", ("replay", "live"))
+            mode.on_click(lambda event: self.set_mode(str(event.target.value)))
+        self.replay = None if record is None else ReplayPanel(self.stage, record)
+        self.live = LivePanel(self.stage, follower)
+        if record is None:
+            self.stage.look_at(follower.configuration.position)
+            self.stage.show(follower.configuration.q)
+            self.live.set_active(True)
+
+    @property
+    def address(self) -> str:
+        """Address of the page."""
+        host = self.server.get_host()
+        shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host
+        return f"http://{f'[{shown}]' if ':' in shown else shown}:{self.server.get_port()}"
+
+    def set_mode(self, mode: str) -> None:
+        """Change between ``"replay"`` and ``"live"``; both go on from their last state."""
+        if self.replay is not None:
+            self.live.set_active(mode == "live")
+            self.replay.set_visible(mode == "replay")
+
+    def tick(self, elapsed: float) -> None:
+        """Let `elapsed` seconds pass."""
+        if self.live.active:
+            self.live.tick(elapsed)
+        elif self.replay is not None:
+            self.replay.tick(elapsed)
+
+    def run(self, stop: Callable[[], bool] = lambda: False) -> None:
+        """Keep the page moving until `stop` returns True, or Ctrl-C."""
+        before = time.perf_counter()
+        while not stop():
+            time.sleep(max(0.0, before + TICK - time.perf_counter()))
+            now = time.perf_counter()
+            self.tick(now - before)
+            before = now
+
+    def close(self) -> None:
+        """Close the page."""
+        with redirect_stdout(StringIO()):  # viser says so
+            self.server.stop()
+
+
+def _open_server(title: str, host: str, port: int) -> Any:
+    """Serve an empty page with a title, in the look of the project."""
+    try:
+        viser: Any = import_module("viser")
+    except ImportError as error:
+        remedy = "pip install 'iiwa-dnn[view]'"
+        raise MissingDependencyError("the Python package viser", remedy) from error
+    port = _checked_port(host, port)
+    with redirect_stdout(StringIO()):  # its banner; the command prints the address
+        server = viser.ViserServer(host=host, port=port, label=title, verbose=False)
+    # No logo that links to the web, and no button that asks a relay for a public address.
+    server.gui.configure_theme(
+        control_width="large", show_logo=False, show_share_button=False, brand_color=(255, 102, 0)
+    )
+    server.gui.set_panel_label(title)
+    server.scene.set_up_direction("+z")
+    return server
+
+
+def _checked_port(host: str, port: int) -> int:
+    """Return the port if it is free, or a free one for 0; viser would take another one silently."""
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((host, port))
+            return int(probe.getsockname()[1])
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        problem = f"cannot listen on {host}:{port}: {reason}"
+        raise InvalidInputError("port", problem, port) from error
