@@ -9,7 +9,6 @@ import numpy as np
 
 from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import WarmUpOptions
-from iiwa_dnn.app.track import start_posture
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.networks.batch import solve_batch
 from iiwa_dnn.networks.solver import solve_problem
@@ -28,7 +27,7 @@ def run(options: WarmUpOptions) -> int:
     """Take a few steps of every kind of run, solve a program and a batch; return 0."""
     began = time.perf_counter()
     robot = load_robot("iiwa7")
-    q0 = start_posture(robot)
+    q0 = robot.start_posture()
     reference = Heart().anchored(Configuration(robot, q0))
     kinds = list(product(FORMS, MODES))
     with progress_bar(len(kinds) + 2, "program", options.quiet) as bar:
