@@ -71,11 +71,14 @@ class RunOptions:
 
 
 @dataclass(frozen=True)
-class ArmOptions(RunOptions):
-    """Options of the commands that let an arm follow a path."""
+class TrackOptions(RunOptions):
+    """Draw a path with a robot arm, every step checked; by default the paper's heart."""
 
+    command: ClassVar[str] = "track"
+    out: Folder = Path("runs/heart")  # folder that the results are written to
     robot: _Robot = "iiwa7"  # robot, by its name or by its URDF file
     tip: _Frame = None  # frame that follows the path (none: the end of the chain)
+    lock: _Names = ()  # names of the joints that are held still
     q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
     reference: _Path = "heart"  # path: heart, circle, line, lissajous or a CSV file in [s] and [m]
@@ -91,16 +94,6 @@ class ArmOptions(RunOptions):
     seed: Count = 0  # seed of the random numbers
     check: _Solver = "proxqp"  # solvers that check every step: proxqp, osqp, both or none
     tolerance: _Speed = 1e-6  # largest gap between the network and a checking solver [rad/s]
-    plots: _Flag = True  # draw no figures
-
-
-@dataclass(frozen=True)
-class TrackOptions(ArmOptions):
-    """Draw a path with a robot arm, every step checked; by default the paper's heart."""
-
-    command: ClassVar[str] = "track"
-    out: Folder = Path("runs/heart")  # folder that the results are written to
-    lock: _Names = ()  # names of the joints that are held still
     speed: _Number = 1.0  # velocity limits, as a share of the data sheet's
     mode: _Mode = "converged"  # converged: network settled at every step; continuous: one time step
     kinetic: _Matrix = "identity"  # matrix G of the kinetic index: identity (the paper's), inertia
@@ -111,10 +104,11 @@ class TrackOptions(ArmOptions):
     noise: _Speed = 0.0  # standard deviation of the noise [rad/s]; in the measurement [rad]
     noise_at: _Where = "velocity"  # noisy quantity: velocity, network (its state) or measurement
     filter_window: Count = 1  # number of samples in the moving average of the joint velocity
+    plots: _Flag = True  # draw no figures
 
 
 @dataclass(frozen=True)
-class PhysicsOptions(ArmOptions):
+class PhysicsOptions(TrackOptions):
     """Draw a path with an arm that has masses and motors, in MuJoCo.
 
     The network's velocities, a torque loop under them, every step checked; no disturbances by

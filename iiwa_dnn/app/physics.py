@@ -6,32 +6,18 @@ from pathlib import Path
 
 from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import PhysicsOptions
-from iiwa_dnn.app.track import CHECKS, arm, draw, path
-from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.app.track import arm, draw, simulation
 from iiwa_dnn.results.pictures import frame_times, import_encoder, save_moments, save_video
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.offscreen import opengl_library
-from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation.disturbances import Disturbances, Push
-from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
-from iiwa_dnn.simulation.runner import Simulation
+from iiwa_dnn.simulation import Disturbances, MujocoPlant, Push
 
 
 def run(options: PhysicsOptions) -> int:
     """Draw the path in MuJoCo, write the run with its pictures, and return the exit code."""
     robot, q0 = arm(options)
-    simulation = Simulation(
-        robot,
-        DoubleIndicator(weight=options.weight, orientation=options.orientation),
-        path(options).anchored(Configuration(robot, q0)),
-        q0,
-        dt=options.dt,
-        plant=MujocoPlant(disturbances(options), timestep=options.physics_dt),
-        duration=options.duration,
-        seed=options.seed,
-        check=CrossCheck(CHECKS[options.check], options.tolerance),
-    )
+    plant = MujocoPlant(disturbances(options), timestep=options.physics_dt)
+    checked = simulation(options, robot, q0, plant)
     if options.pictures or options.video:
         opengl_library()
     if options.video:
@@ -45,7 +31,7 @@ def run(options: PhysicsOptions) -> int:
             with progress_bar(len(frame_times(record)), "frame", options.quiet) as bar:
                 save_video(robot, record, folder / "video.mp4", bar.update)
 
-    return draw(options, simulation, pictures, video)
+    return draw(options, checked, pictures, video)
 
 
 def disturbances(options: PhysicsOptions) -> Disturbances:

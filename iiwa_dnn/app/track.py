@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
-from iiwa_dnn.app.options import ArmOptions, Check, TrackOptions
+from iiwa_dnn.app.options import Check, TrackOptions
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
@@ -22,9 +21,8 @@ from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import Simulation
+from iiwa_dnn.simulation import Plant, Simulation
 from iiwa_dnn.studies import paper
 
 CHECKS: dict[Check, tuple[str, ...]] = {
@@ -49,31 +47,41 @@ Last = Callable[[Record, Path], None] | None
 
 def run(options: TrackOptions) -> int:
     """Draw the path, check every step, write the run, and return the exit code."""
-    robot, q0 = arm(options, options.lock)
-    robot = robot.with_limits(velocity=checks.positive("speed", options.speed) * robot.dq_max)
-    simulation = Simulation(
-        robot,
-        DoubleIndicator(
-            weight=options.weight,
-            position_gain=options.gain,
-            orientation_gain=options.gain,
-            orientation=options.orientation,
-            kinetic=options.kinetic,
-        ),
-        path(options).anchored(Configuration(robot, q0)),
-        q0,
-        check=CrossCheck(CHECKS[options.check], options.tolerance),
-        **{name: getattr(options, name) for name in _HANDED_ON},
+    return draw(options, simulation(options, *arm(options)))
+
+
+def simulation(
+    options: TrackOptions, robot: Robot, q0: Vector, plant: Plant | None = None
+) -> Simulation:
+    """Return the run that the options ask for, its arguments checked and nothing written.
+
+    Args:
+        options: The options.
+        robot: The robot, n joints, with its limits.
+        q0: Joint positions at the start [rad], (n,).
+        plant: Moves under the commands; None: the ideal one.
+    """
+    scheme = DoubleIndicator(
+        weight=options.weight,
+        position_gain=options.gain,
+        orientation_gain=options.gain,
+        orientation=options.orientation,
+        kinetic=options.kinetic,
     )
-    return draw(options, simulation)
+    reference = path(options).anchored(Configuration(robot, q0))
+    check = CrossCheck(CHECKS[options.check], options.tolerance)
+    asked = {name: getattr(options, name) for name in _HANDED_ON}
+    return Simulation(robot, scheme, reference, q0, plant=plant, check=check, **asked)
 
 
-def draw(options: ArmOptions, simulation: Any, more: More | None = None, last: Last = None) -> int:
-    """Carry out a run whose arguments are checked, write it into its folder and print its summary.
+def draw(
+    options: TrackOptions, simulation: Simulation, more: More | None = None, last: Last = None
+) -> int:
+    """Carry out a run, write it into its folder and print its summary.
 
     Args:
         options: Options of the command.
-        simulation: The run; it has ``steps``, and ``run`` takes a function for progress.
+        simulation: The run.
         more: Draws more figures into the folder and returns their files.
         last: Writes more files into the folder, after the report.
 
@@ -100,7 +108,7 @@ def draw(options: ArmOptions, simulation: Any, more: More | None = None, last: L
     return 1 if reasons else 0
 
 
-def path(options: ArmOptions) -> Reference:
+def path(options: TrackOptions) -> Reference:
     """Return the path that the options name, before it is anchored.
 
     Raises:
@@ -117,28 +125,19 @@ def path(options: ArmOptions) -> Reference:
         raise NotFoundError("path", name, (*_PATHS, "FILE.csv"))
     for other in _PATH_OPTIONS:
         value = getattr(options, other)
-        if other not in own and value != getattr(ArmOptions, other):
+        if other not in own and value != getattr(TrackOptions, other):
             raise InvalidInputError(f"--{other}", f"is no option of the path {name!r}", value)
     if name not in _PATHS:
         return Waypoints.from_csv(name)
     return _PATHS[name](**{key: getattr(options, key) for key in _PATH_OPTIONS if key in own})
 
 
-def arm(options: ArmOptions, locked: Sequence[str] = ()) -> tuple[Robot, Vector]:
-    """Return the robot with its position limits, and its start posture [rad], (n,)."""
-    robot = load_robot(options.robot, tip=options.tip, locked=locked)
-    q0 = np.array(options.q0) if options.q0 else start_posture(robot)
-    return limited(robot, options.joint_limit), q0
-
-
-def start_posture(robot: Robot) -> Vector:
-    """Return the posture known for the robot, or the middle of each joint's range [rad], (n,)."""
-    starts = {"iiwa7": paper.START, **{name: arm.start for name, arm in ARMS.items()}}
-    known = starts.get(robot.name, ())
-    if robot.dof == len(known):
-        return np.array(known)
-    middle = 0.5 * (robot.q_lower + robot.q_upper)
-    return np.where(np.isfinite(middle), middle, 0.0)
+def arm(options: TrackOptions) -> tuple[Robot, Vector]:
+    """Return the robot with its limits, and its start posture [rad], (n,)."""
+    robot = load_robot(options.robot, tip=options.tip, locked=options.lock)
+    q0 = np.array(options.q0) if options.q0 else robot.start_posture()
+    speed = checks.positive("speed", options.speed) * robot.dq_max
+    return limited(robot, options.joint_limit).with_limits(velocity=speed), q0
 
 
 def limited(robot: Robot, limit: str | None = None) -> Robot:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from iiwa_dnn.app.options import ViewOptions
-from iiwa_dnn.app.track import limited, start_posture
+from iiwa_dnn.app.track import limited
 from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.results.record import Record
@@ -23,7 +23,7 @@ def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     name, tip = options.robot or recorded.get("robot", "iiwa7"), options.tip or recorded.get("tip")
     robot = load_robot(name, tip=tip, locked=options.lock)
     if record is None:
-        page = Page(limited(robot), start_posture(robot), host=options.host, port=options.port)
+        page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
     elif robot.dof != record.dof:
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, options.robot)
