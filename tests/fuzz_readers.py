@@ -28,7 +28,7 @@ from iiwa_dnn.references import Waypoints
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.report import summary
+from iiwa_dnn.results.report import settings_lines, summary
 from iiwa_dnn.robot import load_robot
 
 ROOT = Path(__file__).parents[1]
@@ -162,7 +162,9 @@ def other_json(value: Any, rng: Rng) -> Any:
 def read_record(path: Path) -> None:
     """A record that is taken for one has metrics and a verdict, too."""
     record = Record.load(path)
-    summary(compute_metrics(record), failures(record))
+    metrics = compute_metrics(record)
+    text = summary(metrics, failures(record)) + settings_lines(metrics) + repr(record)
+    assert "\n" not in repr(record), text
 
 
 def _seeds() -> dict[str, tuple[Callable[[Path], object], Callable[[Rng], bytes], str]]:
@@ -170,7 +172,14 @@ def _seeds() -> dict[str, tuple[Callable[[Path], object], Callable[[Rng], bytes]
     urdfs = [SMALL_URDF, (ROOT / "robots/iiwa7/iiwa7.urdf").read_bytes()]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "record.npz"
-        make_record(steps=3).save(path)
+        happened = {
+            "action": [2, 0, 3],
+            "fraction": [0.5, 1.0, 1.0],
+            "row_multiplier": np.eye(3, 2),
+            "blocking_rows": np.eye(3, 2, dtype=np.int8),
+        }
+        rows = [{"part": "Obstacle", "row": 1}, {"part": "Obstacle", "row": 2}]
+        make_record(steps=3, **happened, settings={"rows": rows}).save(path)
         record = path.read_bytes()
     return {
         "urdf": (load_robot, lambda rng: text_case(urdfs, rng), ".urdf"),

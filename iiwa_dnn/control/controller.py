@@ -203,7 +203,7 @@ class Controller:
     def plan(self) -> _Plan:
         """The scheme laid out for the robot, made anew where an attribute has changed."""
         plan = self._plan
-        if plan is None or plan.version != getattr(self.solver, "version", 0):
+        if plan is None or plan.version != self.solver.version:
             self._plan = plan = _Plan(self)
         return plan
 
@@ -390,7 +390,7 @@ class _Plan:
             inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
         self.asks = layout is None or bool(layout.custom)
         self.row_weights = None if layout is None else layout.row_weights
-        self.version = getattr(solver, "version", 0)
+        self.version = solver.version
         self.expected = Status.SOLVED if converged else Status.ADVANCED
         # A subclass that solves in a way of its own is asked, not bypassed.
         compiled = type(solver) is DNNSolver

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     import qpsolvers
 
 
+_PARTS = frozenset({"network", "tol", "settler", "follower"})
+"""Attributes whose change makes compiled constants (`DNNSolver.numbers`) stale."""
+
+
 class DNNSolver:
     """A network, an integrator and a stopping rule, with a warm start kept between calls.
 
@@ -31,7 +35,10 @@ class DNNSolver:
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         settler: Integrator of `solve`, which runs until the residuals are below `tol`.
         follower: Integrator of `advance`, which runs for a given time.
+        version: Number of times that one of these was set.
     """
+
+    version: int
 
     def __init__(
         self,
@@ -53,6 +60,11 @@ class DNNSolver:
         self._sizes: tuple[int, int, int] | None = None
         self._state: Vector = np.empty(0)
         self._point_size = 0
+
+    def __setattr__(self, name: str, value: object) -> None:
+        super().__setattr__(name, value)
+        if name in _PARTS:
+            self.version = getattr(self, "version", 0) + 1
 
     @property
     def state(self) -> Vector:

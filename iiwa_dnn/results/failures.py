@@ -13,7 +13,7 @@ from iiwa_dnn.results.metrics import (
     position_limit_excess,
     velocity_limit_excess,
 )
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.record import Record, percent
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s] that is forgiven: the rounding of the motion's integration."""
@@ -57,7 +57,7 @@ def describe(limit: Mapping[str, Any]) -> str:
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
     """Say that a path is incomplete, as ``path completed 12.3 %``; no line for a completed one."""
     share = metrics.get("path_completed", 1.0)  # older metrics do not tell
-    return [f"path completed {min(100.0 * share, 99.9):.1f} %"] if share < 1.0 else []
+    return [f"path completed {percent(share)}"] if share < 1.0 else []
 
 
 def _early_end(metrics: Mapping[str, Any]) -> list[str]:
@@ -74,22 +74,22 @@ def _policies(metrics: Mapping[str, Any]) -> list[str]:
     if incidents is None or incidents["first"] is None:
         return []
     first, reasons = incidents["first"], []
+    at = f", the first at step {first['step']} (t = {first['time_s']:.6g} s)"
+    fell_back = first["action"] == "fallback"
     if incidents["fallback_steps"]:
-        count = _count(incidents["fallback_steps"])
-        reasons.append(f"{count} answered by the reference: the network did not settle")
+        count, where = _count(incidents["fallback_steps"]), at if fell_back else ""
+        reasons.append(f"{count} answered by the reference: the network did not settle{where}")
     taken = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
     if any(taken.values()):
         did = ", ".join(f"{steps:,} {word}" for word, steps in taken.items() if steps)
         blocks = [*incidents["blocking"], *incidents.get("blocking_rows", ())]
         blocks.sort(key=lambda limit: -limit["steps"])
         names = ", ".join(map(describe, blocks[:3])) or "no bound, a singular pose"
-        reasons.append(
-            f"{_count(sum(taken.values()))} without a solution ({did}), the first at "
-            f"step {first['step']} (t = {first['time_s']:.6g} s); in the way: {names}"
-        )
+        count, where = _count(sum(taken.values())), "" if fell_back else at
+        reasons.append(f"{count} without a solution ({did}){where}; in the way: {names}")
     if incidents["slow_steps"]:
-        reached, asked = incidents["path_time_s"], metrics["duration_s"]
-        reasons.append(f"slowed: path time {reached:.6g} s after {asked:.6g} s")
+        reached, asked = _show(incidents["path_time_s"], 6), _show(metrics["duration_s"], 6)
+        reasons.append(f"slowed: path time {reached} s after {asked} s")
     return reasons
 
 
@@ -177,5 +177,5 @@ def _count(steps: int) -> str:
     return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
 
 
-def _show(value: float | None) -> str:
-    return "not a number" if value is None else f"{value:.3g}"
+def _show(value: float | None, digits: int = 3) -> str:
+    return "not a number" if value is None else f"{value:.{digits}g}"

@@ -89,7 +89,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     wall, settings = record.wall_time_s, record.settings
     metrics: dict[str, Any] = plain(
         {
-            "path_completed": _path_completed(record),
+            "path_completed": record.path_completed,
             "max_position_error_m": np.linalg.norm(error, axis=1).max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),
@@ -111,17 +111,6 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         }
     )
     return metrics
-
-
-def _path_completed(record: Record) -> float:
-    """Compute the share of the asked path time that the reference's clock covered, 0 to 1."""
-    planned = max(1, round(record.settings["duration"] / record.settings["dt"]))
-    return float(np.nan_to_num(np.clip(_path_steps(record) / planned, 0.0, 1.0)))
-
-
-def _path_steps(record: Record) -> float:
-    """Sum up the control periods by which the reference's clock advanced."""
-    return float(record.steps if record.fraction is None else record.fraction.sum())
 
 
 def _max(values: FloatArray) -> float | None:
@@ -212,8 +201,7 @@ def _incidents(record: Record) -> dict[str, Any]:
     if all(array is None for array in arrays):
         return {}
     action = np.zeros(record.steps, np.int8) if record.action is None else record.action
-    taken, dt = np.flatnonzero(action), float(record.settings["dt"])
-    first = None
+    taken, first = np.flatnonzero(action), None
     if taken.size:
         name = ACTIONS.get(int(action[taken[0]]), "unknown")
         first = {"step": int(taken[0]), "time_s": float(record.t[taken[0]]), "action": name}
@@ -225,7 +213,7 @@ def _incidents(record: Record) -> dict[str, Any]:
         "incidents": {
             "clipped_steps": 0 if record.clipped is None else int(record.clipped.any(axis=1).sum()),
             **{f"{name}_steps": int((action == code).sum()) for code, name in ACTIONS.items()},
-            "path_time_s": dt * _path_steps(record),
+            "path_time_s": record.path_time,
             "first": first,
             "blocking": blocked,
             "blocking_rows": _rows(record, record.blocking_rows),

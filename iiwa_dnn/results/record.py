@@ -132,9 +132,11 @@ class Record:
 
     def __repr__(self) -> str:
         error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
+        slowed = f"path completed {percent(self.path_completed)}, "
         text = (
             f"Record({self.settings['robot']}, {self.steps:,} steps of {self.settings['dt']:g} s, "
-            f"{self.settings['status']}, position error max {error:.4g} m)"
+            f"{self.settings['status']}, {slowed if self.path_completed < 1.0 else ''}"
+            f"position error max {error:.4g} m)"
         )
         return " ".join(text.split())
 
@@ -152,6 +154,19 @@ class Record:
     def references(self) -> int:
         """k, the number of reference solvers; their names are in the settings."""
         return int(self.solution_gap.shape[1])
+
+    @property
+    def path_time(self) -> float:
+        """Time of the path that the reference's clock covered [s]."""
+        steps = self.steps if self.fraction is None else self.fraction.sum()
+        return float(self.settings["dt"]) * float(steps)
+
+    @property
+    def path_completed(self) -> float:
+        """Share of the asked path time that the reference's clock covered, 0 to 1."""
+        dt, duration = float(self.settings["dt"]), self.settings["duration"]
+        share = self.path_time / (dt * max(1, round(duration / dt)))
+        return float(np.nan_to_num(np.clip(share, 0.0, 1.0)))
 
     @property
     def _arrays(self) -> dict[str, tuple[Any, ...]]:
@@ -218,6 +233,11 @@ _ARRAYS = {
     if get_origin(hint) is Annotated
 }
 _OPTIONAL = {item.name for item in fields(Record) if item.default is None}
+
+
+def percent(share: float) -> str:
+    """Show a share as ``12.3 %``; one below 1 never as 100.0 %."""
+    return f"{min(100.0 * share, 100.0 if share >= 1.0 else 99.9):.1f} %"
 
 
 def _read_only(name: str, value: ArrayLike, dimensions: int, kind: type[Any]) -> NDArray[Any]:

@@ -13,7 +13,7 @@ import pytest
 
 from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.record import Record, percent
 
 ARRAYS = [
     field.name
@@ -145,6 +145,15 @@ def test_a_record_prints_one_line():
         == ("Record(iiwa7, 10 steps of 0.1 s, stopped at step 3, position error max 0.013 m)")
     )
     assert "\n" not in repr(make_record(steps=0))
+    stuck = make_record(action=np.full(10, 2), fraction=np.full(10, 1e-5))
+    assert "completed, path completed 0.0 %, position error" in repr(stuck)
+    assert stuck.path_time == pytest.approx(1e-5)
+
+
+def test_a_share_below_one_is_never_shown_as_all_of_it():
+    assert [percent(share) for share in (0.0, 0.1234, 0.99999, 1.0)] == [
+        "0.0 %", "12.3 %", "99.9 %", "100.0 %",
+    ]  # fmt: skip
 
 
 def test_the_gap_is_the_largest_over_the_solvers(heart):

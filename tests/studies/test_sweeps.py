@@ -209,7 +209,7 @@ def test_the_source_of_a_run_is_what_a_run_imports() -> None:
     )
     modules = {name for name in loaded.stdout.split() if name.startswith("iiwa_dnn.")}
     known = {f"iiwa_dnn.{name.removesuffix('/__init__').replace('/', '.')}" for name in names}
-    assert known <= modules
+    assert known - {"iiwa_dnn.robot.verification"} <= modules  # that one only where it is asked for
     assert {
         "networks/solver",
         "simulation/runner",
