@@ -37,7 +37,7 @@ def run(options: WarmUpOptions) -> int:
                 robot, scheme, reference, q0, duration=1e-3, mode=mode, noise=1e-3, filter_window=2
             )
             bar.update()
-        for path in (Circle(), Line(), Lissajous(), Waypoints(np.arange(2.0), np.eye(2, 3))):
+        for path in (Circle(), Line(), Lissajous(), Waypoints(np.array([0.0, 1.0]), np.eye(2, 3))):
             path.at(0.0)
         # Joints too slow for the path: steps without a solution, with certificate and policy.
         slow = robot.with_limits(velocity=1e-3 * robot.dq_max)
