@@ -25,6 +25,7 @@ class Answers:
         sizes: ``(n, m, p)`` of the programs.
         status: Status of the answers that are not in `unsolved`.
         rows: The array, (capacity, width).
+        at_targets: Column in which the targets begin.
         unsolved: Solutions of another status, by their number.
         resolved: Decisions of a policy, by the number of the answer.
     """
@@ -41,8 +42,9 @@ class Answers:
         self._figures = slice(program + point, program + point + FIGURES)
         self._place = slice(self._figures.stop, self._figures.stop + PLACE)
         self._q = slice(self._place.stop, self._place.stop + joints)
-        self.rows: Matrix = np.empty((len(targets), self._q.stop + targets.shape[1]))
-        self.rows[:, self._q.stop :] = targets
+        self.at_targets = self._q.stop
+        self.rows: Matrix = np.empty((len(targets), self.at_targets + targets.shape[1]))
+        self.rows[:, self.at_targets :] = targets
         self.unsolved: dict[int, Solution] = {}
         self.resolved: dict[int, Resolution] = {}
 
@@ -136,7 +138,7 @@ class Answers:
     @property
     def targets(self) -> Matrix:
         """Targets of all rows, one frame after the other, (rows, 18 frames)."""
-        return self.rows[:, self._q.stop :]
+        return self.rows[:, self.at_targets :]
 
     def repeat(self, first: int) -> None:
         """Put answer `first` in the place of all after it."""

@@ -12,21 +12,23 @@ from pinocchio import computeJointJacobians, updateFramePlacement
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
+from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, Resolution, resolve, stopped
-from iiwa_dnn.control.step import NETWORK, control_step
+from iiwa_dnn.control.step import control_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes import Scheme, Step
-from iiwa_dnn.schemes.assembly import assemble
+from iiwa_dnn.schemes import Scheme
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 References = Reference | Mapping[str, Reference]
+
+_ROOM = 64
+"""Steps of a robot's loop whose programs and answers share one array."""
 
 FAR = 0.05
 """Distance from the tip to the first target from which on a warning is given [m]."""
@@ -40,20 +42,21 @@ class Command:
         resolution: Decision of the policy where the network had no answer; else None.
     """
 
-    __slots__ = ("_answers", "dq", "resolution")
+    __slots__ = ("_answers", "_index", "dq", "resolution")
 
-    def __init__(self, answers: Answers, dq: Vector, resolution: Resolution | None = None) -> None:
-        self._answers, self.dq, self.resolution = answers, dq, resolution
+    def __init__(self, answers: Answers, index: int, dq: Vector) -> None:
+        self._answers, self._index, self.dq = answers, index, dq
+        self.resolution: Resolution | None = answers.resolved.get(index)
 
     @property
     def qp(self) -> QP:
         """The program that was answered."""
-        return self._answers.qp(0)
+        return self._answers.qp(self._index)
 
     @property
     def solution(self) -> Solution:
         """The answer: the network's unless there is a resolution."""
-        return self._answers.solution(0)
+        return self._answers.solution(self._index)
 
     @property
     def action(self) -> Action:
@@ -64,7 +67,7 @@ class Command:
     def ok(self) -> bool:
         """Whether the command does all that the tasks ask: solved, by the network or a fallback."""
         asked = self.resolution is None or self.resolution.action is Action.FALLBACK
-        return asked and not self._answers.unsolved
+        return asked and self._index not in self._answers.unsolved
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
@@ -128,11 +131,13 @@ class Controller:
         self.delay = 0.0
         self._q = np.zeros(robot.dof)
         self._begun = False
+        self._time = np.zeros(1)
 
     def __setattr__(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
         if name in _PLANNED:
-            self._plan: _Plan | None = None
+            self._plan: Plan | None = None
+            self._room: Answers | None = None
 
     def step(
         self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None = None
@@ -152,25 +157,49 @@ class Controller:
                 there is neither reference nor target.
             NoSolutionError: There is no solution and the policy is ``raise``.
         """
-        if len(q) != self._q.size:  # type: ignore[arg-type]
-            raise InvalidInputError("q", f"must have {self._q.size} values, not {np.shape(q)}", q)
-        self._q[:] = q
-        if not self._begun:
-            self._begin(t, target)
-        data = self.targets(t - self.delay) if target is None else self._target_data(target)
-        answers = self.answers(data)
-        dq = self.answer(self._q, answers, t)
-        resolution = answers.resolved.get(0)
-        if resolution is not None:
-            self.delay += self.dt * (1.0 - resolution.fraction)
-        return Command(answers, dq, resolution)
+        plan, answers = self._plan, self._room
+        if answers is None or plan is None or plan.version != self.solver.version:
+            plan, answers = self._prepare(q, t, target)
+        if len(q) != plan.q.size:  # type: ignore[arg-type]
+            raise InvalidInputError("q", f"must have {plan.q.size} values, not {np.shape(q)}", q)
+        plan.q[:] = q
+        index = answers.count
+        if index == _ROOM:
+            self._room = answers = self.answers(self._base)
+            index = 0
+        if target is None and self._path is not None:
+            self._time[0] = t - self.delay
+            self._path(self._time, self._constants, answers.rows, index, answers.at_targets)
+        else:
+            answers.targets[index] = self.targets(t - self.delay, target)
+        try:
+            command = Command(answers, index, self._answer(plan, answers, t))
+        except BaseException:
+            self._room = None  # its row is half written
+            raise
+        if command.resolution is not None:
+            self.delay += self.dt * (1.0 - command.resolution.fraction)
+        return command
 
-    def _begin(self, t: float, target: Target | Mapping[str, Target] | None) -> None:
-        """Anchor the scheme at the first posture, and say if the target is far from there."""
-        start = Configuration(self.robot, self._q)
-        self.anchor(start)
-        if target is None:
-            warn_if_far(start, Target.from_data(self.targets(t)[0, :18]), stacklevel=4)
+    def _prepare(
+        self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None
+    ) -> tuple[Plan, Answers]:
+        """Lay out whatever a step needs, and at the first step anchor the scheme."""
+        posture = checks.finite_array("q", q, (self.robot.dof,))
+        if not self._begun:
+            start = Configuration(self.robot, posture)
+            self.anchor(start)
+            if target is None:
+                warn_if_far(start, Target.from_data(self.targets(t)[:18]), stacklevel=4)
+        plan, reference = self.plan, self.reference
+        single = isinstance(reference, Reference) and plan.frames == (self.robot.tip,)
+        self._path = reference.compiled if single and isinstance(reference, Reference) else None
+        base: Vector = np.zeros(18 * len(plan.frames))
+        if self._path is not None and isinstance(reference, Reference):
+            base, self._constants = reference.base, reference.numbers
+        self._base = np.tile(base, (_ROOM, 1))
+        self._room = answers = self.answers(self._base)
+        return plan, answers
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
@@ -184,27 +213,30 @@ class Controller:
         """Forget the network's state, the last command and the delay; the home stays."""
         self.solver.reset()
         self.delay = 0.0
-        self._plan = None
+        self._plan = self._room = None
 
     def warm_up(self) -> None:
         """Compile whatever a step needs, so that the first one is as quick as the others."""
         begun, scheme, home = self._begun, self.scheme, self.robot.start_posture()
         conf = Configuration(self.robot, home)
-        pose = Target(conf.position, conf.rotation)
-        frames = self.plan.layout.target_frames if self.plan.layout else (self.robot.tip,)
+        frames = {name: conf.frame(name) for name in self.plan.frames}
+        poses = {name: Target(at.position, at.rotation) for name, at in frames.items()}
         for _ in range(3):
-            self.step(home, 0.0, dict.fromkeys(frames, pose))
+            self.step(home, 0.0, poses)
         if self.reference is not None:
-            self.targets(0.0)
+            self.step(home, 0.0)
         self.scheme, self._begun = scheme, begun
         self.reset()
 
     @property
-    def plan(self) -> _Plan:
+    def plan(self) -> Plan:
         """The scheme laid out for the robot, made anew where an attribute has changed."""
         plan = self._plan
         if plan is None or plan.version != self.solver.version:
-            self._plan = plan = _Plan(self)
+            converged = self.mode == "converged"
+            self._plan = plan = Plan(
+                self.robot, self.scheme, self.solver, self.dt, converged, self._q
+            )
         return plan
 
     def answers(self, targets: Matrix) -> Answers:
@@ -212,9 +244,13 @@ class Controller:
         plan = self.plan
         return Answers(plan.sizes, self._q.size, plan.expected, targets)
 
-    def targets(self, t: float) -> Matrix:
-        """Return the reference's targets at a time, (1, 18 frames)."""
-        return self.sample(np.array([t])) if self._many else self._one.at(t).data[np.newaxis]
+    def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Vector:
+        """Return the targets of a time, (18 frames,): those given, else the reference's."""
+        if target is None:
+            targets: Vector = self.sample(np.array([t]))[0]
+            return targets
+        given = {self.robot.tip: target} if isinstance(target, Target) else target
+        return np.concatenate([given[name].data for name in self.plan.frames])
 
     def sample(self, times: Vector) -> Matrix:
         """Return the reference's targets at many times, one frame after the other, (k, 18 frames).
@@ -224,29 +260,15 @@ class Controller:
         """
         if self.reference is None:
             raise InvalidInputError("reference", "is missing: give one, or a target to each step")
+        given: Mapping[str, Reference]
         if isinstance(self.reference, Reference):
-            return self.reference.sample(times).data
-        layout = self.plan.layout
-        frames = (self.robot.tip,) if layout is None else layout.target_frames
-        for name in frames:
-            if name not in self.reference:
+            given = {self.robot.tip: self.reference}
+        else:
+            given = self.reference
+        for name in self.plan.frames:
+            if name not in given:
                 raise InvalidInputError("reference", f"is missing for frame {name!r}")
-        return np.concatenate([self.reference[name].sample(times).data for name in frames], axis=1)
-
-    @property
-    def _many(self) -> bool:
-        return not isinstance(self.reference, Reference)
-
-    @property
-    def _one(self) -> Reference:
-        return self.reference  # type: ignore[return-value]
-
-    def _target_data(self, target: Target | Mapping[str, Target]) -> Matrix:
-        if isinstance(target, Target):
-            return target.data[np.newaxis]
-        layout = self.plan.layout
-        frames = (self.robot.tip,) if layout is None else layout.target_frames
-        return np.concatenate([target[name].data for name in frames])[np.newaxis]
+        return np.concatenate([given[name].sample(times).data for name in self.plan.frames], axis=1)
 
     def answer(self, q: Vector, answers: Answers, t: float = 0.0) -> Vector:
         """Take a step towards the next target in `answers`, and add program and answer to them.
@@ -259,8 +281,18 @@ class Controller:
         Returns:
             Joint velocity [rad/s], (n,), a view into `answers`.
         """
-        plan, index = self.plan, answers.count
-        plan.update(q)
+        plan = self.plan
+        plan.q[:] = q
+        return self._answer(plan, answers, t)
+
+    def _answer(self, plan: Plan, answers: Answers, t: float) -> Vector:
+        """Take a step at the joint positions that the plan holds."""
+        index = answers.count
+        model, data, tip, others = plan.pinocchio
+        computeJointJacobians(model, data, plan.q)
+        updateFramePlacement(model, data, tip)
+        if others or plan.inertia.size:
+            plan.update(plan.q)
         if plan.asks:
             plan.build(answers.program(index), answers.targets[index], t)
         state = self.solver.warm_state(plan.sizes)
@@ -290,7 +322,7 @@ class Controller:
             return 0
         rows, first, dt, step = answers.rows, answers.count, self.dt, control_step
         codes, work, jacobian, placements = plan.compiled
-        model, data, tip, others = plan.kinematics.pinocchio
+        model, data, tip, others = plan.pinocchio
         plan.q[:] = q
         moving, index = plan.q, first
         for index in range(first, first + count):
@@ -310,6 +342,7 @@ class Controller:
         """Take a first step, one that does not succeed, or one without a compiled form."""
         plan, index = self.plan, answers.count
         checks.finite_array("q", plan.q, (plan.q.size,))
+        checks.finite_array("target", answers.targets[index], (-1,))
         if not plan.asks:
             plan.assemble(answers.program(index), answers.targets[index])
         qp = answers.qp(index)
@@ -345,105 +378,6 @@ class Controller:
 
 
 _PLANNED = frozenset({"robot", "scheme", "reference", "dt", "mode", "policy", "solver"})
-
-
-class _Plan:
-    """All that does not change from step to step, and the arrays that compiled code works in.
-
-    Attributes:
-        layout: Blocks of the scheme; None where the scheme builds its programs in its own way.
-        kinematics: The robot's, overwritten at each step.
-        sizes: ``(n, m, p)`` of the programs.
-        version: Version of the solver's parameters.
-        expected: Status of an answer that is taken.
-        network: The solver's compiled form, if it has one.
-        compiled: Arguments of `control_step`: codes, work, jacobian, placements.
-        last: Last command [rad/s], (n,), a view into the work array.
-        q: Joint positions [rad], (n,), likewise.
-        inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
-        asks: Whether Python code has to be asked for (a part of) the program.
-        row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
-    """
-
-    def __init__(self, controller: Controller) -> None:
-        """Lay a controller's scheme out for its robot.
-
-        Raises:
-            InvalidInputError: The scheme's program has another number of variables than it states.
-        """
-        robot, solver, scheme = controller.robot, controller.solver, controller.scheme
-        converged = controller.mode == "converged"
-        # A scheme of one's own may be any object with a build_qp.
-        own = getattr(type(scheme), "build_qp", None) is not Scheme.build_qp
-        self.layout = layout = None if own else scheme.layout(robot)
-        self._scheme, self._dt = scheme, controller.dt
-        dof = robot.dof
-        constants: Vector = np.zeros(0)
-        inertia = np.zeros(0)
-        if layout is None:
-            self.kinematics = Kinematics(robot)
-            self.sizes = _sizes_of(scheme, Configuration(robot, controller._q))
-            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0], dtype=np.int64)
-        else:
-            self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
-            self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
-            inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
-        self.asks = layout is None or bool(layout.custom)
-        self.row_weights = None if layout is None else layout.row_weights
-        self.version = solver.version
-        self.expected = Status.SOLVED if converged else Status.ADVANCED
-        # A subclass that solves in a way of its own is asked, not bypassed.
-        compiled = type(solver) is DNNSolver
-        self.network = solver.numbers(0.0 if converged else controller.dt) if compiled else None
-        network = np.zeros(NETWORK) if self.network is None else self.network
-        head = [1.0 / controller.dt, *np.zeros(2 * dof)]
-        work = np.concatenate([head, network, inertia, constants])
-        self.last, self.q = work[1 : 1 + dof], work[1 + dof : 1 + 2 * dof]
-        self.inertia = work[1 + 2 * dof + NETWORK :][: inertia.size]
-        self._constants = work[1 + 2 * dof + NETWORK + inertia.size :]
-        self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
-
-    def update(self, q: Vector) -> None:
-        """Bring the kinematics to joint positions q (n,) [rad]."""
-        self.q[:] = q
-        self.kinematics.update(self.q)
-        if self.inertia.size:
-            self.inertia[:] = self.kinematics.inertia.ravel()
-
-    def assemble(self, data: Vector, targets: Vector) -> None:
-        """Write the program of the compiled parts into `data`."""
-        codes, work, jacobian, placements = self.compiled
-        assemble(
-            data, codes, self._constants, self.q, jacobian, placements, self.inertia, targets,
-            work[0],
-        )  # fmt: skip
-
-    def build(self, data: Vector, targets: Vector, t: float) -> None:
-        """Write the whole program into `data`."""
-        if self.layout is None:
-            conf = Configuration(self.kinematics.robot, self.q)
-            qp = self._scheme.build_qp(conf, Target.from_data(targets))
-            if qp.sizes != self.sizes:
-                problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
-                raise InvalidInputError("scheme", problem)
-            data[:] = qp.data
-            return
-        self.assemble(data, targets)
-        if self.layout.custom:
-            names = self.layout.target_frames
-            by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(names)}
-            step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
-            self.layout.fill(data, step)
-
-
-def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:
-    """Sizes of the programs of a scheme that builds them in a way of its own, from one of them."""
-    sizes = scheme.build_qp(conf, Target(conf.position, conf.rotation)).sizes
-    dof, slack = conf.robot.dof, getattr(scheme, "slack", 0)
-    if sizes[0] != dof + slack:
-        problem = f"built a program in {sizes[0]} variables for {dof} joints and {slack} slacks"
-        raise InvalidInputError("scheme", problem, scheme)
-    return sizes
 
 
 def warn_if_far(start: Configuration, first: Target, stacklevel: int) -> None:

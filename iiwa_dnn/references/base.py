@@ -49,7 +49,7 @@ class Reference(ABC):
     Attributes:
         name: Name of the path in settings and on the command line.
         path: Compiled form of the path, where it has one: it adds displacement and velocity at
-            times (k,), with the path's `numbers`, to targets (k, 18).
+            times (k,), with the path's `numbers`, to targets (k, 18) from a row and column on.
         numbers: Constants of the compiled form, (c,).
         origin: Position of displacement 0 [m], shape (3,), read-only.
         orientation: Orientation at all times, shape (3, 3), read-only.
@@ -90,6 +90,19 @@ class Reference(ABC):
         """
         return self._along(t)[..., 12:15]
 
+    @property
+    def compiled(self) -> Any:
+        """`path`, where no subclass says otherwise how the path runs; else None."""
+        cls = type(self)
+        own = (cls.displacement, cls.velocity, cls._targets)
+        inherited = (Reference.displacement, Reference.velocity, Reference._targets)
+        return cls.path if own == inherited else None
+
+    @property
+    def base(self) -> NDArray[np.float64]:
+        """The target at the path's origin, at rest: `Target.data`, (18,)."""
+        return self._base
+
     def _along(self, t: ArrayLike) -> NDArray[np.float64]:
         """Displacements and velocities in the places that targets have them, (..., 18)."""
         path = type(self).path
@@ -97,7 +110,7 @@ class Reference(ABC):
             raise TypeError(f"{type(self).__name__} overrides neither displacement nor path")
         times = np.asarray(t, dtype=np.float64)
         moved = np.zeros((times.size, _AT_REST.size))
-        path(np.ascontiguousarray(times.ravel()), self.numbers, moved)
+        path(np.ascontiguousarray(times.ravel()), self.numbers, moved, 0, 0)
         return moved.reshape(*times.shape, _AT_REST.size)
 
     @property
@@ -164,9 +177,8 @@ class Reference(ABC):
         """`Target.data` at times (k,), one a row."""
         targets = np.empty((times.size, _AT_REST.size))
         targets[:] = self._base
-        cls = type(self)
-        if cls.path is not None and cls.displacement is Reference.displacement:
-            cls.path(times, self.numbers, targets)
+        if self.compiled is not None:
+            self.compiled(times, self.numbers, targets, 0, 0)
         else:
             targets[:, :3] += self.displacement(times)
             targets[:, 12:15] = self.velocity(times)

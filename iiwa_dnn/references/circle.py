@@ -14,8 +14,8 @@ from iiwa_dnn.references.base import Array, Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array) -> None:
-    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
     radius, rate = numbers[0], numbers[1]
     for k in range(times.size):
         p = rate * times[k]
@@ -23,8 +23,8 @@ def _path(times: Array, numbers: Array, out: Array) -> None:
         along_u, along_v = -2.0 * np.sin(0.5 * p) ** 2, np.sin(p)
         for i in range(3):
             u, v = numbers[2 + i], numbers[5 + i]
-            out[k, i] += radius * (along_u * u + along_v * v)
-            out[k, 12 + i] += rate * radius * (np.cos(p) * v - np.sin(p) * u)
+            out[row + k, column + i] += radius * (along_u * u + along_v * v)
+            out[row + k, column + 12 + i] += rate * radius * (np.cos(p) * v - np.sin(p) * u)
 
 
 @dataclass(frozen=True, eq=False)

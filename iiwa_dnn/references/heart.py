@@ -13,18 +13,18 @@ from iiwa_dnn.references.base import Array, Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array) -> None:
-    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
     scale, rate = numbers[0], numbers[1]
     for k in range(times.size):
         p = rate * times[k]
         s1, c1 = np.sin(p), np.cos(p)
-        out[k, 0] += scale * 16.0 * s1 * s1 * s1
+        out[row + k, column] += scale * 16.0 * s1 * s1 * s1
         y = 13.0 * c1 - 5.0 * np.cos(2.0 * p) - 2.0 * np.cos(3.0 * p) - np.cos(4.0 * p) - 5.0
-        out[k, 1] += scale * y
-        out[k, 12] += rate * scale * 48.0 * s1 * s1 * c1
+        out[row + k, column + 1] += scale * y
+        out[row + k, column + 12] += rate * scale * 48.0 * s1 * s1 * c1
         y = -13.0 * s1 + 10.0 * np.sin(2.0 * p) + 6.0 * np.sin(3.0 * p) + 4.0 * np.sin(4.0 * p)
-        out[k, 13] += rate * scale * y
+        out[row + k, column + 13] += rate * scale * y
 
 
 @dataclass(frozen=True, eq=False)

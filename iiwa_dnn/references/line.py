@@ -14,16 +14,16 @@ from iiwa_dnn.references.base import Array, Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array) -> None:
-    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
     rate = numbers[0]
     for k in range(times.size):
         p = rate * times[k]
         # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
         share, speed = np.sin(0.5 * p) ** 2, 0.5 * rate * np.sin(p)
         for i in range(3):
-            out[k, i] += share * numbers[1 + i]
-            out[k, 12 + i] += speed * numbers[1 + i]
+            out[row + k, column + i] += share * numbers[1 + i]
+            out[row + k, column + 12 + i] += speed * numbers[1 + i]
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,14 +14,14 @@ from iiwa_dnn.references.base import Array, Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array) -> None:
-    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
     for k in range(times.size):
         for i in range(3):
             amplitude, rate, shift = numbers[i], numbers[3 + i], numbers[6 + i]
             angle = rate * times[k] + shift
-            out[k, i] += amplitude * (np.sin(angle) - np.sin(shift))
-            out[k, 12 + i] += amplitude * rate * np.cos(angle)
+            out[row + k, column + i] += amplitude * (np.sin(angle) - np.sin(shift))
+            out[row + k, column + 12 + i] += amplitude * rate * np.cos(angle)
 
 
 @dataclass(frozen=True, eq=False)

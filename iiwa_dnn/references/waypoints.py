@@ -28,8 +28,8 @@ _CLOSED_WITHIN = 1e-9  # [m]
 
 
 @njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array) -> None:
-    """Add displacement and velocity to targets (k, 18); see `Reference.path`."""
+def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
     closed, pieces = numbers[0] != 0.0, int(numbers[1])
     knots, end = numbers[2 : 3 + pieces], numbers[2 + pieces]
     for k in range(times.size):
@@ -40,8 +40,8 @@ def _path(times: Array, numbers: Array, out: Array) -> None:
         for i in range(3):
             at = 3 + pieces + 12 * piece + i
             a, b, c, d = numbers[at], numbers[at + 3], numbers[at + 6], numbers[at + 9]
-            out[k, i] += ((a * x + b) * x + c) * x + d
-            out[k, 12 + i] += moves * ((3.0 * a * x + 2.0 * b) * x + c)
+            out[row + k, column + i] += ((a * x + b) * x + c) * x + d
+            out[row + k, column + 12 + i] += moves * ((3.0 * a * x + 2.0 * b) * x + c)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

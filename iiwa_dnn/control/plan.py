@@ -1,0 +1,125 @@
+"""A scheme laid out for a robot's control loop: the arrays that its compiled steps work in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn.control.step import NETWORK
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import Status, Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes import Scheme, Step
+from iiwa_dnn.schemes.assembly import assemble
+
+
+class Plan:
+    """All that does not change from step to step, and the arrays that compiled code works in.
+
+    Attributes:
+        layout: Blocks of the scheme; None where the scheme builds its programs in its own way.
+        kinematics: The robot's, overwritten at each step.
+        sizes: ``(n, m, p)`` of the programs.
+        version: Version of the solver's parameters.
+        expected: Status of an answer that is taken.
+        network: The solver's compiled form, if it has one.
+        pinocchio: `Kinematics.pinocchio`.
+        compiled: Arguments of `control_step`: codes, work, jacobian, placements.
+        last: Last command [rad/s], (n,), a view into the work array.
+        q: Joint positions [rad], (n,), likewise.
+        inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
+        asks: Whether Python code has to be asked for (a part of) the program.
+        frames: Names of the frames that tasks track, in the order of the targets.
+        row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
+    """
+
+    def __init__(
+        self, robot: Robot, scheme: Scheme, solver: DNNSolver, dt: float, converged: bool, q: Vector
+    ) -> None:
+        """Lay a scheme out for a robot.
+
+        Args:
+            robot: The robot, n joints.
+            scheme: The scheme.
+            solver: The network that answers its programs.
+            dt: Control period [s].
+            converged: Whether the network settles at every step.
+            q: Joint positions [rad], (n,), at which a scheme of one's own is asked for its sizes.
+
+        Raises:
+            InvalidInputError: The scheme's program has another number of variables than it states.
+        """
+        # A scheme of one's own may be any object with a build_qp.
+        own = getattr(type(scheme), "build_qp", None) is not Scheme.build_qp
+        self.layout = layout = None if own else scheme.layout(robot)
+        self._scheme, self._dt = scheme, dt
+        dof = robot.dof
+        constants: Vector = np.zeros(0)
+        inertia = np.zeros(0)
+        if layout is None:
+            self.kinematics = Kinematics(robot)
+            self.sizes = _sizes_of(scheme, Configuration(robot, q))
+            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0], dtype=np.int64)
+        else:
+            self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
+            self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
+            inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
+        self.asks = layout is None or bool(layout.custom)
+        self.frames = (robot.tip,) if layout is None else layout.target_frames
+        self.row_weights = None if layout is None else layout.row_weights
+        self.version = solver.version
+        self.expected = Status.SOLVED if converged else Status.ADVANCED
+        # A subclass that solves in a way of its own is asked, not bypassed.
+        compiled = type(solver) is DNNSolver
+        self.network = solver.numbers(0.0 if converged else dt) if compiled else None
+        network = np.zeros(NETWORK) if self.network is None else self.network
+        head = [1.0 / dt, *np.zeros(2 * dof)]
+        work = np.concatenate([head, network, inertia, constants])
+        self.last, self.q = work[1 : 1 + dof], work[1 + dof : 1 + 2 * dof]
+        self.inertia = work[1 + 2 * dof + NETWORK :][: inertia.size]
+        self._constants = work[1 + 2 * dof + NETWORK + inertia.size :]
+        self.pinocchio = self.kinematics.pinocchio
+        self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
+
+    def update(self, q: Vector) -> None:
+        """Bring the kinematics to joint positions q (n,) [rad]."""
+        self.q[:] = q
+        self.kinematics.update(self.q)
+        if self.inertia.size:
+            self.inertia[:] = self.kinematics.inertia.ravel()
+
+    def assemble(self, data: Vector, targets: Vector) -> None:
+        """Write the program of the compiled parts into `data`."""
+        codes, work, jacobian, placements = self.compiled
+        assemble(
+            data, codes, self._constants, self.q, jacobian, placements, self.inertia, targets,
+            work[0],
+        )  # fmt: skip
+
+    def build(self, data: Vector, targets: Vector, t: float) -> None:
+        """Write the whole program into `data`."""
+        if self.layout is None:
+            conf = Configuration(self.kinematics.robot, self.q)
+            qp = self._scheme.build_qp(conf, Target.from_data(targets))
+            if qp.sizes != self.sizes:
+                problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
+                raise InvalidInputError("scheme", problem)
+            data[:] = qp.data
+            return
+        self.assemble(data, targets)
+        if self.layout.custom:
+            by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(self.frames)}
+            step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
+            self.layout.fill(data, step)
+
+
+def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:
+    """Sizes of the programs of a scheme that builds them in a way of its own, from one of them."""
+    sizes = scheme.build_qp(conf, Target(conf.position, conf.rotation)).sizes
+    dof, slack = conf.robot.dof, getattr(scheme, "slack", 0)
+    if sizes[0] != dof + slack:
+        problem = f"built a program in {sizes[0]} variables for {dof} joints and {slack} slacks"
+        raise InvalidInputError("scheme", problem, scheme)
+    return sizes
