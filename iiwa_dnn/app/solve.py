@@ -80,7 +80,9 @@ def _solve(settings: SolveSettings) -> int:
     if settings.out is not None and solution.found:
         # The file's name is taken as it is; numpy would put .npz behind it.
         parts = {"x": solution.x, "y": solution.y, "z": solution.z, "z_box": solution.z_box}
-        kept: dict[str, Any] = {k: value for k, value in parts.items() if value is not None}
+        kept: dict[str, Any] = {
+            k: value for k, value in parts.items() if value is not None and value.size
+        }
         write_atomically(settings.out, lambda file: np.savez(file, **kept))
     if not settings.quiet:
         print("\n".join(_lines(qp, solution, settings)))
@@ -104,7 +106,7 @@ def _lines(qp: QP, solution: qpsolvers.Solution, settings: SolveSettings) -> lis
     if settings.verbose:
         for name in ("y", "z", "z_box"):
             value = getattr(solution, name)
-            if value is not None:
+            if value is not None and value.size:
                 lines.append(f"{name:<11}{_numbers(value)}")
     check = CrossCheck(CHECKS[settings.check])
     agreement = check.check(qp, np.asarray(solution.x))

@@ -65,7 +65,7 @@ class Answers:
             self.shape(qp.sizes)
         row = self.rows[self.count]
         row[self._program], row[self._point] = qp.data, solution.point
-        row[-FIGURES:-16] = (solution.iterations, solution.network_time, *solution[-3:])
+        row[-FIGURES:-16] = (solution.iterations, solution.network_time, *solution.residuals)
         row[-16:] = pose.ravel()
         if solution.status is not self.status:
             self.unsolved[self.count] = solution

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import numpy as np
 
 from iiwa_dnn.control.controller import Mode
+from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
@@ -90,6 +91,8 @@ class HeartRun:
 
     def simulation(self) -> Simulation:
         """The run, ready to be carried out, without reference solvers."""
+        # Implicit steps of the flow without the projection are convex problems, and compiled.
+        network = ProjectionNetwork(primal_projection=self.substeps != "implicit")
         return Simulation(
             paper_robot(),
             self.scheme(),
@@ -104,7 +107,7 @@ class HeartRun:
             filter_window=self.filter_window,
             seed=self.seed,
             check=CrossCheck(()),
-            solver=DNNSolver(follower=self.follower()),
+            solver=DNNSolver(network, follower=self.follower()),
         )
 
     def scheme(self) -> Scheme:

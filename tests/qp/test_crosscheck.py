@@ -182,6 +182,21 @@ def test_a_reference_that_is_not_a_number_is_not_believed(
     assert np.isnan(agreement.solution_gap).all()
 
 
+@pytest.mark.parametrize(("lb", "ub"), [(1.0, np.inf), (-np.inf, -1.0)])
+def test_a_reference_outside_its_bounds_is_not_believed(
+    lb: float, ub: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Zero is stationary and leaves no gap, and lies outside the bounds by one.
+    def answer(problem: qpsolvers.Problem, **options: object) -> qpsolvers.Solution:
+        return qpsolvers.Solution(problem, found=True, x=np.zeros(2), z_box=np.zeros(2))
+
+    monkeypatch.setattr(qpsolvers, "solve_problem", answer)
+    qp = QP(np.eye(2), np.zeros(2), lb=[lb] * 2, ub=[ub] * 2)
+    agreement = EACH[0].check(qp, np.zeros(2))
+    np.testing.assert_array_equal(agreement.reference_residual, [[1.0]])
+    assert np.isnan(agreement.solution_gap).all()
+
+
 def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.MonkeyPatch) -> None:
     # ProxQP takes minutes over one NaN, OSQP its whole budget of iterations.
     asked = []
