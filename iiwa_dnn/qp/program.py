@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.residuals import point_residuals
 from iiwa_dnn.qp.solution import Residuals
 
@@ -39,7 +39,7 @@ ROUNDING = 1e-10
 
 
 @lru_cache
-def _places(sizes: tuple[int, int, int]) -> tuple[tuple[slice, tuple[int, ...]], ...]:
+def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
     """Place and shape of each field in `QP.data`."""
     n, m, p = sizes
     shapes: tuple[tuple[int, ...], ...] = (
@@ -88,7 +88,7 @@ class QP:
     __slots__ = ("data", "sizes")
 
     data: Vector
-    sizes: tuple[int, int, int]
+    sizes: Sizes
     P, q, G, h = _Field("P"), _Field("q"), _Field("G"), _Field("h")
     A, b, lb, ub = _Field("A"), _Field("b"), _Field("lb"), _Field("ub")
 
@@ -125,7 +125,7 @@ class QP:
         self.data = np.concatenate([arrays[name].ravel() for name in FIELDS])
 
     @classmethod
-    def from_data(cls, data: Vector, sizes: tuple[int, int, int]) -> QP:
+    def from_data(cls, data: Vector, sizes: Sizes) -> QP:
         """A program over an existing `data` array (size,), which is not copied.
 
         Raises:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Sizes, Vector
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -75,7 +75,7 @@ class Solution(NamedTuple):
     """
 
     point: Vector
-    sizes: tuple[int, int, int]
+    sizes: Sizes
     status: Status
     iterations: int
     network_time: float

@@ -56,6 +56,13 @@ def test_right_answers_are_agreed_with(check: CrossCheck, active: int) -> None:
 
 
 @pytest.mark.parametrize("check", EACH, ids=IDS)
+@pytest.mark.parametrize("rows", [{}, {"A": [[1.0, 1.0]], "b": [0.0]}, {"ub": [0.0, 0.0]}])
+def test_constraints_may_be_absent(check: CrossCheck, rows: dict) -> None:
+    qp = QP(np.eye(2), [-1.0, 1.0], **rows)
+    assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
 def test_dependent_rows_are_no_obstacle(check: CrossCheck) -> None:
     qp, x = known_qp(np.random.default_rng(52), 7, 4, 1, dependent=True)
     assert check.check(qp, x).solution_gap.max() <= 1e-7
