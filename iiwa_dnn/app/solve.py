@@ -35,7 +35,9 @@ def run(options: SolveOptions) -> int:
     if options.out is not None and solution.found:
         # The file's name is taken as it is; numpy would put .npz behind it.
         parts = {"x": solution.x, "y": solution.y, "z": solution.z, "z_box": solution.z_box}
-        kept: dict[str, Any] = {k: value for k, value in parts.items() if value is not None}
+        kept: dict[str, Any] = {
+            k: value for k, value in parts.items() if value is not None and value.size
+        }
         write_atomically(options.out, lambda file: np.savez(file, **kept))
     if not options.quiet:
         print("\n".join(_lines(qp, solution, options)))
@@ -92,7 +94,7 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
     lines += [f"objective  {solution.obj:.12g}", f"x          {_numbers(solution.x)}"]
     for name in ("y", "z", "z_box") if options.verbose else ():
         value = getattr(solution, name)
-        if value is not None:
+        if value is not None and value.size:
             lines.append(f"{name:<11}{_numbers(value)}")
     check = CrossCheck(CHECKS[options.check])
     agreement = check.check(qp, np.asarray(solution.x))

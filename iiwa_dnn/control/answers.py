@@ -64,7 +64,7 @@ class Answers:
             raise InvalidInputError("scheme", problem)
         row = self.rows[self.count]
         row[self._program], row[self._point] = qp.data, solution.point
-        row[self._figures] = (solution.iterations, solution.network_time, *solution[-3:])
+        row[self._figures] = (solution.iterations, solution.network_time, *solution.residuals)
         row[self._place], row[self._q] = place, q
         if solution.status is not self.status:
             self.unsolved[self.count] = solution

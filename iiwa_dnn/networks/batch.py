@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+import math
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
+import numba
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators import ImplicitEuler
-from iiwa_dnn.networks.integrators.implicit import settle_implicit
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_implicit
 from iiwa_dnn.qp.dense import cholesky_factor
-from iiwa_dnn.qp.layout import Matrix, Vector, compiled, offsets
+from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger
+from iiwa_dnn.qp.program import FIELDS, QP, ROUNDING, numbers, require_pairs
 
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""
-
-SOUND, NOT_FINITE, ASYMMETRIC, INDEFINITE, CROSSED = 0, 1, 2, 3, 4
-"""Faults of a program, as `QP.check_values` sees them."""
-
-_NAMES = ("P", "q", "G", "h", "A", "b", "lb", "ub")
-_FAULTS = {
-    NOT_FINITE: "has a value that is not finite",
-    ASYMMETRIC: "is not symmetric",
-    INDEFINITE: "is not positive semidefinite, problem not convex",
-    CROSSED: "exceeds ub",
-}
 
 
 class BatchSolution(NamedTuple):
@@ -41,6 +33,8 @@ class BatchSolution(NamedTuple):
         found: Whether every residual is at most the tolerance, (k,).
         residuals: Primal residual, dual residual and duality gap, (k, 3).
         iterations: Linear systems solved, (k,).
+        faults: Errors of programs that no convex solver could make sense of, by their number.
+            Their points are NaN.
     """
 
     x: Matrix
@@ -50,6 +44,7 @@ class BatchSolution(NamedTuple):
     found: NDArray[np.bool_]
     residuals: Matrix
     iterations: NDArray[np.int64]
+    faults: dict[int, InvalidInputError]
 
 
 def solve_batch(
@@ -65,9 +60,10 @@ def solve_batch(
 ) -> BatchSolution:
     """Solve k programs with the paper's network, integrated implicitly, each from a cold start.
 
-    The programs are shared out over all cores (numba's threads; `NUMBA_NUM_THREADS` limits them).
-    Each answer depends on its own program alone. At most 1000 linear systems are solved for each,
-    and no certificate is looked for: `DNNSolver` does that for those that were not found.
+    The programs are shared out over all cores (`NUMBA_NUM_THREADS` limits them). Each answer
+    depends on its own program alone, and a program with a wrong value spoils no other: it is not
+    found, and `faults` names its argument. At most 1000 linear systems are solved for each, and no
+    certificate is looked for: `DNNSolver` does that for those that were not found.
 
     Args:
         P: Cost matrices, (k, n, n), or (n, n) for one that all share. The same holds for the
@@ -82,67 +78,47 @@ def solve_batch(
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
 
     Raises:
-        InvalidInputError: An array has the wrong shape or a wrong value, a P is not symmetric or
-            not positive semidefinite, or a lower bound exceeds its upper bound. The message names
-            the argument and the program.
+        InvalidInputError: An array has the wrong shape, or one that all programs share has a value
+            that spoils them all (`QP.check_values`). The message names the argument.
     """
     checks.positive("tol", tol)
-    arrays = {
-        name: _numbers(name, value)
-        for name, value in zip(_NAMES, (P, q, G, h, A, b, lb, ub), strict=True)
-        if value is not None
-    }
-    for left, right in (("G", "h"), ("A", "b")):
-        if (left in arrays) != (right in arrays):
-            missing, given = (left, right) if right in arrays else (right, left)
-            raise InvalidInputError(missing, f"is missing though {given} is given")
+    given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+    arrays = {name: numbers(name, value) for name, value in given if value is not None}
+    require_pairs(arrays)
+    shapes = _shapes(arrays)
+    count = _count(arrays, shapes)
+    (n,), (m,), (p,) = shapes["q"], shapes["h"], shapes["b"]
+    arrays = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf), **arrays}
+    rows = [_as_rows(arrays.get(name, np.empty(shape)), shape) for name, shape in shapes.items()]
+    points, residuals = np.full((count, 2 * n + m + p), np.nan), np.empty((count, 3))
+    iterations = np.zeros(count, dtype=np.int64)
+    _settle_all(rows, (n, m, p), tol, points, residuals, iterations)
+    found = np.all(residuals <= tol, axis=1)
+    faults = _faults(rows, (n, m, p), np.flatnonzero(~found))
+    if len(faults) == count and arrays[faults[0].argument].shape == shapes[faults[0].argument]:
+        raise faults[0]
+    for k in faults:
+        points[k], residuals[k], iterations[k] = np.nan, np.inf, 0
+    x, y, z, z_box = np.split(points, [n, n + p, n + p + m], axis=1)
+    return BatchSolution(x, y, z, z_box, found, residuals, iterations, faults)
+
+
+def _shapes(arrays: dict[str, NDArray[np.float64]]) -> dict[str, tuple[int, ...]]:
+    """Shapes of the eight arrays of one program; G, A and q decide on m, p and n."""
     n = arrays["q"].shape[-1] if arrays["q"].ndim else 0
     if n == 0:
-        raise InvalidInputError("q", "is empty", q)
-    m, p = (arrays[name].shape[-1] if name in arrays and arrays[name].ndim else 0 for name in "hb")
-    shapes = {
+        raise InvalidInputError("q", "is empty")
+    m, p = (
+        arrays[left].shape[-2] if left in arrays and arrays[left].ndim > 1 else 0 for left in "GA"
+    )
+    return {
         "P": (n, n), "q": (n,), "G": (m, n), "h": (m,), "A": (p, n), "b": (p,),
         "lb": (n,), "ub": (n,),
     }  # fmt: skip
-    arrays.setdefault("lb", np.full(n, -np.inf))
-    arrays.setdefault("ub", np.full(n, np.inf))
-    count = _count(arrays, shapes)
-    rows = [
-        _as_rows(arrays.get(name, np.zeros(shapes[name])), len(shapes[name])) for name in _NAMES
-    ]
-    points, residuals = np.full((count, 2 * n + m + p), np.nan), np.full((count, 3), np.inf)
-    iterations, faults = np.zeros(count, dtype=np.int64), np.zeros((count, 2), dtype=np.int64)
-    settler = ImplicitEuler()
-    settle: Any = _settle_batch
-    settle(
-        *rows, n, m, p, tol, settler.max_steps, settler.long_step,
-        points, residuals, iterations, faults,
-    )  # fmt: skip
-    wrong = np.flatnonzero(faults[:, 0])
-    if wrong.size:
-        kind, argument = faults[wrong[0]].tolist()
-        raise InvalidInputError(_NAMES[argument], f"{_FAULTS[kind]}, in program {wrong[0]}")
-    return BatchSolution(
-        x=points[:, :n],
-        y=points[:, n : n + p],
-        z=points[:, n + p : n + p + m],
-        z_box=points[:, n + p + m :],
-        found=np.all(residuals <= tol, axis=1),
-        residuals=residuals,
-        iterations=iterations,
-    )
-
-
-def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    """An array of floats."""
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
 
 
 def _count(arrays: dict[str, NDArray[np.float64]], shapes: dict[str, tuple[int, ...]]) -> int:
-    """How many programs there are; every array has its own shape, that number in front or not."""
+    """Count the programs; every array has its own shape, that number in front or not."""
     count, counted_by = 1, ""
     for name, array in arrays.items():
         shape = shapes[name]
@@ -163,107 +139,93 @@ def _count(arrays: dict[str, NDArray[np.float64]], shapes: dict[str, tuple[int, 
     return count
 
 
-def _as_rows(array: NDArray[np.float64], axes: int) -> Matrix:
+def _as_rows(array: NDArray[np.float64], shape: tuple[int, ...]) -> Matrix:
     """One row for each program, or one for all; writable, since numba compiles each kind anew."""
-    rows = array.shape[0] if array.ndim > axes else 1
-    flat: Vector = np.ascontiguousarray(array).reshape(rows, array.size // rows)
+    rows = array.shape[0] if array.ndim > len(shape) else 1
+    flat = np.ascontiguousarray(array).reshape(rows, math.prod(shape))
     return flat if flat.flags.writeable else flat.copy()
 
 
-@compiled
-def _all_finite(data: Vector, begin: int, end: int) -> bool:
-    """Whether no entry from `begin` up to `end` is infinite or NaN."""
-    bad = False
-    for i in range(np.uint64(begin), np.uint64(end)):
-        bad |= data[i] - data[i] != 0.0
-    return not bad
+def _faults(
+    rows: list[Matrix], sizes: tuple[int, int, int], unsolved: NDArray[np.intp]
+) -> dict[int, InvalidInputError]:
+    """Check the values of the programs that were not solved; returns the errors by number."""
+    faults = {}
+    for k in unsolved.tolist():
+        data = np.concatenate([part[k if len(part) > 1 else 0] for part in rows])
+        try:
+            QP.from_data(data, sizes).check_values()
+        except InvalidInputError as error:
+            faults[k] = error
+    return faults
 
 
-@compiled
-def _not_finite(data: Vector, n: int, m: int, p: int) -> int:
-    """Index of the first argument of P q G h A b lb ub with a value it may not have, or -1."""
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
-    if not _all_finite(data, 0, at_q):
-        return 0
-    if not _all_finite(data, at_q, at_G):
-        return 1
-    if not _all_finite(data, at_G, at_G + m * n):
-        return 2
-    if not _all_finite(data, at_A, at_lb - p):
-        return 4
-    if not _all_finite(data, at_lb - p, at_lb):
-        return 5
-    for j in range(at_G + m * n, at_A):
-        if not data[j] > -np.inf:
-            return 3
-    for i in range(at_lb, at_lb + n):
-        if not data[i] < np.inf:
-            return 6
-        if not data[i + n] > -np.inf:
-            return 7
-    return -1
-
-
-@compiled
-def _fault_of_cost(data: Vector, n: int, K: Vector) -> int:
-    """What is wrong with P, which is finite."""
-    scale = 0.0
-    for i in range(n * n):
-        scale = max(scale, abs(data[i]))
-    for i in range(n):
-        for k in range(i):
-            if abs(data[i * n + k] - data[k * n + i]) > 1e-10 * scale:
-                return ASYMMETRIC
-    # Positive semidefinite to 1e-10 of its scale: P plus that much of the identity has a factor.
-    for i in range(n * n):
-        K[i] = data[i]
-    for i in range(n):
-        K[i * n + i] += 1e-10 * scale
-    return SOUND if scale == 0.0 or cholesky_factor(K, n) else INDEFINITE
-
-
-@njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
-def _settle_batch(
-    P: Matrix, q: Matrix, G: Matrix, h: Matrix, A: Matrix, b: Matrix, lb: Matrix, ub: Matrix,
-    n: int, m: int, p: int, tol: float, max_systems: int, long_step: float,
-    points: Matrix, residuals: Matrix, iterations: NDArray[np.int64], faults: NDArray[np.int64],
+def _settle_all(
+    parts: list[Matrix], sizes: tuple[int, int, int], tol: float, points: Matrix,
+    residuals: Matrix, iterations: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """Settle one program for each row of `points`, each from a cold start.
+    """Settle one program for each row of `points`, over all cores."""
+    settler, count = ImplicitEuler(), len(points)
 
-    An input has one row, which all programs share, or one for each program.
+    def settle(first: int) -> None:
+        _settle_rows(
+            first, min(first + CHUNK, count), tuple(parts), sizes, tol, settler.max_steps,
+            settler.long_step, points, residuals, iterations,
+        )  # fmt: skip
+
+    # Not numba's own threads: those end the process where two callers use them at once.
+    threads: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(settle, range(0, count, CHUNK)))
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+def _settle_rows(
+    first: int, last: int, parts: tuple[Matrix, ...], sizes: tuple[int, int, int], tol: float,
+    max_systems: int, long_step: float, points: Matrix, residuals: Matrix,
+    iterations: NDArray[np.int64],
+) -> None:  # fmt: skip
+    """Settle the programs from `first` up to `last`, each from a cold start.
+
+    A part has one row, which all programs share, or one for each program. Where the cost is not
+    convex the residuals are infinite.
     """
-    count = points.shape[0]
-    parts = n * n + n + m * n + m + p * n + p + 2 * n
-    for chunk in prange((count + CHUNK - 1) // CHUNK):
-        data, K = np.full(parts, np.nan), np.empty(n * n)
-        state = np.empty(3 * n + m + p)
-        for row in range(chunk * CHUNK, min((chunk + 1) * CHUNK, count)):
-            source = row if P.shape[0] > 1 else 0
-            fresh = False
-            for i in range(n * n):
-                fresh |= data[i] != P[source, i]
-                data[i] = P[source, i]
-            at = n * n
-            for part in (q, G, h, A, b, lb, ub):
-                source = row if part.shape[0] > 1 else 0
-                for i in range(part.shape[1]):
-                    data[at + i] = part[source, i]
-                at += part.shape[1]
-            argument, kind = _not_finite(data, n, m, p), SOUND
-            if argument >= 0:
-                kind = NOT_FINITE
-            elif fresh:
-                argument, kind = 0, _fault_of_cost(data, n, K)
-            for i in range(parts - 2 * n, parts - n):
-                if kind == SOUND and data[i] > data[i + n]:
-                    argument, kind = 6, CROSSED
-            faults[row, 0], faults[row, 1] = kind, argument
-            if kind != SOUND:
-                data[0] = np.nan  # the next one is looked at anew
-                continue
-            state[:] = 0.0
+    n, m, p = sizes
+    data, K = np.empty((n + m + p) * (n + 1) + 2 * n), np.empty(n * n)
+    state, convex = np.empty(3 * n + m + p), False
+    for row in range(first, last):
+        at = 0
+        for part in parts:
+            source = row if part.shape[0] > 1 else 0
+            for i in range(part.shape[1]):
+                data[at + i] = part[source, i]
+            at += part.shape[1]
+        for i in range(3):
+            residuals[row, i] = np.inf
+        if row == first or parts[0].shape[0] > 1:
+            convex = _is_convex(data, n, K)
+        if convex:
+            for i in range(state.size):
+                state[i] = 0.0
             systems, _, primal, dual, gap = settle_implicit(
                 data, n, m, p, state, points[row], tol, max_systems, long_step
             )
             iterations[row] = systems
             residuals[row, 0], residuals[row, 1], residuals[row, 2] = primal, dual, gap
+
+
+@compiled
+def _is_convex(data: Vector, n: int, K: Vector) -> bool:
+    """Tell whether P is symmetric and positive semidefinite to `ROUNDING` of its scale."""
+    scale = 0.0
+    for i in range(n * n):
+        scale = larger(scale, abs(data[i]))
+    for i in range(n):
+        for k in range(i):
+            if not abs(data[i * n + k] - data[k * n + i]) <= ROUNDING * scale:
+                return False
+    for i in range(n * n):
+        K[i] = data[i]
+    for i in range(n):
+        K[i * n + i] += ROUNDING * scale
+    return scale == 0.0 or cholesky_factor(K, n)

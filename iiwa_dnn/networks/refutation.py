@@ -1,11 +1,12 @@
 r"""Search for a certificate that a program has no solution, along the way the network diverges.
 
-On an infeasible program the multipliers of the projection network grow
-for ever, on an unbounded one x does, and the difference of two long implicit steps tends to the
-direction of that growth: for the plain saddle-point flow this is the minimal displacement of a
-nonexpansive map, as in G. Banjac, P. Goulart, B. Stellato, S. Boyd, "Infeasibility detection in the
-alternating direction method of multipliers for convex optimization", J. Optim. Theory Appl. 183
-(2019). Least squares on the rows that take part then takes out what is left of the residuals.
+On an infeasible program the multipliers of the projection network grow for ever, on an unbounded
+one x does, and the difference of two long implicit steps tends to the direction of that growth: for
+the plain saddle-point flow this is the minimal displacement of a nonexpansive map, as in
+G. Banjac, P. Goulart, B. Stellato, S. Boyd, "Infeasibility detection in the alternating direction
+method of multipliers for convex optimization", J. Optim. Theory Appl. 183 (2019). Least squares on
+the rows that take part then takes out the rest of the residuals, and `iiwa_dnn.qp.certificates`
+verifies the result.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ import numpy as np
 from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_implicit
 from iiwa_dnn.qp.certificates import (
     RADIUS,
-    Certificate,
     infeasibility_radius,
+    towards_bound,
     unboundedness_radius,
 )
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 from iiwa_dnn.qp.solution import Status
@@ -33,7 +34,7 @@ _LONG = 1e6
 _SHARES = (1e-8, 1e-6, 1e-4, 1e-2)
 
 
-def find_certificate(qp: QP, point: Vector) -> Certificate | None:
+def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
     """Follow the network from where it was given up, and prove that there is no solution.
 
     Takes at most `ROUNDS` + 1 implicit steps, of at most 100 linear systems each, and after each
@@ -41,12 +42,15 @@ def find_certificate(qp: QP, point: Vector) -> Certificate | None:
 
     Args:
         qp: The program.
-        point: ``[x | y | z | z_box]``, where the network was given up.
+        point: ``[x | y | z | z_box]`` where the network was given up.
 
     Returns:
-        A verified certificate; None where none was found, which proves nothing.
+        ``PRIMAL_INFEASIBLE`` with multipliers ``[y | z | z_box]`` of size p + m + n, or
+        ``UNBOUNDED`` with a direction (n,), verified; None where none was found, which proves
+        nothing.
     """
     n, m, p = qp.sizes
+    check_size("point", point, 2 * n + m + p)
     z_box = point[-n:]
     state = np.concatenate([point[:-n], np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
     before, after = np.empty(point.size), np.empty(point.size)
@@ -68,46 +72,42 @@ def find_certificate(qp: QP, point: Vector) -> Certificate | None:
     return None
 
 
-def _verified(qp: QP, growth: Vector) -> Certificate | None:
-    """The certificate that a growth of ``[x | y | z | z_box]`` leads to, if it can be verified."""
+def _verified(qp: QP, growth: Vector) -> tuple[Status, Vector] | None:
+    """Polish a growth of ``[x | y | z | z_box]``; returns a certificate that can be verified."""
     n = qp.sizes[0]
     multipliers = [growth[n:], *(_polished_multipliers(qp, growth[n:], s) for s in _SHARES)]
     radius, best = max((infeasibility_radius(qp, c), i) for i, c in enumerate(multipliers))
     if radius >= RADIUS:
-        return Certificate(Status.PRIMAL_INFEASIBLE, multipliers[best])
+        return Status.PRIMAL_INFEASIBLE, multipliers[best]
     directions = [growth[:n], *(_polished_direction(qp, growth[:n], s) for s in _SHARES)]
     radius, best = max((unboundedness_radius(qp, c), i) for i, c in enumerate(directions))
-    return Certificate(Status.UNBOUNDED, directions[best]) if radius >= RADIUS else None
+    return (Status.UNBOUNDED, directions[best]) if radius >= RADIUS else None
 
 
 def _nearest(qp: QP, growth: Vector) -> Vector:
-    """The nearest direction and the nearest multipliers that have a certificate's signs and zeros.
+    """Find the nearest direction and multipliers that have a certificate's signs and zeros.
 
-    Both are strictly convex programs, which the network settles. The growth may not be there yet:
+    Both solve strictly convex programs, which the network settles. The growth may not be there yet:
     a row takes no part in it as long as its slack is not used up, which can take very long.
     """
     n, m, p = qp.sizes
-    upper, lower = qp.ub < np.inf, qp.lb > -np.inf
-    limited = np.isfinite(qp.h)
-    zeros = _unit_rows(np.vstack([qp.P, qp.A]))
+    upper, lower, limited = qp.ub < np.inf, qp.lb > -np.inf, np.isfinite(qp.h)
+    zeros, falling = _unit_rows(np.vstack([qp.P, qp.A])), _unit_rows(qp.G[limited])
     direction = QP(
-        np.eye(n), -growth[:n], _unit_rows(qp.G[limited]), np.zeros(int(limited.sum())),
-        zeros, np.zeros(zeros.shape[0]),
+        np.eye(n), -growth[:n], falling, np.zeros(len(falling)), zeros, np.zeros(len(zeros)),
         np.where(lower, 0.0, -np.inf), np.where(upper, 0.0, np.inf),
     )  # fmt: skip
-    rows = np.hstack([qp.A.T, qp.G.T, np.eye(n)])
-    most = np.where(np.concatenate([np.ones(p, bool), limited, upper]), np.inf, 0.0)
-    least = np.where(np.concatenate([np.ones(p, bool), np.zeros(m, bool), lower]), -np.inf, 0.0)
-    size = p + m + n
-    zeros = _unit_rows(rows)
+    zeros, free = _unit_rows(np.hstack([qp.A.T, qp.G.T, np.eye(n)])), np.ones(p, bool)
+    least = np.where(np.concatenate([free, np.zeros(m, bool), lower]), -np.inf, 0.0)
+    most = np.where(np.concatenate([free, limited, upper]), np.inf, 0.0)
     multipliers = QP(
-        np.eye(size), -growth[n:], A=zeros, b=np.zeros(zeros.shape[0]), lb=least, ub=most
+        np.eye(p + m + n), -growth[n:], A=zeros, b=np.zeros(len(zeros)), lb=least, ub=most
     )
     return np.concatenate([_settled(direction), _settled(multipliers)])
 
 
 def _settled(qp: QP) -> Vector:
-    """X of a program that has a solution, with the default integrator's settings."""
+    """Solve a program that has a solution, with the default integrator's settings."""
     n, m, p = qp.sizes
     state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
     settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
@@ -115,27 +115,24 @@ def _settled(qp: QP) -> Vector:
 
 
 def _polished_multipliers(qp: QP, vector: Vector, share: float) -> Vector:
-    """The nearest multipliers on the same rows whose residual is zero to rounding."""
+    """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
     _, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
-    weights = vector[: p + m].copy()
+    weights, bounds = vector[: p + m].copy(), vector[p + m :]
     takes_part = np.abs(weights) > share
     takes_part[p:] &= (weights[p:] > 0.0) & np.isfinite(qp.h)
     weights[~takes_part] = 0.0
-    bounds = vector[p + m :]
     # A bound that takes part carries whatever the rows leave over; the others carry nothing.
-    carries = ((bounds > share) & (qp.ub < np.inf)) | ((bounds < -share) & (qp.lb > -np.inf))
+    carries = (np.abs(bounds) > share) & towards_bound(qp, bounds)
     weights[takes_part] = _on_null_space(rows[takes_part][:, ~carries].T, weights[takes_part])
     weights[p:] = np.maximum(weights[p:], 0.0)
     box = np.where(carries, -(rows.T @ weights), 0.0)
-    kept = ((box > 0.0) & (qp.ub < np.inf)) | ((box < 0.0) & (qp.lb > -np.inf))
-    return np.concatenate([weights, np.where(kept, box, 0.0)])
+    return np.concatenate([weights, np.where(towards_bound(qp, box), box, 0.0)])
 
 
 def _polished_direction(qp: QP, direction: Vector, share: float) -> Vector:
-    """The nearest direction, along the same rows, whose residuals are zero to rounding."""
-    moves = np.abs(direction) > share
-    moves &= ~((direction > 0.0) & (qp.ub < np.inf)) & ~((direction < 0.0) & (qp.lb > -np.inf))
+    """Find the nearest direction, along the same rows, whose residuals are zero to rounding."""
+    moves = (np.abs(direction) > share) & ~towards_bound(qp, direction)
     polished = np.where(moves, direction, 0.0)
     falls = qp.G @ polished < -share * np.abs(qp.G).sum(axis=1)
     rows = np.vstack([qp.P, qp.A, qp.G[~falls & np.isfinite(qp.h)]])[:, moves]
@@ -144,7 +141,7 @@ def _polished_direction(qp: QP, direction: Vector, share: float) -> Vector:
 
 
 def _on_null_space(rows: Matrix, vector: Vector) -> Vector:
-    """The projection of `vector` on the null space of `rows`, twice for the sake of rounding."""
+    """Project `vector` on the null space of `rows`, twice for the sake of rounding."""
     rows = _unit_rows(rows)
     if not rows.size:
         return vector
@@ -154,7 +151,7 @@ def _on_null_space(rows: Matrix, vector: Vector) -> Vector:
 
 
 def _unit_rows(rows: Matrix) -> Matrix:
-    """The rows that are not zero, each divided by its largest entry."""
+    """Return the rows that are not zero, each divided by its largest entry."""
     sizes = np.abs(rows).max(axis=1, initial=0.0)
     scaled: Matrix = rows[sizes > 0.0] / sizes[sizes > 0.0, None]
     return scaled

@@ -3,41 +3,50 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections import deque
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks import Network, ProjectionNetwork
+from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
+from iiwa_dnn.networks.integrators.continuation import within
+from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Refutation, Solution, Status
+from iiwa_dnn.qp.solution import Solution, Status
 
 if TYPE_CHECKING:
     import qpsolvers
 
+_PARTS = ("network", "tol", "settler", "follower")
 
-_PARTS = frozenset({"network", "tol", "settler", "follower"})
-"""Attributes whose change makes compiled constants (`DNNSolver.numbers`) stale."""
+Sizes = tuple[int, int, int]
 
 
 class DNNSolver:
     """A network, an integrator and a stopping rule, with a warm start kept between calls.
 
-    The network's state is carried from one program to the next as long as their shapes agree,
-    which is what a control loop wants.
+    The network's state is carried from one program to the next as long as their shapes agree, as a
+    control loop wants it. Threads may share a solver: a call takes the state away while it works on
+    it, and one that finds none starts from the network's initial state.
 
     Attributes:
         network: The ODE.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         settler: Integrator of `solve`, which runs until the residuals are below `tol`.
         follower: Integrator of `advance`, which runs for a given time.
-        version: Number of times that one of these was set.
+        version: Number of times that one of these was set anew: `numbers` of an older version are
+            out of date.
     """
 
+    network: Network
+    tol: float
+    settler: Integrator
+    follower: Integrator
     version: int
 
     def __init__(
@@ -52,29 +61,29 @@ class DNNSolver:
         Raises:
             InvalidInputError: `tol` is not a positive number.
         """
-        checks.positive("tol", tol)
-        self.network: Network = network if network is not None else ProjectionNetwork()
+        self._kept: deque[tuple[Network, Sizes, Vector]] = deque(maxlen=1)
+        self.version = -len(_PARTS)
+        self.network = network if network is not None else ProjectionNetwork()
         self.tol = tol
-        self.settler: Integrator = settler if settler is not None else ImplicitEuler()
-        self.follower: Integrator = follower if follower is not None else ExplicitEuler()
-        self._sizes: tuple[int, int, int] | None = None
-        self._state: Vector = np.empty(0)
-        self._point_size = 0
+        self.settler = settler if settler is not None else ImplicitEuler()
+        self.follower = follower if follower is not None else ExplicitEuler()
 
-    def __setattr__(self, name: str, value: object) -> None:
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name == "tol":
+            checks.positive("tol", value)
         super().__setattr__(name, value)
         if name in _PARTS:
-            self.version = getattr(self, "version", 0) + 1
+            self.version += 1
 
     @property
     def state(self) -> Vector:
-        """The network's state (size,), a copy; empty before the first call."""
-        copy: Vector = self._state.copy()
-        return copy
+        """The network's state (size,), a copy; empty where the next call has no warm start."""
+        warm = self._warm()
+        return np.empty(0) if warm is None else warm[2].copy()
 
     def reset(self) -> None:
         """Forget the warm start: the next call starts from the network's initial state."""
-        self._sizes = None
+        self._kept.clear()
 
     def disturb(self, noise: Vector) -> None:
         """Add noise (n,) [the unit of x] to x of the network's state; the next call starts there.
@@ -86,33 +95,45 @@ class DNNSolver:
         """
         if not self.network.carries_x:
             raise InvalidInputError("network", "holds no x in its state that could be disturbed")
-        if self._sizes is not None:
-            self._state[: self._sizes[0]] += noise
+        warm = self._warm()
+        if warm is not None:
+            _, (n, _, _), state = warm
+            state[:n] += noise
 
-    def warm_state(self, sizes: tuple[int, int, int]) -> Vector | None:
+    def warm_state(self, sizes: Sizes) -> Vector | None:
         """The state itself, (size,), where the last program had these sizes; otherwise None."""
-        return self._state if sizes == self._sizes else None
+        warm = self._warm()
+        if warm is None or warm[1] != sizes or warm[0] is not self.network:
+            return None
+        return warm[2]
 
     def numbers(self, duration: float = 0.0) -> Vector | None:
-        """What `control_step` needs to stand in for `solve` or `advance`.
+        """Collect the numbers that a compiled control step needs to stand in for this solver.
 
         Args:
             duration: Time to advance [s]; 0 stands for `solve`.
 
         Returns:
-            The numbers, (7,), or None where network or integrator has no compiled form.
+            ``[tol, budget of linear systems, long step, time to advance [rho], whether x is
+            projected, sub-steps or 0, SAFETY]``, (7,), or None where network or integrator has no
+            compiled form.
         """
-        network, settler, follower = self.network, self.settler, self.follower
-        if type(network) is not ProjectionNetwork:
+        form, settler, follower = self.network.compiled, self.settler, self.follower
+        if form is None:
             return None
-        projected = float(network.primal_projection)
+        # A subclass may integrate in a way of its own.
         if duration > 0.0 and type(follower) is ExplicitEuler:
-            ahead, substeps = duration / network.rho, follower.substeps or 0
-            return np.array([self.tol, 0.0, 0.0, ahead, projected, substeps, SAFETY])
+            ahead, substeps = duration / self.network.rho, follower.substeps or 0
+            return np.array([self.tol, 0.0, 0.0, ahead, form.project, substeps, SAFETY])
         if duration == 0.0 and type(settler) is ImplicitEuler:
             budget, long_step = settler.max_steps, settler.long_step
-            return np.array([self.tol, budget, long_step, 0.0, projected, 0.0, SAFETY])
+            return np.array([self.tol, budget, long_step, 0.0, form.project, 0.0, SAFETY])
         return None
+
+    def settings(self) -> dict[str, Any]:
+        """Tolerance, network and integrators, as values that JSON can hold."""
+        parts = {name: getattr(self, name) for name in ("network", "settler", "follower")}
+        return {"tol": float(self.tol), **{name: part.settings() for name, part in parts.items()}}
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and say how well it has.
@@ -123,18 +144,18 @@ class DNNSolver:
         Returns:
             The solution; `found` only where every residual is at most `tol`.
         """
-        sizes = qp.sizes
-        if sizes != self._sizes:
-            self._begin(qp)
-        point, tol = np.empty(self._point_size), self.tol
-        iterations, network_time, primal, dual, gap = self.settler.settle(
-            self.network, qp, self._state, point, tol
-        )
-        # No residual may be above the tolerance, and none NaN.
-        solved = primal <= tol and dual <= tol and gap <= tol
-        status = Status.SOLVED if solved else self._failed(primal + dual + gap)
-        solution = Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
-        return solution if solved else self._refuted(qp, solution)
+        network, tol, state, point = self.network, self.tol, self._take(qp), _point(qp)
+        settled = self.settler.settle(network, qp, state, point, tol)
+        _, _, primal, dual, gap = settled
+        if within(primal, dual, gap, tol):
+            self._kept.append((network, qp.sizes, state))
+            return Solution(point, qp.sizes, Status.SOLVED, *settled)
+        # The state is not kept: without a solution the multipliers grow without bound, or are no
+        # numbers any more, and would spoil every later call.
+        if not math.isfinite(primal + dual + gap):
+            return Solution(point, qp.sizes, Status.NOT_FINITE, *settled)
+        status, certificate = find_certificate(qp, point) or (Status.NOT_SETTLED, None)
+        return Solution(point, qp.sizes, status, *settled, certificate)
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration` and no more, settled or not.
@@ -146,35 +167,40 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        sizes = qp.sizes
-        if sizes != self._sizes:
-            self._begin(qp)
-        point = np.empty(self._point_size)
-        network_time = duration / self.network.rho
-        iterations = self.follower.advance(self.network, qp, self._state, network_time)
-        primal, dual, gap = self.network.read(qp, self._state, point)
-        total = primal + dual + gap
-        status = Status.ADVANCED if math.isfinite(total) else self._failed(total)
-        return Solution(point, sizes, status, iterations, network_time, primal, dual, gap)
+        network, state, point = self.network, self._take(qp), _point(qp)
+        time = duration / network.rho
+        iterations = self.follower.advance(network, qp, state, time)
+        residuals = network.read(qp, state, point)
+        status = Status.NOT_FINITE
+        if math.isfinite(sum(residuals)):
+            status = Status.ADVANCED
+            self._kept.append((network, qp.sizes, state))
+        return Solution(point, qp.sizes, status, iterations, time, *residuals)
 
-    def _begin(self, qp: QP) -> None:
-        """Start from the network's initial state, for programs of this shape."""
-        n, m, p = self._sizes = qp.sizes
-        self._point_size = 2 * n + m + p
-        self._state = self.network.initial_state(qp)
+    def _warm(self) -> tuple[Network, Sizes, Vector] | None:
+        """The last network, sizes and state; None where there are none, or a call has them."""
+        try:
+            return self._kept[-1]
+        except IndexError:
+            return None
 
-    def _refuted(self, qp: QP, last: Solution) -> Solution:
-        """The same solution, with a proof that there is none where one is found."""
-        if last.status is not Status.NOT_SETTLED:
-            return last
-        certificate = find_certificate(qp, last.point)
-        return Refutation.of(last, *certificate) if certificate is not None else last
+    def _take(self, qp: QP) -> Vector:
+        """Take the warm state, or make one; nobody else has it until it is put back."""
+        try:
+            network, sizes, state = self._kept.pop()
+        except IndexError:
+            sizes = (0, 0, 0)
+        if sizes == qp.sizes and network is self.network:
+            return state
+        state = np.array(self.network.initial_state(qp), dtype=np.float64)
+        check_size("network", state, self.network.state_size(qp))
+        return state
 
-    def _failed(self, residuals: float) -> Status:
-        # On a program without a solution the multipliers grow without bound, or are no numbers
-        # any more; carried on, they would spoil every later call.
-        self.reset()
-        return Status.NOT_SETTLED if math.isfinite(residuals) else Status.NOT_FINITE
+
+def _point(qp: QP) -> Vector:
+    """Make room for ``[x | y | z | z_box]``."""
+    n, m, p = qp.sizes
+    return np.empty(2 * n + m + p)
 
 
 def solve_problem(

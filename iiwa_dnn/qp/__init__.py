@@ -2,6 +2,6 @@
 
 from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Refutation, Residuals, Solution, Status
+from iiwa_dnn.qp.solution import Residuals, Solution, Status
 
-__all__ = ["QP", "Matrix", "Refutation", "Residuals", "Solution", "Status", "Vector"]
+__all__ = ["QP", "Matrix", "Residuals", "Solution", "Status", "Vector"]

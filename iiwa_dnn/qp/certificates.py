@@ -13,44 +13,29 @@ since a feasible x would have :math:`0 = r^T x \le v < 0`.
 **Unbounded.** A direction d with :math:`Pd = 0`, :math:`Ad = 0`, :math:`Gd \le 0`, d not towards a
 finite bound, and :math:`q^T d < 0`: from any feasible point the cost falls along it for ever.
 
-**In floating point** no residual is exactly zero, so what is computed, and what "verified" means
-here, is a radius. With r as it is, every feasible x has :math:`\|x\|_\infty \ge -v/\|r\|_1`. With
-the direction's residuals as they are, every KKT point has an entry of at least :math:`-q^T d` over
-the sum of their absolute values. Rounding is counted against the certificate. One is claimed only
-where the radius is at least `RADIUS`: then no solution with entries below it exists, whatever the
-tolerance of the solver.
+**In floating point** no residual is exactly zero, so a certificate has a radius, and is verified
+where it is at least `RADIUS`: then no solution with entries below it exists, whatever the tolerance
+of the solver. With r as it is, every feasible x has :math:`\|x\|_\infty \ge -v/\|r\|_1`. With the
+direction's residuals as they are, every KKT point has an entry of at least :math:`-q^T d` over the
+sum of their absolute values. Rounding is counted against the certificate.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Status
 
 RADIUS = 1e8
-"""A certificate is claimed only if no solution has all entries below this."""
+"""Radius from which on a certificate is claimed."""
 
 _EPS = float(np.finfo(float).eps)
 
 
-class Certificate(NamedTuple):
-    """A verified proof that a program has no solution.
-
-    Attributes:
-        status: ``PRIMAL_INFEASIBLE`` or ``UNBOUNDED``.
-        vector: ``[y | z | z_box]`` of size p + m + n, or the direction, (n,).
-    """
-
-    status: Status
-    vector: Vector
-
-
 def infeasibility_radius(qp: QP, vector: Vector) -> float:
-    """The radius below which no x is feasible, as the multipliers ``[y | z | z_box]`` prove.
+    """Compute the radius below which no x is feasible, as multipliers ``[y | z | z_box]`` prove.
 
     Args:
         qp: The program.
@@ -62,8 +47,7 @@ def infeasibility_radius(qp: QP, vector: Vector) -> float:
     """
     _, m, p = qp.sizes
     y, z, z_box = vector[:p], vector[p : p + m], vector[p + m :]
-    upper, lower = np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)
-    inside = np.concatenate([z, upper, lower])
+    inside = np.concatenate([z, np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
     limits = np.concatenate([qp.h, qp.ub, -qp.lb])
     used = inside != 0.0
     if not np.isfinite(vector).all() or (z < 0.0).any() or not np.isfinite(limits[used]).all():
@@ -75,7 +59,7 @@ def infeasibility_radius(qp: QP, vector: Vector) -> float:
 
 
 def unboundedness_radius(qp: QP, direction: Vector) -> float:
-    """The radius within which there is no KKT point, as the direction proves.
+    """Compute the radius within which there is no KKT point, as the direction proves.
 
     Args:
         qp: The program.
@@ -85,19 +69,22 @@ def unboundedness_radius(qp: QP, direction: Vector) -> float:
         A bound on the largest entry of x and of the multipliers of any KKT point; inf where the
         residuals are exactly zero, and 0 where nothing is proven.
     """
-    n = qp.sizes[0]
+    n, _, p = qp.sizes
     if not np.isfinite(direction).all():
         return 0.0
-    limited = np.isfinite(qp.h)
-    rows = np.vstack([qp.P, qp.A, qp.G[limited]])
+    rows = np.vstack([qp.P, qp.A, qp.G[np.isfinite(qp.h)]])
     values = rows @ direction
-    falling = n + qp.b.size  # below zero, an inequality's row is no residual
-    error = _rounding(n) * (np.abs(rows) @ np.abs(direction))
     wrong = np.abs(values)
-    wrong[falling:] = values[falling:]
-    outside = direction[(qp.ub < np.inf) & (direction > 0.0)].sum()
-    outside -= direction[(qp.lb > -np.inf) & (direction < 0.0)].sum()
+    wrong[n + p :] = values[n + p :]  # below zero, an inequality's row is no residual
+    error = _rounding(n) * (np.abs(rows) @ np.abs(direction))
+    outside = np.abs(direction[towards_bound(qp, direction)]).sum()
     return _radius(qp.q * direction, float(np.maximum(wrong + error, 0.0).sum() + outside))
+
+
+def towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
+    """Mark the entries of `vector` (n,) that point from the inside to a finite bound, (n,)."""
+    marked: NDArray[np.bool_] = (vector > 0.0) & (qp.ub < np.inf)
+    return marked | ((vector < 0.0) & (qp.lb > -np.inf))
 
 
 def _rounding(terms: int) -> float:
@@ -106,7 +93,7 @@ def _rounding(terms: int) -> float:
 
 
 def _radius(terms: Vector, residual: float) -> float:
-    """How far the certificate reaches: its value, against its residual; 0 if it has none."""
+    """Divide a certificate's value, less its rounding, by its residual; 0 if it has none."""
     value = -float(terms.sum() + _rounding(terms.size) * np.abs(terms).sum())
     if not value > 0.0:
         return 0.0

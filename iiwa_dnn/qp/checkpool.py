@@ -1,7 +1,7 @@
 """The cross-check behind a running loop: blocks of programs, judged here or in other processes.
 
-Every block is judged exactly once, in order of its number, wherever that happens: a worker that
-dies takes nothing with it, its blocks are done again here.
+Every block is judged exactly once, in order of its number, wherever that happens: the blocks of a
+worker that dies are judged again here.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.qp.layout import Matrix
+from iiwa_dnn.qp.layout import Matrix, Sizes
 
 _WORTH_A_PROCESS = 10_000
 """Programs from which on a worker's start, about a second, is repaid."""
@@ -19,15 +19,15 @@ _WORTH_A_PROCESS = 10_000
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
-Job = tuple[Matrix, tuple[int, int, int], Matrix]
+Job = tuple[Matrix, Sizes, Matrix]
 
 
 class CheckPool:
     """Judges blocks of programs while others are still being made.
 
     A block goes to a worker process that has room for it; where none has, the caller's own process
-    judges it at once. So all cores work, and what waits is bounded. Used as a context, it ends its
-    workers where an exception leaves it.
+    judges it at once. So all cores work, and the number of waiting blocks is bounded. Used as a
+    context, it ends its workers where an exception leaves it.
 
     Attributes:
         check: The references and the tolerances.
@@ -39,7 +39,7 @@ class CheckPool:
 
         Args:
             check: The references and the tolerances.
-            programs: How many programs will come in all.
+            programs: Number of programs that will come in all.
             workers: Processes beside the caller's; None takes the cores that are free, or none
                 where so few programs would not repay them.
         """
@@ -62,7 +62,7 @@ class CheckPool:
         if kind is not None and self._executor is not None:
             self._executor.shutdown(wait=False, kill_workers=True)
 
-    def submit(self, programs: Matrix, sizes: tuple[int, int, int], x: Matrix) -> None:
+    def submit(self, programs: Matrix, sizes: Sizes, x: Matrix) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged, (N, n)."""
         number, job = self._count, (programs, sizes, x)
         self._count += 1
@@ -88,7 +88,7 @@ class CheckPool:
         return Agreement.joined(parts, len(self.check.solvers))
 
     def _collect(self, only_done: bool) -> None:
-        """Take in the blocks that workers have judged; judge again here what one has lost."""
+        """Collect the verdicts of the workers; judge the blocks again that one has lost."""
         for number, (future, job) in list(self._waiting.items()):
             if only_done and not future.done():
                 continue

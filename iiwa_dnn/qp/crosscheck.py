@@ -1,7 +1,7 @@
-"""The same program, asked of an established solver, and how far its answer is from ours.
+"""Cross-check of an answer: the same program, put to an established solver.
 
-The reference gets P, q, A, b, lb and ub (and G, h where there are any) through qpsolvers, and
-nothing of the network's state. Its own residuals are looked at before it is believed.
+The reference gets the program through qpsolvers, and nothing of the network's state. Its own
+residuals are judged before it is believed.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import largest_residuals
 
@@ -49,7 +49,7 @@ SECOND = {"proxqp": "osqp", "osqp": "proxqp"}
 
 
 class Agreement(NamedTuple):
-    """What k reference solvers say of answers to N programs; NaN gaps where a reference failed.
+    """Gaps between answers to N programs and k reference solvers; NaN where a reference failed.
 
     Attributes:
         solution_gap: Largest difference in x, (N, k); joint velocities in [rad/s].
@@ -63,19 +63,19 @@ class Agreement(NamedTuple):
 
     @classmethod
     def joined(cls, parts: Sequence[Agreement], solvers: int) -> Agreement:
-        """The agreements of several blocks, one after the other, for k = `solvers`."""
+        """Concatenate the agreements of several blocks, for k = `solvers`."""
         nothing = [np.empty((0, solvers))]
         return cls(*(np.concatenate(nothing + [part[i] for part in parts]) for i in range(3)))
 
     def worst_of(self, group: int) -> Agreement:
-        """The largest of each `group` of consecutive programs, as for the stages of a step."""
+        """Take the largest of each `group` of consecutive programs, as for the stages of a step."""
         steps, k = len(self.solution_gap) // group, self.solution_gap.shape[1]
         return Agreement(*(array.reshape(steps, group, k).max(axis=1) for array in self))
 
 
 @dataclass(frozen=True)
 class CrossCheck:
-    """Reference solvers and what counts as agreement.
+    """Reference solvers, and the tolerances of an agreement.
 
     Attributes:
         solvers: Names of the references, out of ``SOLVERS``; none switches the check off.
@@ -106,7 +106,7 @@ class CrossCheck:
         """
         return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(x)[np.newaxis])
 
-    def check_block(self, programs: Matrix, sizes: tuple[int, int, int], x: Matrix) -> Agreement:
+    def check_block(self, programs: Matrix, sizes: Sizes, x: Matrix) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.
 
         Args:
@@ -118,12 +118,10 @@ class CrossCheck:
             Gaps and residuals, one row a program and one column a reference.
         """
         count, k = len(x), len(self.solvers)
-        if not k:
-            return Agreement(*(np.empty((count, 0)) for _ in range(3)))
         n, m, p = sizes
         points = np.full((count, k, 2 * n + m + p), np.nan)
         # Solvers may take minutes over one NaN.
-        askable = ~np.isnan(programs).any(axis=1)
+        askable = ~np.isnan(programs).any(axis=1) & (k > 0)
         for i in np.flatnonzero(askable):
             problem = QP.from_data(programs[i], sizes).to_qpsolvers()
             for j, name in enumerate(self.solvers):
@@ -154,7 +152,7 @@ class CrossCheck:
         """Write a solver's answer into `point`; one without an answer leaves it alone."""
         reference = self._solve(name, problem)
         if reference is not None and reference.x is not None:
-            _copy_point(reference, sizes, point)
+            point[:] = _point(reference, sizes)
 
     def _second_opinion(
         self, name: str, program: Vector, sizes: tuple[int, int, int]
@@ -174,11 +172,11 @@ class CrossCheck:
         return (point[0, 0], found) if found <= self.reference_tolerance else None
 
     def options(self, name: str) -> dict[str, Any]:
-        """What qpsolvers is given when it asks the reference of this name, a copy."""
+        """Return a copy of the options with which qpsolvers asks the reference of this name."""
         return dict(self._options[name])
 
     def settings(self) -> dict[str, Any]:
-        """What the record says of the check."""
+        """Solvers and tolerances, as values that JSON can hold."""
         return {
             "solvers": list(self.solvers),
             "tolerance": self.tolerance,
@@ -186,48 +184,24 @@ class CrossCheck:
         }
 
     def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
-        """The reference's solution, or None where it has none."""
+        """Ask one reference; returns None where it has no solution."""
         import qpsolvers
 
-        options = self._options[name]
-        try:
-            if name == "osqp":
-                solution = _solve_sparse(problem, options)
-            else:
-                solution = qpsolvers.solve_problem(problem, solver=name, **options)
-        except Exception:  # whatever a reference raises, it has no answer
-            return None
+        with warnings.catch_warnings():
+            # Of dense matrices for OSQP, and of every program that is not solved, which the
+            # residual says too.
+            warnings.simplefilter("ignore", UserWarning)
+            try:
+                solution = qpsolvers.solve_problem(problem, solver=name, **self._options[name])
+            except Exception:  # whatever a reference raises, it has no answer
+                return None
         return solution if solution.found else None
 
 
-def _copy_point(
-    solution: qpsolvers.Solution, sizes: tuple[int, int, int], point: Vector
-) -> None:  # fmt: skip
-    """Write a solution into `point`, laid out as `Solution.point`; what it lacks becomes zero."""
+def _point(solution: qpsolvers.Solution, sizes: Sizes) -> Vector:
+    """Lay a solution out as `Solution.point`; absent multipliers become zero."""
     n, m, p = sizes
-    point[:n] = solution.x
-    point[n : n + p] = 0.0 if solution.y is None else solution.y
-    if m:
-        point[n + p : n + p + m] = 0.0 if solution.z is None else solution.z
-    point[n + p + m :] = 0.0 if solution.z_box is None else solution.z_box
-
-
-def _solve_sparse(problem: qpsolvers.Problem, options: dict[str, Any]) -> qpsolvers.Solution:
-    """OSQP's answer: it takes sparse matrices only, and qpsolvers warns when it converts."""
-    import qpsolvers
-    import scipy.sparse as spa
-
-    sparse = qpsolvers.Problem(
-        spa.csc_matrix(problem.P),
-        problem.q,
-        None if problem.G is None else spa.csc_matrix(problem.G),
-        problem.h,
-        None if problem.A is None else spa.csc_matrix(problem.A),
-        problem.b,
-        problem.lb,
-        problem.ub,
+    parts = ((solution.x, n), (solution.y, p), (solution.z, m), (solution.z_box, n))
+    return np.concatenate(
+        [np.zeros(k) if part is None or len(part) != k else part for part, k in parts]
     )
-    with warnings.catch_warnings():
-        # It also warns of every program that is not solved; the residual says so, too.
-        warnings.simplefilter("ignore", UserWarning)
-        return qpsolvers.solve_problem(sparse, solver="osqp", **options)

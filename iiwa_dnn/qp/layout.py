@@ -1,4 +1,4 @@
-"""The numbers of a program in one flat array, and compiled helpers for such arrays.
+"""The numbers of a program in one flat array, and helpers for compiled code on such arrays.
 
 Compiled code takes a quadratic program as `QP.data` with its sizes n, m, p, and reads it in place:
 
@@ -23,6 +23,8 @@ from iiwa_dnn.errors import InvalidInputError
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
+Sizes = tuple[int, int, int]
+Triple = tuple[float, float, float]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 # numba makes a float of a signed and an unsigned integer: the constant has to be unsigned too.
@@ -35,9 +37,15 @@ def compiled(function: Function) -> Function:
     return cast(Function, jit(function))
 
 
+def check_size(argument: str, array: Vector, size: int) -> None:
+    """Raise InvalidInputError unless an array is flat and of this size: compiled code trusts it."""
+    if array.shape != (size,):
+        raise InvalidInputError(argument, f"has shape {array.shape}, not ({size},)", array)
+
+
 @compiled
 def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
-    """``(at_q, at_G, at_A, at_lb)``: where the parts of `QP.data` begin."""
+    """Compute ``(at_q, at_G, at_A, at_lb)``, the beginnings of the parts of `QP.data`."""
     at_q = n * n
     at_G = at_q + n
     at_A = at_G + m * n + m
@@ -46,11 +54,5 @@ def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
 
 @compiled
 def larger(largest: float, value: float) -> float:
-    """The larger of two; unlike with max(), a NaN once seen stays."""
+    """Return the larger of two numbers; unlike with max(), a NaN once seen stays."""
     return value if value > largest or value != value else largest
-
-
-def check_size(argument: str, array: Vector, size: int) -> None:
-    """Raise InvalidInputError unless a flat array has this size: compiled code does not look."""
-    if array.shape != (size,):
-        raise InvalidInputError(argument, f"has shape {array.shape}, not ({size},)", array)

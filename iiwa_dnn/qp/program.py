@@ -13,58 +13,60 @@ negative at ``lb``).
 
 from __future__ import annotations
 
+import math
+from collections.abc import Container
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
 from iiwa_dnn.qp.residuals import point_residuals
 from iiwa_dnn.qp.solution import Residuals
 
 if TYPE_CHECKING:
     import qpsolvers
 
-__all__ = ["QP", "Matrix", "Vector"]
+__all__ = ["FIELDS", "QP", "Matrix", "Vector"]
+
+FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
+"""Names of the eight arrays, in the order of `QP.data` and of qpsolvers."""
+
+ROUNDING = 1e-10
+"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry."""
 
 
-def _numbers(name: str, value: Any) -> NDArray[np.float64]:
-    """A dense array of floats."""
-    if hasattr(value, "toarray"):  # scipy's sparse matrices
-        value = value.toarray()
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
+@lru_cache
+def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
+    """Place and shape of each field in `QP.data`."""
+    n, m, p = sizes
+    shapes: tuple[tuple[int, ...], ...] = (
+        (n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)
+    )  # fmt: skip
+    ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
+    return tuple(
+        (slice(start, end), shape)
+        for start, end, shape in zip([0, *ends], ends, shapes, strict=False)
+    )
 
 
-def _matrix(name: str, value: Any, columns: int) -> Matrix:
-    """A matrix with `columns` columns, without rows where there is none."""
-    if value is None:
-        return np.zeros((0, columns))
-    matrix = _numbers(name, value)
-    if matrix.ndim == 1 and matrix.size == columns:
-        matrix = matrix.reshape(1, columns)
-    if matrix.ndim != 2 or matrix.shape[1] != columns:
-        raise InvalidInputError(name, f"has shape {matrix.shape}, not (rows, {columns})", value)
-    return matrix
+class _Field:
+    """A field of a `QP`: a view of its part of `data`."""
 
+    def __init__(self, name: str) -> None:
+        self._index = FIELDS.index(name)
 
-def _vector(name: str, value: Any, size: int, default: float) -> Vector:
-    """A vector of length `size`, filled with `default` where there is none."""
-    if value is None:
-        return np.full(size, default)
-    vector = _numbers(name, value)
-    if vector.size != size:
-        raise InvalidInputError(name, f"has shape {vector.shape}, not ({size},)", value)
-    return vector.reshape(size)
+    def __get__(self, qp: QP, owner: type[QP]) -> NDArray[np.float64]:
+        place, shape = _places(qp.sizes)[self._index]
+        return qp.data[place].reshape(shape)
 
 
 class QP:
     """A convex quadratic program with dense arrays that are always there.
 
-    What is left out becomes an array without rows (``G``, ``A``) or infinite bounds, so that
+    A part that is left out becomes an array without rows (``G``, ``A``) or infinite bounds, so that
     ``G @ x <= h`` can be written without asking first.
 
     All numbers lie in one array, ``data = [P | q | G | h | A | b | lb | ub]``, of which the fields
@@ -86,7 +88,9 @@ class QP:
     __slots__ = ("data", "sizes")
 
     data: Vector
-    sizes: tuple[int, int, int]
+    sizes: Sizes
+    P, q, G, h = _Field("P"), _Field("q"), _Field("G"), _Field("h")
+    A, b, lb, ub = _Field("A"), _Field("b"), _Field("lb"), _Field("ub")
 
     def __init__(
         self,
@@ -104,83 +108,34 @@ class QP:
         Raises:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
-        linear = _numbers("q", q).reshape(-1)
-        n = linear.size
+        given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+        arrays = {name: numbers(name, value) for name, value in given if value is not None}
+        require_pairs(arrays)
+        n = arrays["q"].size if "q" in arrays else 0
         if n == 0:
             raise InvalidInputError("q", "is empty", q)
-        for one, other, left, right in ((G, h, "G", "h"), (A, b, "A", "b")):
-            if (one is None) != (other is None):
-                missing, given = (left, right) if one is None else (right, left)
-                raise InvalidInputError(missing, f"is missing though {given} is given")
-        cost = _matrix("P", P, n)
-        if cost.shape[0] != n:
-            raise InvalidInputError("P", f"has shape {cost.shape}, not ({n}, {n})", P)
-        inequalities, equalities = _matrix("G", G, n), _matrix("A", A, n)
-        m, p = inequalities.shape[0], equalities.shape[0]
-        self.sizes = (n, m, p)
-        self.data = np.concatenate(
-            [
-                cost.ravel(),
-                linear,
-                inequalities.ravel(),
-                _vector("h", h, m, 0.0),
-                equalities.ravel(),
-                _vector("b", b, p, 0.0),
-                _vector("lb", lb, n, -np.inf),
-                _vector("ub", ub, n, np.inf),
-            ]
-        )
+        rows = {name: _rows(name, arrays.get(name), n) for name in "PGA"}
+        self.sizes = (n, len(rows["G"]), len(rows["A"]))
+        none = {"h": np.empty(0), "b": np.empty(0)}
+        unbounded = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf)}
+        arrays = {**none, **unbounded, **arrays, **rows}
+        for name, (_, shape) in zip(FIELDS, _places(self.sizes), strict=True):
+            if arrays[name].size != math.prod(shape):
+                raise InvalidInputError(name, f"has shape {arrays[name].shape}, not {shape}")
+        self.data = np.concatenate([arrays[name].ravel() for name in FIELDS])
 
     @classmethod
-    def from_data(cls, data: Vector, sizes: tuple[int, int, int]) -> QP:
-        """A program over an existing `data` array, which is neither copied nor checked."""
+    def from_data(cls, data: Vector, sizes: Sizes) -> QP:
+        """A program over an existing `data` array (size,), which is not copied.
+
+        Raises:
+            InvalidInputError: The array's size is not that of such a program.
+        """
+        n, m, p = sizes
+        check_size("data", data, (n + m + p) * (n + 1) + 2 * n)
         qp = cls.__new__(cls)
         qp.data, qp.sizes = data, sizes
         return qp
-
-    @property
-    def P(self) -> Matrix:  # noqa: D102, N802 - described in the class, as are the next
-        n, _, _ = self.sizes
-        return self.data[: n * n].reshape(n, n)
-
-    @property
-    def q(self) -> Vector:  # noqa: D102
-        n, _, _ = self.sizes
-        return self.data[n * n : n * n + n]
-
-    @property
-    def G(self) -> Matrix:  # noqa: D102, N802
-        n, m, _ = self.sizes
-        start = n * n + n
-        return self.data[start : start + m * n].reshape(m, n)
-
-    @property
-    def h(self) -> Vector:  # noqa: D102
-        n, m, _ = self.sizes
-        start = n * n + n + m * n
-        return self.data[start : start + m]
-
-    @property
-    def A(self) -> Matrix:  # noqa: D102, N802
-        n, m, p = self.sizes
-        start = (n + m) * (n + 1)
-        return self.data[start : start + p * n].reshape(p, n)
-
-    @property
-    def b(self) -> Vector:  # noqa: D102
-        n, _, p = self.sizes
-        stop = self.data.size - 2 * n
-        return self.data[stop - p : stop]
-
-    @property
-    def lb(self) -> Vector:  # noqa: D102
-        n, _, _ = self.sizes
-        return self.data[-2 * n : -n]
-
-    @property
-    def ub(self) -> Vector:  # noqa: D102
-        n, _, _ = self.sizes
-        return self.data[-n:]
 
     @classmethod
     def from_qpsolvers(cls, problem: qpsolvers.Problem) -> QP:
@@ -210,7 +165,7 @@ class QP:
         )
 
     def arrays(self) -> tuple[Matrix, Vector, Matrix, Vector, Matrix, Vector, Vector, Vector]:
-        """``(P, q, G, h, A, b, lb, ub)``, the order that the compiled kernels take."""
+        """``(P, q, G, h, A, b, lb, ub)``, of the shapes that the class states."""
         return self.P, self.q, self.G, self.h, self.A, self.b, self.lb, self.ub
 
     def bounds_as_inequalities(self) -> tuple[Matrix, Vector]:
@@ -243,7 +198,7 @@ class QP:
         return Residuals(*point_residuals(self.data, n, m, p, point))
 
     def check_values(self) -> None:
-        """Check what no convex solver could make sense of.
+        """Check for values that no convex solver could make sense of.
 
         Raises:
             InvalidInputError: A value is NaN, a coefficient is infinite, P is not symmetric or
@@ -262,10 +217,39 @@ class QP:
             i = int(crossed[0])
             raise InvalidInputError("lb", f"exceeds ub at {i}: {self.lb[i]:g} > {self.ub[i]:g}")
         scale = max(float(np.abs(self.P).max()), np.finfo(float).tiny)
-        if np.abs(self.P - self.P.T).max() > 1e-10 * scale:
+        if np.abs(self.P - self.P.T).max() > ROUNDING * scale:
             raise InvalidInputError("P", "is not symmetric")
         smallest = float(np.linalg.eigvalsh(self.P)[0])
-        if smallest < -1e-10 * scale:
+        if smallest < -ROUNDING * scale:
             raise InvalidInputError(
                 "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
             )
+
+
+def numbers(name: str, value: Any) -> NDArray[np.float64]:
+    """Convert an argument, dense or sparse, to a dense array of floats of its own shape."""
+    if hasattr(value, "toarray"):  # scipy's sparse matrices
+        value = value.toarray()
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
+
+
+def require_pairs(given: Container[str]) -> None:
+    """Raise InvalidInputError where rows are given without right-hand side, or the reverse."""
+    for left, right in (("G", "h"), ("A", "b")):
+        if (left in given) != (right in given):
+            missing, other = (left, right) if right in given else (right, left)
+            raise InvalidInputError(missing, f"is missing though {other} is given")
+
+
+def _rows(name: str, rows: Matrix | None, columns: int) -> Matrix:
+    """Return rows with so many columns; a vector is one row, nothing is none."""
+    if rows is None:
+        return np.empty((0, columns))
+    if rows.ndim == 1 and rows.size == columns:
+        return rows.reshape(1, columns)
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise InvalidInputError(name, f"has shape {rows.shape}, not (rows, {columns})", rows)
+    return rows

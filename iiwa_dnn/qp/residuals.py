@@ -1,18 +1,16 @@
-"""The residuals that say how far a primal-dual point is from a KKT point."""
+"""Residuals of a primal-dual point, all zero exactly at a KKT point; compiled."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger, offsets
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector, compiled, larger, offsets
 
 
 @compiled
-def point_residuals(
-    data: Vector, n: int, m: int, p: int, point: Vector,
-) -> tuple[float, float, float]:  # fmt: skip
-    """``(primal, dual, gap)`` of a point [x | y | z | z_box], as qpsolvers defines them."""
+def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
+    """Compute ``(primal, dual, gap)`` of [x | y | z | z_box], as qpsolvers defines them."""
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
     at_z, at_box = n + p, n + p + m
@@ -53,11 +51,11 @@ def point_residuals(
 
 @compiled
 def largest_residuals(
-    programs: Matrix, n: int, m: int, p: int, points: NDArray[np.float64], out: Matrix,
-) -> None:  # fmt: skip
+    programs: Matrix, n: int, m: int, p: int, points: NDArray[np.float64], out: Matrix
+) -> None:
     """Write the largest residual of each point (N, k, size) into `out` (N, k).
 
-    Infinity where a point is not a number from its first entry on: there is none.
+    It is infinite where the first entry of a point is NaN, which stands for no point.
     """
     count, k, _ = points.shape
     for i in range(count):
@@ -69,16 +67,15 @@ def largest_residuals(
 
 
 @compiled
-def kkt_point(
-    data: Vector, n: int, m: int, p: int, s: Vector, point: Vector,
-) -> tuple[float, float, float]:  # fmt: skip
-    """The primal-dual point that a state stands for, and its residuals ``(primal, dual, gap)``.
+def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
+    """Write the point [x | y | z | z_box] of a state [x | y | z | ...] into `point`.
 
-    x is put inside its bounds and z made nonnegative. z_box is what the projection of
-    x - (P x + q + A^T y + G^T z) cuts off: at an equilibrium that is u - l plus the part of the
-    multiplier that the primal projection carries. All of it shows in the residuals, which are
-    those of the point that is handed out. `point` is the output, [x | y | z | z_box] of size
-    n + p + m + n.
+    x is put inside its bounds and z made nonnegative. z_box is the part of x minus the gradient
+    P x + q + A^T y + G^T z that the projection on the bounds cuts off: at an equilibrium u - l and
+    the part of the multiplier that the primal projection carries.
+
+    Returns:
+        ``(primal, dual, gap)`` of the point as it is handed out.
     """
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_ub, at_z = at_lb + n, n + p

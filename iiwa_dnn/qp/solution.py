@@ -9,14 +9,16 @@ from __future__ import annotations
 from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from iiwa_dnn.qp.layout import Vector
+import numpy as np
+
+from iiwa_dnn.qp.layout import Sizes, Vector
 
 if TYPE_CHECKING:
     import qpsolvers
 
 
 class Status(str, Enum):
-    """How a solve ended."""
+    """The end of a solve."""
 
     SOLVED = "solved"
     """Every residual is at most the tolerance."""
@@ -62,22 +64,25 @@ class Solution(NamedTuple):
     Attributes:
         point: ``[x | y | z | z_box]`` in one array, of size n + p + m + n.
         sizes: ``(n, m, p)`` of the program.
-        status: How the solve ended.
+        status: The end of the solve.
         iterations: Linear systems solved (implicit) or steps taken (explicit).
-        network_time: How far the network was advanced, in units of its time constant rho.
+        network_time: Time by which the network was advanced, in units of its time constant rho.
         primal: Primal residual of this very point, as qpsolvers defines it.
         dual: Dual residual.
         gap: Duality gap.
+        certificate: Proof that there is no solution, where one was verified: ``[y | z | z_box]`` of
+            size p + m + n for an infeasible program, the direction (n,) for an unbounded one.
     """
 
     point: Vector
-    sizes: tuple[int, int, int]
+    sizes: Sizes
     status: Status
     iterations: int
     network_time: float
     primal: float
     dual: float
     gap: float
+    certificate: Vector | None = None
 
     @property
     def x(self) -> Vector:
@@ -107,11 +112,6 @@ class Solution(NamedTuple):
         return Residuals(self.primal, self.dual, self.gap)
 
     @property
-    def certificate(self) -> Vector | None:
-        """The proof ``(size,)`` that there is no solution, where there is one (`Refutation`)."""
-        return None
-
-    @property
     def found(self) -> bool:
         """True only when every residual is at most the tolerance that was asked for."""
         return self.status is Status.SOLVED
@@ -119,8 +119,9 @@ class Solution(NamedTuple):
     def to_qpsolvers(self, problem: qpsolvers.Problem) -> qpsolvers.Solution:
         """The same answer as a `qpsolvers.Solution` of `problem`.
 
-        A solution that was not found carries no ``x``; what the network reached is in
-        ``extras["last_x"]``, so that nobody takes it for an answer.
+        Multipliers of constraints that `problem` does not have are empty arrays, as those of
+        qpsolvers' own solvers. A solution that was not found carries no ``x``; the point that the
+        network reached is in ``extras["last_x"]``, so that nobody takes it for an answer.
         """
         import qpsolvers
 
@@ -136,41 +137,14 @@ class Solution(NamedTuple):
             if self.certificate is not None:
                 extras["certificate"] = self.certificate
             return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
-        x = self.x
+        x, bounded = self.x, problem.lb is not None or problem.ub is not None
         return qpsolvers.Solution(
             problem,
             extras,
             found=True,
             obj=float(0.5 * x @ (problem.P @ x) + problem.q @ x),
             x=x,
-            y=self.y if problem.A is not None else None,
-            z=self.z if problem.G is not None else None,
-            z_box=self.z_box if problem.lb is not None or problem.ub is not None else None,
+            y=self.y,
+            z=self.z,
+            z_box=self.z_box if bounded else np.empty(0),
         )
-
-
-class Refutation(Solution):
-    """A solution that was not found, with the proof that there is none.
-
-    A class of its own, so that the solutions of a control loop carry no field for it.
-    """
-
-    _certificate: Vector
-
-    @classmethod
-    def of(cls, last: Solution, status: Status, certificate: Vector) -> Refutation:
-        """The last word on a program, with a certificate that was verified.
-
-        Args:
-            last: Where the network was given up.
-            status: ``PRIMAL_INFEASIBLE`` or ``UNBOUNDED``.
-            certificate: ``[y | z | z_box]`` of size p + m + n, or the direction, (n,).
-        """
-        refutation = cls(*last._replace(status=status))
-        refutation._certificate = certificate
-        return refutation
-
-    @property
-    def certificate(self) -> Vector:
-        """``[y | z | z_box]`` if the program is infeasible, the direction (n,) if unbounded."""
-        return self._certificate

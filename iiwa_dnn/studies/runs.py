@@ -15,6 +15,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
@@ -122,7 +123,9 @@ class HeartRun:
         options: dict[str, Any] = {name: getattr(self, name) for name in _HANDED_ON}
         steps = None if isinstance(self.substeps, str) else self.substeps
         implicit = self.substeps == "implicit"
-        solver = DNNSolver(follower=ImplicitEuler() if implicit else ExplicitEuler(substeps=steps))
+        follower = ImplicitEuler() if implicit else ExplicitEuler(substeps=steps)
+        # Implicit steps of the flow without the projection are convex problems, and compiled.
+        solver = DNNSolver(ProjectionNetwork(primal_projection=not implicit), follower=follower)
         options |= {"check": CrossCheck(()), "solver": solver}
         return simulate(paper_robot(), self.scheme(), self.reference(), paper.START, **options)
 

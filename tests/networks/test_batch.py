@@ -1,4 +1,6 @@
-"""Many programs at once: the same answers as one by one, and errors that name the program."""
+"""Many programs at once: the same answers as one by one, and faults that name the program."""
+
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -61,12 +63,23 @@ def spoil(name: str, value: np.ndarray) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", FIELDS)
-def test_a_bad_value_names_its_argument_and_program(name: str) -> None:
+def test_a_bad_value_is_named_and_spoils_no_other_program(name: str) -> None:
     arrays = spoil("q", np.zeros((300, 3)))
+    good = solve_batch(**arrays)
+    arrays[name] = arrays[name].copy()
     arrays[name][211].flat[-1] = np.nan
-    with pytest.raises(InvalidInputError, match="program 211") as caught:
-        solve_batch(**arrays)
-    assert caught.value.argument == name
+    batch = solve_batch(**arrays)
+    assert good.found.all()
+    assert np.flatnonzero(~batch.found).tolist() == [211]
+    assert list(batch.faults) == [211]
+    assert batch.faults[211].argument == name
+    assert np.isnan(batch.x[211]).all()
+    assert (batch.residuals[211] == np.inf).all()
+    others = np.arange(300) != 211
+    np.testing.assert_array_equal(batch.x[others], good.x[others])
+    # One that all programs share spoils them all.
+    with pytest.raises(InvalidInputError, match=rf"^{name}: "):
+        solve_batch(**{**arrays, name: arrays[name][211]})
 
 
 @pytest.mark.parametrize(
@@ -80,11 +93,15 @@ def test_a_bad_value_names_its_argument_and_program(name: str) -> None:
         ("G", None, "missing"),
         ("b", None, "missing"),
         ("h", np.zeros((299, 2)), "299 programs"),
-        ("A", np.zeros((300, 2, 3)), "shape"),
+        ("G", np.zeros((300, 2, 4)), "shape"),
+        ("G", np.zeros(3), "shape"),
+        ("h", np.zeros((300, 3)), "shape"),
+        ("A", np.zeros((300, 1, 2)), "shape"),
+        ("b", np.zeros((300, 2)), "shape"),
         ("lb", np.full(3, 1e3), "exceeds"),
-        ("lb", np.full(3, np.inf), "not finite"),
-        ("ub", np.full(3, -np.inf), "not finite"),
-        ("h", np.full(2, -np.inf), "not finite"),
+        ("lb", np.full(3, np.inf), "NaN or inf"),
+        ("ub", np.full(3, -np.inf), "NaN or -inf"),
+        ("h", np.full(2, -np.inf), "NaN or -inf"),
         ("tol", -1.0, "above 0"),
         ("q", np.zeros((0, 3)), "no program"),
     ],
@@ -93,6 +110,33 @@ def test_bad_input_names_the_argument(name: str, value: object, message: str) ->
     with pytest.raises(InvalidInputError, match=message) as caught:
         solve_batch(**spoil(name, value))
     assert caught.value.argument == name
+
+
+@pytest.mark.parametrize("k", [0, 7, 299])
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("P", [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "symmetric"),
+        ("P", np.diag([1.0, 1.0, -1e-3]), "semidefinite"),
+        ("lb", np.full(3, 1e3), "exceeds ub at 0"),
+    ],
+)
+def test_a_program_that_is_not_convex_is_never_found(
+    k: int, name: str, value: object, message: str
+) -> None:
+    arrays = spoil("q", np.zeros((300, 3)))
+    arrays[name][k] = value
+    batch = solve_batch(**arrays)
+    assert np.flatnonzero(~batch.found).tolist() == [k]
+    assert message in str(batch.faults[k])
+
+
+def test_threads_may_share_the_batch_solver() -> None:
+    arrays = spoil("q", np.zeros((300, 3)))
+    expected = solve_batch(**arrays).x
+    with ThreadPoolExecutor(4) as pool:
+        for batch in pool.map(lambda _: solve_batch(**arrays), range(20)):
+            np.testing.assert_array_equal(batch.x, expected)
 
 
 def test_what_is_absent_or_singular_is_sound() -> None:

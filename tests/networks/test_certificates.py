@@ -108,6 +108,19 @@ def test_solution_of_qpsolvers_carries_the_certificate() -> None:
     np.testing.assert_allclose(solution.extras["certificate"], [0.0, -1.0], atol=1e-12)
 
 
+def test_a_row_of_zeros_is_no_obstacle() -> None:
+    # Seed 264 drifts so long that the nearest certificate is looked for.
+    qp = programs.unbounded(np.random.default_rng([2, 264]))
+    rows, limits = np.vstack([qp.G, np.zeros(qp.q.size)]), np.append(qp.h, 1.0)
+    solution = DNNSolver().solve(QP(qp.P, qp.q, rows, limits, qp.A, qp.b, qp.lb, qp.ub))
+    assert solution.status is Status.UNBOUNDED
+    # The row itself contradicts: 0 x <= -1.
+    impossible = QP(np.eye(2), np.ones(2), [[0.0, 0.0], [1.0, 0.0]], [-1.0, 1.0])
+    solution = DNNSolver().solve(impossible)
+    assert solution.status is Status.PRIMAL_INFEASIBLE
+    assert_farkas(impossible, solution.certificate)
+
+
 def test_a_program_that_is_both_is_called_infeasible() -> None:
     qp = QP(np.zeros((2, 2)), [0.0, 1.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0])
     assert DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE

@@ -143,8 +143,6 @@ def test_every_integrator_settles_every_network(network: Network, integrator: ob
 @pytest.mark.parametrize("network", NETWORKS, ids=repr)
 @pytest.mark.parametrize("integrator", [ExplicitEuler, AdaptiveRungeKutta, ImplicitEuler])
 def test_order_by_regression_against_scipy(network: Network, integrator: type) -> None:
-    if integrator is ImplicitEuler and getattr(network, "primal_projection", False):
-        return  # it integrates the network without that projection, tests/integrators
     qp, duration = known_qp(np.random.default_rng(3), 5, 2, 2, inequalities=2)[0], 1.0
     start = np.zeros(network.state_size(qp))
     exact = solve_ivp(

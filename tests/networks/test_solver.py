@@ -1,5 +1,8 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import qpsolvers
@@ -8,7 +11,18 @@ from qpsolvers import problems
 
 import iiwa_dnn
 from helpers_qp import known_qp
-from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Status
+from iiwa_dnn import (
+    QP,
+    CrossCheck,
+    DNNSolver,
+    DualNetwork,
+    ExplicitEuler,
+    ImplicitEuler,
+    InvalidInputError,
+    PrimalDualNetwork,
+    ProjectionNetwork,
+    Status,
+)
 
 REFERENCES = CrossCheck(("proxqp", "osqp"))
 
@@ -80,8 +94,7 @@ def test_sparse_problem_and_extras() -> None:
     )
     solution = iiwa_dnn.solve_problem(problem)
     np.testing.assert_allclose(solution.x, np.full(4, 0.25), atol=1e-9)
-    assert solution.z is None
-    assert solution.z_box is None
+    assert solution.z.size == solution.z_box.size == 0
     assert solution.extras["status"] == "solved"
     assert solution.extras["primal_residual"] <= 1e-9
 
@@ -199,3 +212,91 @@ def test_bad_input_names_the_argument_whoever_states_it(name: str, arguments: di
             iiwa_dnn.solve_problem(make(**fields))
         assert caught.value.argument == name
         assert str(caught.value).startswith(f"{name}: ")
+
+
+def test_what_is_set_later_is_used_by_the_next_call() -> None:
+    qp, x = known_qp(np.random.default_rng(12), 7, 3, 2, inequalities=2)
+    solver = DNNSolver(tol=1e-3)
+    assert solver.version == 0
+    assert solver.solve(qp).residuals.largest > 1e-9
+    before = solver.numbers()
+    solver.tol = 1e-12
+    assert solver.version == 1
+    assert solver.solve(qp).residuals.largest <= 1e-12
+    assert solver.numbers()[0] == 1e-12 != before[0]
+    solver.settler = ImplicitEuler(max_steps=7)
+    solver.follower = ExplicitEuler(substeps=9)
+    assert solver.version == 3
+    assert solver.numbers()[1] == 7
+    assert solver.numbers(1e-4)[5] == 9
+    # Another network has other states, for programs of the same sizes too.
+    for network in (DualNetwork(), ProjectionNetwork(), PrimalDualNetwork()):
+        solver.network, solver.settler = network, ImplicitEuler()
+        assert np.abs(solver.solve(qp).x - x).max() < 1e-6
+        assert solver.state.size == network.state_size(qp)
+    assert solver.version == 9
+    assert solver.numbers() is None
+    with pytest.raises(InvalidInputError, match="tol"):
+        solver.tol = -1.0
+    assert (solver.tol, solver.version) == (1e-12, 9)
+
+
+def test_an_error_in_a_call_leaves_no_half_made_state() -> None:
+    class Broken(ProjectionNetwork):
+        def initial_state(self, qp: QP) -> np.ndarray:
+            raise RuntimeError("no state")
+
+    class Short(ProjectionNetwork):
+        def initial_state(self, qp: QP) -> np.ndarray:
+            return np.zeros(3)
+
+    qp, _ = known_qp(np.random.default_rng(13), 50, 10, 5, inequalities=20)
+    solver = DNNSolver(Broken())
+    for _ in range(2):
+        with pytest.raises(RuntimeError, match="no state"):
+            solver.solve(qp)
+        assert solver.warm_state(qp.sizes) is None
+        assert solver.state.size == 0
+    with pytest.raises(InvalidInputError, match="network"):
+        DNNSolver(Short()).solve(qp)
+    solver.network = ProjectionNetwork()
+    assert solver.solve(qp).found
+
+
+def test_threads_may_share_a_solver() -> None:
+    # In a process of its own: a state of the wrong size would end it.
+    script = """
+import sys, threading, time
+import numpy as np
+from iiwa_dnn import DNNSolver, ProjectionNetwork, QP
+
+class Slow(ProjectionNetwork):
+    def initial_state(self, qp):
+        time.sleep(1e-4)  # another thread comes in between
+        return super().initial_state(qp)
+
+sys.setswitchinterval(1e-6)
+rng = np.random.default_rng(0)
+programs = [QP(np.eye(n), rng.standard_normal(n), lb=-np.ones(n), ub=np.ones(n)) for n in (3, 200)]
+solver, wrong = DNNSolver(Slow()), []
+
+def work(qp, seed):
+    for k in range(200):
+        solution = solver.solve(qp) if (k + seed) % 3 else solver.advance(qp, 1e-4)
+        if (k + seed) % 3 and np.abs(solution.x - np.clip(-qp.q, -1.0, 1.0)).max() > 1e-6:
+            wrong.append(solution.status)
+        if k % 10 == 0:
+            solver.reset()
+            solver.state, solver.warm_state(qp.sizes)
+
+threads = [threading.Thread(target=work, args=(programs[i % 2], i)) for i in range(6)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print("wrong", len(wrong))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "wrong 0\n"
+    assert not done.stderr

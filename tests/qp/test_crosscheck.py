@@ -57,6 +57,13 @@ def test_right_answers_are_agreed_with(check: CrossCheck, active: int) -> None:
 
 
 @pytest.mark.parametrize("check", EACH, ids=IDS)
+@pytest.mark.parametrize("rows", [{}, {"A": [[1.0, 1.0]], "b": [0.0]}, {"ub": [0.0, 0.0]}])
+def test_constraints_may_be_absent(check: CrossCheck, rows: dict) -> None:
+    qp = QP(np.eye(2), [-1.0, 1.0], **rows)
+    assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
+
+
+@pytest.mark.parametrize("check", EACH, ids=IDS)
 def test_dependent_rows_are_no_obstacle(check: CrossCheck) -> None:
     qp, x = known_qp(np.random.default_rng(52), 7, 4, 1, dependent=True)
     assert check.check(qp, x).solution_gap.max() <= 1e-7
@@ -180,6 +187,21 @@ def test_a_reference_that_is_not_a_number_is_not_believed(
     monkeypatch.setattr(qpsolvers, "solve_problem", spoil)
     agreement = EACH[0].check(heart_qp(), np.zeros(7))
     assert not (agreement.reference_residual <= 1e-8).any()
+    assert np.isnan(agreement.solution_gap).all()
+
+
+@pytest.mark.parametrize(("lb", "ub"), [(1.0, np.inf), (-np.inf, -1.0)])
+def test_a_reference_outside_its_bounds_is_not_believed(
+    lb: float, ub: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Zero is stationary and leaves no gap, and lies outside the bounds by one.
+    def answer(problem: qpsolvers.Problem, **options: object) -> qpsolvers.Solution:
+        return qpsolvers.Solution(problem, found=True, x=np.zeros(2), z_box=np.zeros(2))
+
+    monkeypatch.setattr(qpsolvers, "solve_problem", answer)
+    qp = QP(np.eye(2), np.zeros(2), lb=[lb] * 2, ub=[ub] * 2)
+    agreement = EACH[0].check(qp, np.zeros(2))
+    np.testing.assert_array_equal(agreement.reference_residual, [[1.0]])
     assert np.isnan(agreement.solution_gap).all()
 
 

@@ -55,6 +55,12 @@ def test_fields_are_views_of_one_array_and_copies_of_what_was_given() -> None:
     ("arguments", "name"),
     [
         ({"q": []}, "q"),
+        ({"q": None}, "q"),
+        ({"P": None}, "P"),
+        ({"G": np.ones((2, 3)), "h": np.ones(3)}, "h"),
+        ({"G": np.ones((2, 4)), "h": np.ones(2)}, "G"),
+        ({"G": np.ones((2, 3)), "h": "text"}, "h"),
+        ({"b": np.ones(1)}, "A"),
         ({"q": "text"}, "q"),
         ({"P": np.eye(2)}, "P"),
         ({"P": np.ones((2, 3))}, "P"),
@@ -113,9 +119,29 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         )
         theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
         np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-13)
+        # A point that nobody put inside its bounds is judged too.
+        outside = rng.standard_normal(point.size)
+        x, y, z, z_box = np.split(outside, [n, n + p, n + p + m])
+        judged = qpsolvers.Solution(qp.to_qpsolvers(), found=True, x=x, y=y, z=z, z_box=z_box)
+        theirs = (judged.primal_residual(), judged.dual_residual(), judged.duality_gap())
+        np.testing.assert_allclose(qp.residuals(x, y, z, z_box), theirs, rtol=1e-12, atol=1e-13)
         assert (point[:n] >= qp.lb).all()
         assert (point[:n] <= qp.ub).all()
         assert (point[n + p : n + p + m] >= 0).all()
+
+
+@pytest.mark.parametrize(("lb", "ub"), [(1.0, np.inf), (-np.inf, -1.0), (1.0, 2.0), (-2.0, -1.0)])
+def test_a_point_outside_its_bounds_is_not_primal_feasible(lb: float, ub: float) -> None:
+    qp = QP(np.eye(1), np.zeros(1), lb=[lb], ub=[ub])
+    # Stationary without multipliers, and without a gap: the bound alone is violated, by one.
+    assert qp.residuals(np.zeros(1), None, None, None) == (1.0, 0.0, 0.0)
+
+
+def test_data_of_another_size_is_refused() -> None:
+    qp, _ = known_qp(np.random.default_rng(3), 4, 2, 1, inequalities=3)
+    for data, sizes in ((qp.data[:-1], qp.sizes), (qp.data, (4, 3, 3)), (qp.data, (5, 3, 2))):
+        with pytest.raises(InvalidInputError, match="data"):
+            QP.from_data(data, sizes)
 
 
 def test_largest_residual_does_not_lose_a_nan() -> None:
@@ -131,3 +157,25 @@ def test_a_solution_that_was_not_found_carries_no_x() -> None:
     assert bad.x is None
     assert bad.primal_residual() == np.inf
     np.testing.assert_array_equal(bad.extras["last_x"], good.x)
+
+
+def test_multipliers_without_constraints_are_empty_as_those_of_qpsolvers() -> None:
+    eye, one = spa.eye(2, format="csc"), np.ones(2)
+    row = {"G": spa.csc_matrix(np.ones((1, 2))), "h": np.array([1.0])}
+    equal = {"A": spa.csc_matrix(np.ones((1, 2))), "b": np.array([1.0])}
+    for arguments in ({}, row, equal, {"lb": -one}, {"ub": one}, {**row, **equal, "lb": -one}):
+        problem = qpsolvers.Problem(eye, one, **arguments)
+        ours = DNNSolver().solve(QP.from_qpsolvers(problem)).to_qpsolvers(problem)
+        theirs = qpsolvers.solve_problem(problem, solver="osqp", raise_error=False)
+        for name in ("x", "y", "z", "z_box"):
+            one_size, other_size = getattr(ours, name).size, getattr(theirs, name).size
+            assert one_size == other_size, (name, arguments)
+        assert ours.is_optimal(1e-8)
+
+
+def test_a_replaced_field_leaves_the_certificate() -> None:
+    qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 1.0], [1.0, 1.0]], b=[0.0, 1.0])
+    solution = DNNSolver().solve(qp)
+    again = solution._replace(status=Status.NOT_SETTLED)
+    assert again.certificate is not None
+    np.testing.assert_array_equal(again.certificate, solution.certificate)

@@ -1,4 +1,6 @@
-"""Both integrators against scipy's at tight tolerance, their order, and what they settle to."""
+"""The integrators against scipy's at tight tolerance, their order, and what they settle to."""
+
+import json
 
 import numpy as np
 import pytest
@@ -7,9 +9,11 @@ from scipy.integrate import solve_ivp
 from helpers_qp import known_qp, network_rates
 from iiwa_dnn import (
     QP,
+    AdaptiveRungeKutta,
     Configuration,
     DNNSolver,
     DoubleIndicator,
+    DualNetwork,
     ExplicitEuler,
     Heart,
     ImplicitEuler,
@@ -17,6 +21,8 @@ from iiwa_dnn import (
     ProjectionNetwork,
     load_robot,
 )
+from iiwa_dnn.networks import Flow
+from iiwa_dnn.networks.integrators import Integrator
 from iiwa_dnn.studies.paper import START as PAPER_START
 
 
@@ -52,7 +58,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize(
     ("project", "substeps_of"),
-    [(True, ExplicitEuler), (False, ExplicitEuler), (False, ImplicitEuler)],
+    [(True, ExplicitEuler), (False, ExplicitEuler), (True, ImplicitEuler), (False, ImplicitEuler)],
 )
 def test_order_by_regression_against_scipy(name: str, project: bool, substeps_of: type) -> None:
     qp, duration = CASES[name], 2.0
@@ -133,6 +139,102 @@ def test_one_implicit_step_is_the_fixed_point_of_its_definition() -> None:
         ImplicitEuler(step=step).advance(network, qp, state, step)
         defect = state - start - step * network_rates(qp, state, project=False)
         assert np.abs(defect).max() < 1e-9 * max(1.0, step)
+
+
+def test_the_primal_projection_is_integrated() -> None:
+    # One variable in +-0.1, pushed by 10: without the projection it leaves the bounds far behind.
+    qp = QP(np.eye(1), [-10.0], lb=[-0.1], ub=[0.1])
+    exact = flow(qp, 1.0, project=True)
+    assert exact[0] == pytest.approx(0.1 * (1.0 - np.exp(-1.0)), abs=1e-6)
+    network = ProjectionNetwork()
+    for integrator in (ExplicitEuler(1000), ImplicitEuler(1e-3), AdaptiveRungeKutta()):
+        state = network.initial_state(qp)
+        integrator.advance(network, qp, state, 1.0)
+        np.testing.assert_allclose(state, exact, rtol=0, atol=2e-3)
+
+
+class Doubled(ProjectionNetwork):
+    """A network with a flow of its own: the paper's, twice as fast."""
+
+    def flow(self, qp: QP) -> Flow:
+        slow = super().flow(qp)
+        return Flow(lambda s: 2.0 * slow.rates(s), lambda s: 2.0 * slow.jacobian(s))
+
+
+@pytest.mark.parametrize("project", [True, False])
+@pytest.mark.parametrize(
+    "integrator", [ExplicitEuler(1000), ImplicitEuler(1e-3), AdaptiveRungeKutta()], ids=repr
+)
+def test_a_flow_of_a_subclass_is_integrated(integrator: Integrator, project: bool) -> None:
+    qp = CASES["bounds"]
+    network, state = Doubled(primal_projection=project), np.zeros(19)
+    integrator.advance(network, qp, state, 0.5)
+    exact = flow(qp, 1.0, project)
+    assert np.abs(state - exact).max() < 0.01 * np.abs(exact).max()
+    assert network.compiled is None
+    assert ProjectionNetwork(primal_projection=project).compiled == (project,)
+    assert DNNSolver(network).solve(qp).found
+    assert DNNSolver(network).numbers() is None
+
+
+def test_a_subclass_that_reads_its_state_otherwise_is_asked() -> None:
+    class Mirrored(ProjectionNetwork):
+        def read(self, qp: QP, state: np.ndarray, point: np.ndarray) -> tuple[float, float, float]:
+            super().read(qp, state, point)
+            point *= -1.0
+            return np.inf, np.inf, np.inf
+
+    solution = DNNSolver(Mirrored(), settler=ImplicitEuler(max_steps=20)).solve(CASES["bounds"])
+    assert not solution.found
+
+
+class Subclass(ProjectionNetwork):
+    """A subclass that changes nothing stays compiled."""
+
+
+def test_a_subclass_that_changes_nothing_stays_compiled() -> None:
+    assert Subclass().compiled is not None
+    assert DNNSolver(Subclass()).numbers() is not None
+
+
+@pytest.mark.parametrize("network", [ProjectionNetwork(), ProjectionNetwork(1e-4, False)], ids=repr)
+@pytest.mark.parametrize("integrator", [ExplicitEuler(), ImplicitEuler()], ids=repr)
+def test_a_state_or_a_point_of_another_size_is_refused(
+    network: ProjectionNetwork, integrator: Integrator
+) -> None:
+    qp = CASES["bounds"]
+    state, point = np.zeros(19), np.zeros(14)
+    for calls in (
+        lambda s, p: integrator.advance(network, qp, s, 1.0),
+        lambda s, p: integrator.settle(network, qp, s, p, 1e-6),
+        lambda s, p: network.read(qp, s, p),
+        lambda s, p: network.rates(qp, s),
+        lambda s, p: network.stable_step(qp, s),
+    ):
+        calls(state.copy(), point.copy())
+        for size in (0, 18, 20, 19000):
+            with pytest.raises(InvalidInputError, match="state"):
+                calls(np.zeros(size), point.copy())
+    for size in (0, 13, 15):
+        with pytest.raises(InvalidInputError, match="point"):
+            network.read(qp, state, np.zeros(size))
+        with pytest.raises(InvalidInputError, match="point"):
+            integrator.settle(network, qp, state.copy(), np.zeros(size), 1e-6)
+
+
+def test_integrators_and_networks_name_themselves() -> None:
+    assert ExplicitEuler(np.int64(8)).settings() == {
+        "name": "ExplicitEuler", "substeps": 8, "max_steps": 1_000_000,
+    }  # fmt: skip
+    assert ImplicitEuler(step=np.float64(0.5)).settings()["step"] == 0.5
+    assert AdaptiveRungeKutta().settings()["name"] == "AdaptiveRungeKutta"
+    solver = DNNSolver(DualNetwork(rho=1e-4), tol=np.float64(1e-7))
+    settings = json.loads(json.dumps(solver.settings()))
+    assert settings["network"] == {"name": "DualNetwork", "rho": 1e-4}
+    assert settings["tol"] == 1e-7
+    assert settings["settler"] == ImplicitEuler().settings()
+    assert settings["follower"] == ExplicitEuler().settings()
+    json.dumps(ExplicitEuler(np.int64(8)).settings())
 
 
 @pytest.mark.parametrize(
