@@ -77,6 +77,23 @@ def test_disturbances_one_by_one(capsys, tmp_path):
 
 
 @needs_mujoco
+def test_the_options_of_track_hold_in_physics_too(capsys, tmp_path):
+    chosen = ("--lock", "iiwa7_joint_3", "--noise", "1e-3", "--filter-window", "2")
+    path = ("--reference", "circle", "--radius", "0.01", "--policy", "relax", "--gain", "5")
+    assert run(capsys, *DRY, *chosen, *path, "--check", "none", "--out", str(tmp_path))[0] == 0
+    record = Record.load(tmp_path / "record.npz")
+    assert record.dof == 6
+    expected = {"noise": 1e-3, "filter_window": 2, "policy": "relax", "motion": "physics"}
+    assert expected.items() <= record.settings.items()
+    assert record.settings["reference"]["name"] == "circle"
+    assert record.settings["scheme"]["position_gain"] == 5.0
+    code, _, err = run(capsys, *DRY, "--motion", "rk4", "--out", str(tmp_path / "rk4"))
+    assert code == 2
+    assert err.startswith("iiwa-dnn physics: error: motion: must be euler")
+    assert not (tmp_path / "rk4").exists()
+
+
+@needs_mujoco
 def test_the_check_can_fail(capsys, tmp_path):
     code, _, err = run(capsys, *DRY, "--tolerance", "1e-18", "--out", str(tmp_path))
     assert code == 1
