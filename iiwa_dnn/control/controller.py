@@ -160,8 +160,8 @@ class Controller:
         plan, answers = self._plan, self._room
         if answers is None or plan is None or plan.version != self.solver.version:
             plan, answers = self._prepare(q, t, target)
-        if len(q) != plan.q.size:  # type: ignore[arg-type]
-            raise InvalidInputError("q", f"must have {plan.q.size} values, not {np.shape(q)}", q)
+        if type(q) is not np.ndarray or q.shape != plan.q.shape:
+            q = checks.finite_array("q", q, plan.q.shape)
         plan.q[:] = q
         index = answers.count
         if index == _ROOM:

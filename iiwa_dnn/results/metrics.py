@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.files import plain
 from iiwa_dnn.results.record import FloatArray, Record
 
-ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop"}
+ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5

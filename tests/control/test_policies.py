@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import qpsolvers
 from scipy.optimize import lsq_linear
 
 from helpers_kinematics import PAPER_Q0
@@ -217,3 +218,73 @@ def test_no_answer_at_all_is_still_inside_the_bounds(monkeypatch: pytest.MonkeyP
     assert inside(answer.solution.x, qp)
     assert not answer.solution.found
     np.testing.assert_allclose(qp.A @ answer.solution.x, answer.fraction * qp.b, atol=1e-6)
+
+
+def walled(b: float, h: float) -> QP:
+    """Both joints push the same way, x1 + 2 x2 = b, and a wall: x1 + x2 <= h."""
+    return QP(
+        np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[h], A=[[1.0, 2.0]], b=[b],
+        lb=[-1.0, -1.0], ub=[1.0, 1.0],
+    )  # fmt: skip
+
+
+def test_the_largest_fraction_ends_at_an_inequality_row() -> None:
+    # x1 + x2 <= 0.5 lets x = (-0.5, 1) give 1.5 of the 6 that are asked for.
+    reach = largest_fraction(walled(6.0, 0.5))
+    assert reach.fraction == pytest.approx(0.25, abs=1e-9)
+    np.testing.assert_allclose(reach.dq, [-0.5, 1.0], rtol=0, atol=1e-9)
+    assert reach.rows.tolist() == [1]
+    assert reach.sides.tolist() == [0, 1]
+    assert largest_fraction(walled(1.0, 0.5)).fraction == 1.0
+    # A wall that pushes back: not even rest is feasible.
+    assert np.isnan(largest_fraction(walled(6.0, -0.5)).fraction) or (
+        largest_fraction(walled(6.0, -0.5)).fraction < 0.25
+    )
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+@pytest.mark.parametrize("h", [1.0, 1e-3, 0.0, -0.3])
+def test_no_policy_goes_through_a_wall(policy: policies.Policy, h: float) -> None:
+    # Relax returned SOLVED at 0.126 m/s through a wall of 0.001 m/s, slow raised ValueError.
+    for seed in range(5):
+        base = program(seed)
+        rng = np.random.default_rng(seed)
+        wall = rng.standard_normal((2, 7))
+        wall /= np.linalg.norm(wall, axis=1)[:, np.newaxis]
+        qp = QP(base.P, base.q, wall, np.full(2, h), base.A, base.b, base.lb, base.ub)
+        solver = DNNSolver()
+        solution = solver.solve(qp)
+        if solution.found:
+            continue
+        answer = resolve(qp, solution, policy, solver)
+        assert answer.action in (Action.SLOW, Action.RELAX)
+        assert inside(answer.solution.x, qp)
+        assert (wall @ answer.solution.x <= h + 1e-8).all()
+        np.testing.assert_array_equal(answer.qp.G, qp.G)
+        np.testing.assert_array_equal(answer.qp.h, qp.h)
+
+
+def test_the_least_violation_within_rows_is_a_quadratic_programs_solution() -> None:
+    for seed in range(10):
+        base = program(seed)
+        wall = np.random.default_rng(seed).standard_normal((3, 7))
+        # The wall stands where the arm would go without it.
+        h = wall @ undamped(base).dq - 0.05
+        qp = QP(base.P, base.q, wall, h, base.A, base.b, base.lb, base.ub)
+        reach = least_violation(qp, damping=0.01)
+        cost = qp.A.T @ qp.A + 0.01 * np.eye(7)
+        problem = QP(cost, -qp.A.T @ qp.b, G=wall, h=h, lb=qp.lb, ub=qp.ub).to_qpsolvers()
+        other = qpsolvers.solve_problem(problem, solver="daqp")
+        np.testing.assert_allclose(reach.dq, other.x, rtol=0, atol=1e-6)
+        assert reach.rows.any()
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
+def test_limits_that_contradict_each_other_stop_the_arm(policy: policies.Policy) -> None:
+    qp = QP(
+        np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[-3.0], A=[[1.0, 2.0]], b=[0.5],
+        lb=[-1.0, -1.0], ub=[1.0, 1.0],
+    )  # fmt: skip
+    answer = resolve(qp, DNNSolver().solve(qp), policy, DNNSolver())
+    assert answer.action is Action.STOP
+    assert not answer.solution.x.any()
