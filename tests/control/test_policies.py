@@ -265,6 +265,7 @@ def test_no_policy_goes_through_a_wall(policy: policies.Policy, h: float) -> Non
 
 
 def test_the_least_violation_within_rows_is_a_quadratic_programs_solution() -> None:
+    in_the_way = 0
     for seed in range(10):
         base = program(seed)
         wall = np.random.default_rng(seed).standard_normal((3, 7))
@@ -276,7 +277,8 @@ def test_the_least_violation_within_rows_is_a_quadratic_programs_solution() -> N
         problem = QP(cost, -qp.A.T @ qp.b, G=wall, h=h, lb=qp.lb, ub=qp.ub).to_qpsolvers()
         other = qpsolvers.solve_problem(problem, solver="daqp")
         np.testing.assert_allclose(reach.dq, other.x, rtol=0, atol=1e-6)
-        assert reach.rows.any()
+        in_the_way += int(reach.rows.sum())
+    assert in_the_way > 5
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
