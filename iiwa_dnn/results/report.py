@@ -133,8 +133,8 @@ def write_report(
 ) -> Path:
     """Write report.md into a folder that exists, and return the file.
 
-    Every number in it is one of the metrics. Of the figures, files in that folder, the PNG ones are
-    shown.
+    Every number in it is one of the metrics. It shows the PNG files among the figures, which lie in
+    that folder.
 
     Raises:
         FileError: If it cannot be written.

@@ -95,3 +95,17 @@ def test_only_a_run_with_torques_has_their_figure(tmp_path, monkeypatch):
     written = [path.name for path in save_figures(record, tmp_path)]
     assert written == ["torques.png", "torques.pdf"]
     assert save_figures(make_record(), tmp_path / "without") == []
+
+
+def test_the_samples_at_the_edges_count():
+    """One at the time of settling, one at the start of the push, one at the recovered distance."""
+    error = error_after(2.6)
+    error[5], error[20], error[30] = 7e-3, 8e-3, 1e-3
+    physics = compute_metrics(physics_record(error, PUSH))["physics"]
+    assert physics["max_position_error_settled_m"] == 8e-3
+    assert physics["push"]["max_position_error_m"] == 8e-3
+    assert physics["push"]["recovery_s"] == pytest.approx(0.1)
+    error[20] = 1e-4
+    physics = compute_metrics(physics_record(error, PUSH))["physics"]
+    assert physics["max_position_error_settled_m"] == 7e-3
+    assert physics["push"]["max_position_error_m"] == 3e-3
