@@ -273,6 +273,13 @@ ROWS = [
 ]
 
 
+def test_the_policies_are_named_with_their_steps():
+    record = make_record(action=[0, 2, 3, 3, 2, 2, 4, 0, 0, 0], fraction=np.ones(10))
+    (reason, slowed_down) = failures(record)
+    assert reason.startswith("6 steps without a solution (3 slowed, 2 relaxed, 1 stopped), the")
+    assert slowed_down == "slowed: path time 1 s after 1 s"
+
+
 def slowed(fraction, **changes):
     """A run whose clock went on by these shares of a control period."""
     action = np.where(np.asarray(fraction) < 1.0, 2, 0)
@@ -409,3 +416,17 @@ def test_a_bound_is_the_velocity_limit_only_at_that_speed():
     record = make_record(bound_multiplier=multiplier, dq_solver=dq)
     (bound,) = compute_metrics(record)["incidents"]["active_bounds"]
     assert (bound["side"], bound["limit"], bound["max_multiplier"]) == ("lower", "position", 0.5)
+
+
+def test_reasons_to_the_letter():
+    residual = np.full(10, 1e-9)
+    residual[[3, 8]] = 2.3456e-9, np.inf  # the others are at their tolerance, and solved
+    assert failures(make_record(kkt_residual=residual)) == [
+        "step 3 (t = 0.3 s): KKT residual 2.35e-09, tolerance 1e-09; 2 steps unsolved in all"
+    ]
+    lost = sample(make_record(settings={"mode": "continuous"}), "position", 5, np.nan)
+    assert failures(lost) == ["the tip position is not finite at every step"]
+    nowhere = sample(make_record(), "solution_gap", 3, np.nan)
+    assert "proxqp differs by not a number rad/s" in failures(nowhere)[0]
+    limits = {"q_upper": [0.0] * 7}
+    assert failures(sample(make_record(settings=limits), "q", (3, 5), 1e-9)) == []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -76,6 +78,10 @@ def test_a_torque_at_its_limit_is_a_failure():
     (short,) = failures(compute_metrics(record))
     assert "100%" in short
     assert failures(physics_record(error_after(2.0), share=0.999)) == []
+    torque = np.array(record.torque)
+    torque[3, 2], torque[7, 2] = 0.0, 50.0  # at the upper one
+    (reason,) = failures(dataclasses.replace(record, torque=torque))
+    assert "limit of 50 N m at step 7" in reason
 
 
 def test_report_and_summary_show_it(tmp_path):
