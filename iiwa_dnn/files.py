@@ -1,4 +1,4 @@
-"""Files that are either the old one or the whole new one, never half of it."""
+"""Atomic writing of files: a reader sees the old one or the whole new one, never half of it."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from iiwa_dnn.errors import FileError
 def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], object]) -> None:
     """Write a file under a temporary name beside it, then rename it into place.
 
-    A reader sees the old file or the new one. Whatever stops the writing (a full disk, an error
-    in ``write``, Ctrl-C), the old file stays and the temporary one is removed.
+    If anything stops the writing (a full disk, an error in ``write``, Ctrl-C), the old file stays
+    and the temporary one is removed.
 
     Args:
         path: The file to write; its folder must exist.
         write: Called once with the open binary file.
 
     Raises:
-        FileError: If the file cannot be written. What ``write`` raises of its own is passed on.
+        FileError: If the file cannot be written. Errors of ``write`` itself are passed on.
     """
     path = Path(path)
     # In the same folder, because a rename is atomic only inside one file system.
@@ -49,9 +49,9 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], o
 
 
 def prepare_folder(folder: str | os.PathLike[str]) -> Path:
-    """Make a folder, its parents too, and see that files can be written in it.
+    """Make a folder with its parents and check that files can be written in it.
 
-    Meant to be called before a long run, so that it does not end with nowhere to put its record.
+    To be called before a long run, lest it end without a place for its record.
 
     Args:
         folder: The folder; it may exist already.
@@ -116,7 +116,7 @@ def plain(value: object) -> Any:
 
 
 def one_line(error: BaseException) -> str:
-    """Say in one line what an exception says; an OSError without its path and number."""
+    """Reduce an exception to its message in one line; an OSError to its cause alone."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return " ".join(str(error).split()) or type(error).__name__

@@ -27,8 +27,6 @@ _SETTINGS = {
     "check": "cross-check",
     "tol": "KKT tolerance",
     "rho": "network time constant [s]",
-    "settler": "integrator, converged mode",
-    "follower": "integrator, continuous mode",
     "rows": "inequality rows",
     "noise": "noise, standard deviation [rad/s, or rad if at measurement]",
     "noise_at": "noise enters at",
@@ -133,8 +131,8 @@ def write_report(
 ) -> Path:
     """Write report.md into a folder that exists, and return the file.
 
-    Every number in it is one of the metrics. Of the figures, files in that folder, the PNG ones are
-    shown.
+    Every number in it is one of the metrics. It shows the PNG files among the figures, which lie in
+    that folder.
 
     Raises:
         FileError: If it cannot be written.
@@ -336,7 +334,8 @@ def _text(value: object) -> str:
     if isinstance(value, list):
         if len(value) > 1 and all(item == value[0] for item in value):
             return f"{_text(value[0])} (all {len(value)})"
-        return " ".join(_text(item) for item in value) or "none"
+        texts = (f"({_text(v)})" if isinstance(v, Mapping) else _text(v) for v in value)
+        return " ".join(texts) or "none"
     if isinstance(value, bool) or value is None:
         return "none" if value is None else str(value).lower()
     return _number(value) if isinstance(value, int | float) else str(value)

@@ -1,4 +1,4 @@
-"""What the paper prints: its parameters and the numbers of its tables.
+"""The paper's parameters and the numbers of its tables.
 
 Source: "Enhanced Orientation Tracking for Redundant Manipulators via DNN-Based Double Control",
 section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squared error's unit

@@ -84,8 +84,7 @@ class HeartRun:
         mode: ``"continuous"`` (the paper's) or ``"converged"``.
         orientation: ``"block"`` (the paper's), ``"so3"`` or ``"none"``.
         kinetic: G: ``"identity"`` (the paper's) or ``"inertia"``.
-        baseline: Whether the pseudo-inverse takes the scheme's place, which has neither weight
-            nor bounds.
+        baseline: True for the pseudo-inverse, which has neither weight nor bounds.
         substeps: Advance of the network in ``continuous`` mode: that many explicit sub-steps a
             control step, as many as are ``"computed"`` to be stable, or ``"implicit"`` Euler.
         noise: Standard deviation, in the unit of `noise_at` (`NOISE_ENTRIES`).
@@ -95,7 +94,7 @@ class HeartRun:
         dt: Control period [s].
         duration: Length of the run [s].
         motion: Motion integrator.
-        keep_record: Whether the run itself is kept, for figures.
+        keep_record: True to keep the run itself, for figures.
     """
 
     weight: float = paper.WEIGHT

@@ -4,7 +4,7 @@ With :math:`\bar x` the mean and s the standard deviation of k independent sampl
 
 .. math::  \bar x \pm t_{k-1,\,(1+c)/2}\, s / \sqrt{k}
 
-holds the true mean with confidence c (Student's t). Where two runs share their noise, the
+holds the true mean with confidence c (Student's t). If two runs share their noise, the
 difference is taken run by run before it is averaged: the noise that both share cancels, and the
 interval is the narrower for it.
 

@@ -69,6 +69,13 @@ def test_position_error_is_a_distance_and_its_mean_square_is_over_axes():
     np.testing.assert_array_equal(position_error(record)[4], [3e-3, -4e-3, 12e-3])
 
 
+def test_the_error_is_actual_minus_desired():
+    position, desired = np.arange(33.0).reshape(11, 3), np.full((11, 3), 2.0)
+    record = make_record(position=position, position_desired=desired)
+    np.testing.assert_array_equal(position_error(record), position - 2.0)
+    assert compute_metrics(record)["mse_position_error_m2"] == np.mean((position - 2.0) ** 2)
+
+
 def test_the_last_sample_counts():
     record = sample(make_record(), "position", -1, [0.0, 0.0, 2e-6])
     assert compute_metrics(record)["max_position_error_m"] == 2e-6
@@ -90,6 +97,7 @@ def test_joint_drift_is_from_start_to_end_only():
     record = sample(record, "q", (-1, 2), -0.5)
     record = sample(record, "q", 5, 2.0)
     assert compute_metrics(record)["joint_drift_rad"] == 0.75
+    assert compute_metrics(sample(record, "q", (-1, 4), 1.5))["joint_drift_rad"] == 1.25
 
 
 def test_times_and_kinetic_index():
@@ -265,6 +273,13 @@ ROWS = [
 ]
 
 
+def test_the_policies_are_named_with_their_steps():
+    record = make_record(action=[0, 2, 3, 3, 2, 2, 4, 0, 0, 0], fraction=np.ones(10))
+    (reason, slowed_down) = failures(record)
+    assert reason.startswith("6 steps without a solution (3 slowed, 2 relaxed, 1 stopped), the")
+    assert slowed_down == "slowed: path time 1 s after 1 s"
+
+
 def slowed(fraction, **changes):
     """A run whose clock went on by these shares of a control period."""
     action = np.where(np.asarray(fraction) < 1.0, 2, 0)
@@ -359,3 +374,59 @@ def test_the_first_step_is_said_of_the_reason_that_it_belongs_to():
         "(t = 0.2 s)",
         "1 step without a solution (1 stopped); in the way: no bound, a singular pose",
     ]
+
+
+def test_the_largest_turn_counts_and_time_from_the_first_sample():
+    turn = rotation_about([0.0, 0.0, 1.0], np.linspace(0.0, 0.5, 11))
+    metrics = compute_metrics(make_record(rotation=turn, t=5.0 + 0.1 * np.arange(11)))
+    assert metrics["max_orientation_error_rad"] == pytest.approx(0.5)
+    assert metrics["duration_s"] == pytest.approx(1.0)
+
+
+def test_a_gap_and_a_reference_at_their_tolerance_are_within_it():
+    record = make_record(
+        solution_gap=np.full((10, 1), 1e-6), reference_residual=np.full((10, 1), 1e-8)
+    )
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["disagreements"], check["reference_failures"]) == (0, 0)
+    assert check["max_solution_gap"] == 1e-6
+
+
+def test_clipped_steps_and_bounds_in_the_way():
+    clipped, blocking = np.zeros((10, 7), int), np.zeros((10, 7), int)
+    clipped[2:5, 3] = clipped[4, 1] = 1
+    blocking[6, 0], blocking[7, 0], blocking[7, 6] = 2, 1, -1
+    record = make_record(clipped=clipped, blocking=blocking, action=np.eye(10, dtype=int)[6] * 9)
+    incidents = compute_metrics(record)["incidents"]
+    assert incidents["clipped_steps"] == 3
+    assert incidents["first"] == {"step": 6, "time_s": pytest.approx(0.6), "action": "unknown"}
+    assert incidents["blocking"] == [
+        {"joint": joint, "side": side, "limit": limit, "steps": 1, "time_s": 0.1, "first_s": first}
+        for joint, side, limit, first in (
+            (1, "upper", "position", pytest.approx(0.7)),
+            (1, "upper", "velocity", pytest.approx(0.6)),
+            (7, "lower", "position", pytest.approx(0.7)),
+        )
+    ]
+
+
+def test_a_bound_is_the_velocity_limit_only_at_that_speed():
+    multiplier, dq = np.zeros((10, 7)), np.zeros((10, 7))
+    multiplier[:, 2], dq[:, 2] = -0.5, -1.2  # slower than the limit of 1.5 rad/s
+    record = make_record(bound_multiplier=multiplier, dq_solver=dq)
+    (bound,) = compute_metrics(record)["incidents"]["active_bounds"]
+    assert (bound["side"], bound["limit"], bound["max_multiplier"]) == ("lower", "position", 0.5)
+
+
+def test_reasons_to_the_letter():
+    residual = np.full(10, 1e-9)
+    residual[[3, 8]] = 2.3456e-9, np.inf  # the others are at their tolerance, and solved
+    assert failures(make_record(kkt_residual=residual)) == [
+        "step 3 (t = 0.3 s): KKT residual 2.35e-09, tolerance 1e-09; 2 steps unsolved in all"
+    ]
+    lost = sample(make_record(settings={"mode": "continuous"}), "position", 5, np.nan)
+    assert failures(lost) == ["the tip position is not finite at every step"]
+    nowhere = sample(make_record(), "solution_gap", 3, np.nan)
+    assert "proxqp differs by not a number rad/s" in failures(nowhere)[0]
+    limits = {"q_upper": [0.0] * 7}
+    assert failures(sample(make_record(settings=limits), "q", (3, 5), 1e-9)) == []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -76,6 +78,10 @@ def test_a_torque_at_its_limit_is_a_failure():
     (short,) = failures(compute_metrics(record))
     assert "100%" in short
     assert failures(physics_record(error_after(2.0), share=0.999)) == []
+    torque = np.array(record.torque)
+    torque[3, 2], torque[7, 2] = 0.0, 50.0  # at the upper one
+    (reason,) = failures(dataclasses.replace(record, torque=torque))
+    assert "limit of 50 N m at step 7" in reason
 
 
 def test_report_and_summary_show_it(tmp_path):
@@ -95,3 +101,17 @@ def test_only_a_run_with_torques_has_their_figure(tmp_path, monkeypatch):
     written = [path.name for path in save_figures(record, tmp_path)]
     assert written == ["torques.png", "torques.pdf"]
     assert save_figures(make_record(), tmp_path / "without") == []
+
+
+def test_the_samples_at_the_edges_count():
+    """One at the time of settling, one at the start of the push, one at the recovered distance."""
+    error = error_after(2.6)
+    error[5], error[20], error[30] = 7e-3, 8e-3, 1e-3
+    physics = compute_metrics(physics_record(error, PUSH))["physics"]
+    assert physics["max_position_error_settled_m"] == 8e-3
+    assert physics["push"]["max_position_error_m"] == 8e-3
+    assert physics["push"]["recovery_s"] == pytest.approx(0.1)
+    error[20] = 1e-4
+    physics = compute_metrics(physics_record(error, PUSH))["physics"]
+    assert physics["max_position_error_settled_m"] == 7e-3
+    assert physics["push"]["max_position_error_m"] == 3e-3

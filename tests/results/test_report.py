@@ -204,15 +204,16 @@ def test_active_and_blocking_rows_are_said(tmp_path):
 def test_network_and_integrators_are_among_the_settings(tmp_path):
     named = {
         "network": {"name": "ProjectionNetwork", "rho": 9e-5},
-        "settler": {"name": "ImplicitEuler"},
-        "follower": {"name": "ExplicitEuler", "substeps": None},
+        "integrator": {"name": "ExplicitEuler", "substeps": None},
     }
-    record = make_record(settings=named)
+    costs = [{"name": "KineticEnergy", "weight": 0.2}, {"name": "CyclicMotion"}]
+    record = make_record(settings=named | {"scheme": {"name": "Scheme", "costs": costs}})
     write_report(record, compute_metrics(record), tmp_path)
     table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
     assert table["network"] == ["name = ProjectionNetwork, rho = 9e-05"]
-    assert table["integrator, converged mode"] == ["name = ImplicitEuler"]
-    assert table["integrator, continuous mode"] == ["name = ExplicitEuler, substeps = none"]
+    parts = "(name = KineticEnergy, weight = 0.2) (name = CyclicMotion)"
+    assert table["scheme"] == [f"name = Scheme, costs = {parts}"]
+    assert table["integrator"] == ["name = ExplicitEuler, substeps = none"]
 
 
 @pytest.mark.parametrize("scheme", [{"name": "Scheme"}, {"kinetic": None}, {"kinetic": "mine"}])
