@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup heart physics view test notebooks docs coverage lint format types clean
+.PHONY: help setup heart physics view test bounds notebooks docs coverage lint format types clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [ARGS="..."]'
@@ -41,7 +41,11 @@ view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the a
 	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
 test: $(STAMP)  ## run the tests
-	$(VENV_PYTHON) -m pytest $(ARGS)
+	$(VENV_PYTHON) -m pytest -n auto $(ARGS)
+
+bounds: $(STAMP)  ## run the tests of compiled code with every index checked
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -n auto -q \
+		tests/control tests/networks tests/qp tests/references tests/schemes tests/test_kernels.py
 
 notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
@@ -50,7 +54,7 @@ docs: $(STAMP)  ## build the documentation into site/, any warning an error
 	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
 
 coverage: $(STAMP)  ## run the tests and show which lines of the package they reach
-	$(VENV_PYTHON) -m pytest --cov --cov-report=term-missing $(ARGS)
+	$(VENV_PYTHON) -m pytest -n auto --cov --cov-report=term-missing $(ARGS)
 
 lint: $(STAMP)  ## look for slips and for untidy layout
 	$(VENV_PYTHON) -m ruff check .
