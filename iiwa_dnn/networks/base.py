@@ -55,11 +55,11 @@ class Network(ABC):
 
     @abstractmethod
     def state_size(self, qp: QP) -> int:
-        """Number of states."""
+        """Count the states."""
 
     @abstractmethod
     def flow(self, qp: QP) -> Flow:
-        """The right-hand side and its derivative for this program."""
+        """Make the right-hand side and its derivative for this program."""
 
     @abstractmethod
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
@@ -71,7 +71,7 @@ class Network(ABC):
 
     @abstractmethod
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """A step, in units of rho, below which explicit Euler is stable; 0 where none is known.
+        """Bound the stable steps of explicit Euler [rho]; 0 where none is known to be stable.
 
         Args:
             qp: The program.
@@ -84,15 +84,15 @@ class Network(ABC):
         return None
 
     def initial_state(self, qp: QP) -> Vector:
-        """The state at rest before any problem was seen: zero, (state_size,)."""
+        """Make the state before any program was seen: zero, (state_size,)."""
         return np.zeros(self.state_size(qp))
 
     def rates(self, qp: QP, state: Vector) -> Vector:
-        """The right-hand side, rho ds/dt, of shape (state_size,)."""
+        """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
         return self.flow(qp).rates(state)
 
     def settings(self) -> dict[str, Any]:
-        """Name and parameters, as values that JSON can hold."""
+        """Return name and parameters, as values that JSON can hold."""
         return settings_of(self)
 
 

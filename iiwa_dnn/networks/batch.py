@@ -15,11 +15,13 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_implicit
 from iiwa_dnn.qp.dense import cholesky_factor
-from iiwa_dnn.qp.layout import Matrix, Vector, compiled, larger
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, compiled, larger
 from iiwa_dnn.qp.program import FIELDS, QP, ROUNDING, numbers, require_pairs
 
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""
+
+_AXES = {name: 2 if name in "PGA" else 1 for name in FIELDS}
 
 
 class BatchSolution(NamedTuple):
@@ -85,17 +87,13 @@ def solve_batch(
     given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
     arrays = {name: numbers(name, value) for name, value in given if value is not None}
     require_pairs(arrays)
-    shapes = _shapes(arrays)
-    count = _count(arrays, shapes)
-    (n,), (m,), (p,) = shapes["q"], shapes["h"], shapes["b"]
-    arrays = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf), **arrays}
-    rows = [_as_rows(arrays.get(name, np.empty(shape)), shape) for name, shape in shapes.items()]
+    parts, (n, m, p), count = _stacked(arrays)
     points, residuals = np.full((count, 2 * n + m + p), np.nan), np.empty((count, 3))
     iterations = np.zeros(count, dtype=np.int64)
-    _settle_all(rows, (n, m, p), tol, points, residuals, iterations)
+    _settle_all(parts, (n, m, p), tol, points, residuals, iterations)
     found = np.all(residuals <= tol, axis=1)
-    faults = _faults(rows, (n, m, p), np.flatnonzero(~found))
-    if len(faults) == count and arrays[faults[0].argument].shape == shapes[faults[0].argument]:
+    faults = _faults(parts, (n, m, p), np.flatnonzero(~found))
+    if len(faults) == count and arrays[faults[0].argument].ndim == _AXES[faults[0].argument]:
         raise faults[0]
     for k in faults:
         points[k], residuals[k], iterations[k] = np.nan, np.inf, 0
@@ -103,56 +101,43 @@ def solve_batch(
     return BatchSolution(x, y, z, z_box, found, residuals, iterations, faults)
 
 
-def _shapes(arrays: dict[str, NDArray[np.float64]]) -> dict[str, tuple[int, ...]]:
-    """Shapes of the eight arrays of one program; G, A and q decide on m, p and n."""
-    n = arrays["q"].shape[-1] if arrays["q"].ndim else 0
+def _stacked(arrays: dict[str, NDArray[np.float64]]) -> tuple[list[Matrix], Sizes, int]:
+    """Check the shapes; returns the eight parts with a row for each program or one for all."""
+    n = arrays["q"].shape[-1] if "q" in arrays and arrays["q"].ndim else 0
     if n == 0:
         raise InvalidInputError("q", "is empty")
-    m, p = (
-        arrays[left].shape[-2] if left in arrays and arrays[left].ndim > 1 else 0 for left in "GA"
-    )
-    return {
-        "P": (n, n), "q": (n,), "G": (m, n), "h": (m,), "A": (p, n), "b": (p,),
-        "lb": (n,), "ub": (n,),
-    }  # fmt: skip
-
-
-def _count(arrays: dict[str, NDArray[np.float64]], shapes: dict[str, tuple[int, ...]]) -> int:
-    """Count the programs; every array has its own shape, that number in front or not."""
+    # Rows decide on m and p, so that a right-hand side that does not fit is the one named.
+    m, p = (arrays[k].shape[-2] if k in arrays and arrays[k].ndim > 1 else 0 for k in "GA")
+    shapes = ((n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,))
+    unbounded = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf)}
+    parts: list[Matrix] = []
     count, counted_by = 1, ""
-    for name, array in arrays.items():
-        shape = shapes[name]
-        leading = array.ndim == len(shape) + 1
-        if array.shape[1 if leading else 0 :] != shape:
-            raise InvalidInputError(
-                name, f"has shape {array.shape}, not {shape} with or without a leading axis"
-            )
-        if not leading:
-            continue
-        if array.shape[0] == 0:
+    for name, shape in zip(FIELDS, shapes, strict=True):
+        array = arrays.get(name, unbounded.get(name, np.empty(shape)))
+        leading = array.shape[: array.ndim - len(shape)]
+        if array.shape != (*leading, *shape) or len(leading) > 1:
+            problem = f"has shape {array.shape}, not {shape} with or without a leading axis"
+            raise InvalidInputError(name, problem)
+        if leading == (0,):
             raise InvalidInputError(name, "holds no program")
-        if counted_by and array.shape[0] != count:
-            raise InvalidInputError(
-                name, f"holds {array.shape[0]} programs, but {counted_by} holds {count}"
-            )
-        count, counted_by = array.shape[0], name
-    return count
-
-
-def _as_rows(array: NDArray[np.float64], shape: tuple[int, ...]) -> Matrix:
-    """One row for each program, or one for all; writable, since numba compiles each kind anew."""
-    rows = array.shape[0] if array.ndim > len(shape) else 1
-    flat = np.ascontiguousarray(array).reshape(rows, math.prod(shape))
-    return flat if flat.flags.writeable else flat.copy()
+        if leading and counted_by and leading != (count,):
+            problem = f"holds {leading[0]} programs, but {counted_by} holds {count}"
+            raise InvalidInputError(name, problem)
+        if leading:
+            count, counted_by = leading[0], name
+        # Writable, since numba compiles each kind anew.
+        flat: Matrix = np.require(array, requirements=("C", "W"))
+        parts.append(flat.reshape(math.prod(leading), math.prod(shape)))
+    return parts, (n, m, p), count
 
 
 def _faults(
-    rows: list[Matrix], sizes: tuple[int, int, int], unsolved: NDArray[np.intp]
+    parts: list[Matrix], sizes: Sizes, unsolved: NDArray[np.intp]
 ) -> dict[int, InvalidInputError]:
     """Check the values of the programs that were not solved; returns the errors by number."""
     faults = {}
     for k in unsolved.tolist():
-        data = np.concatenate([part[k if len(part) > 1 else 0] for part in rows])
+        data = np.concatenate([part[k if len(part) > 1 else 0] for part in parts])
         try:
             QP.from_data(data, sizes).check_values()
         except InvalidInputError as error:
@@ -161,7 +146,7 @@ def _faults(
 
 
 def _settle_all(
-    parts: list[Matrix], sizes: tuple[int, int, int], tol: float, points: Matrix,
+    parts: list[Matrix], sizes: Sizes, tol: float, points: Matrix,
     residuals: Matrix, iterations: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Settle one program for each row of `points`, over all cores."""
@@ -181,7 +166,7 @@ def _settle_all(
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 def _settle_rows(
-    first: int, last: int, parts: tuple[Matrix, ...], sizes: tuple[int, int, int], tol: float,
+    first: int, last: int, parts: tuple[Matrix, ...], sizes: Sizes, tol: float,
     max_systems: int, long_step: float, points: Matrix, residuals: Matrix,
     iterations: NDArray[np.int64],
 ) -> None:  # fmt: skip

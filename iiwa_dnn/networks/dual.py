@@ -44,12 +44,12 @@ class DualNetwork(Network):
     carries_x: ClassVar[bool] = False
 
     def state_size(self, qp: QP) -> int:
-        """Number of states: one for each row and each variable."""
+        """Count the states: one for each row and each variable."""
         n, m, p = qp.sizes
         return n + m + p
 
     def flow(self, qp: QP) -> Flow:
-        """The right-hand side and its derivative for this program."""
+        """Make the right-hand side and its derivative for this program."""
         rows, lower, upper = _two_sided(qp)
         lifted = _solved(qp, rows.T)
         gram, offset = rows @ lifted, rows @ _solved(qp, qp.q)
@@ -70,7 +70,7 @@ class DualNetwork(Network):
         return Flow(rates, jacobian)
 
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
-        """Write the point that the state stands for; returns its residuals."""
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
         n, m, p = qp.sizes
         check_size("point", point, 2 * n + m + p)
         rows, _, _ = _two_sided(qp)
@@ -79,7 +79,7 @@ class DualNetwork(Network):
         return kkt_point(qp.data, n, m, p, known, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        r"""A step, in units of rho, below which explicit Euler is stable on every active set.
+        r"""Bound the stable steps of explicit Euler, in units of rho, on every active set.
 
         Rows at a limit follow :math:`-E P^{-1} E^T`, the others decay at rate one: all eigenvalues
         are real, and none is below minus the largest of both.
@@ -90,14 +90,14 @@ class DualNetwork(Network):
 
 
 def _two_sided(qp: QP) -> tuple[Matrix, Vector, Vector]:
-    """``(E, lower, upper)``: all constraints as rows with two limits."""
+    """Stack all constraints as rows with two limits, ``(E, lower, upper)``."""
     rows = np.vstack([qp.A, qp.G, np.eye(qp.q.size)])
     lower = np.concatenate([qp.b, np.full(qp.h.size, -np.inf), qp.lb])
     return rows, lower, np.concatenate([qp.b, qp.h, qp.ub])
 
 
 def _solved(qp: QP, right: Matrix) -> Matrix:
-    """P^-1 times vectors."""
+    """Multiply vectors by the inverse of P."""
     from scipy import linalg  # 0.05 s that only this network needs
 
     try:

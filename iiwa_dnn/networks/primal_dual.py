@@ -37,12 +37,12 @@ class PrimalDualNetwork(Network):
     """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
 
     def state_size(self, qp: QP) -> int:
-        """Number of states: x and one multiplier for each row."""
+        """Count the states: x and one multiplier for each row."""
         n, m, p = qp.sizes
         return n + m + p
 
     def flow(self, qp: QP) -> Flow:
-        """The right-hand side and its derivative for this program."""
+        """Make the right-hand side and its derivative for this program."""
         H, (lower, upper) = _coupling(qp), _limits(qp)
         constant = np.concatenate([qp.q, qp.b, qp.h])
         eye = np.eye(constant.size)
@@ -62,20 +62,20 @@ class PrimalDualNetwork(Network):
         return Flow(rates, jacobian)
 
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
-        """Write the point that the state stands for; returns its residuals."""
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
         n, m, p = qp.sizes
         check_size("state", state, n + m + p)
         check_size("point", point, 2 * n + m + p)
         return kkt_point(qp.data, n, m, p, state, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """A step, in units of rho, below which explicit Euler gets nearer to every solution."""
+        """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""
         coupling = _coupling(qp)
         return 2.0 / float(np.linalg.norm(np.eye(coupling.shape[0]) + coupling, 2)) ** 2
 
 
 def _coupling(qp: QP) -> Matrix:
-    """H, of shape (n + p + m, n + p + m)."""
+    """Build H, of shape (n + p + m, n + p + m)."""
     n, m, p = qp.sizes
     H = np.zeros((n + p + m, n + p + m))
     H[:n, :n], H[:n, n : n + p], H[:n, n + p :] = qp.P, qp.A.T, qp.G.T
@@ -84,7 +84,7 @@ def _coupling(qp: QP) -> Matrix:
 
 
 def _limits(qp: QP) -> tuple[Vector, Vector]:
-    """The set Omega: lower and upper limits of the state."""
+    """Return the set Omega: lower and upper limits of the state."""
     _, m, p = qp.sizes
     free = np.full(p, np.inf)
     lower = np.concatenate([qp.lb, -free, np.zeros(m)])

@@ -11,9 +11,9 @@ With the Lagrangian's gradient :math:`g = P x + q + A^T y + G^T z + u - l`,
     \rho\,\dot l &= -l + [l + lb - x]_+
 
 where u and l are the paper's :math:`\mu` for :math:`\Omega = [I; -I]`, :math:`\chi = [ub; -lb]`:
-the bounds act twice, in the projection and in the multipliers. At rest the first line reads
-``x = proj(x - g)`` and the others are feasibility and complementarity, so the equilibria are
-exactly the KKT points of the program (docs/theory.md).
+the bounds act twice, in the projection and in the multipliers. At rest ``x = proj(x - g)``, with
+feasibility and complementarity: the equilibria are exactly the KKT points (docs/theory.md). The
+state is one flat array, ``s = [x | y | z | u | l]``, and time is in units of rho.
 
 Source: "Enhanced Orientation Tracking for Redundant Manipulators via DNN-Based Double Control",
 section III, its slips corrected (docs/errata.md).
@@ -31,6 +31,7 @@ from iiwa_dnn.qp.layout import Matrix, Vector, check_size, compiled, larger, off
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
+_PROJECTED, _FREE = CompiledForm(project=True), CompiledForm(project=False)
 _METHODS = ("state_size", "flow", "read", "stable_step")
 """Methods that the compiled loops stand in for."""
 
@@ -44,7 +45,7 @@ class ProjectionNetwork(Network):
         primal_projection: Whether x goes through its bounds, as in the paper. Without it the
             bounds act through their multipliers alone; the equilibria are the same, and a
             backward Euler step becomes a convex problem
-            (`iiwa_dnn.networks.integrators.backward_euler`).
+            (`iiwa_dnn.networks.integrators.implicit_steps`).
     """
 
     primal_projection: bool = True
@@ -57,15 +58,15 @@ class ProjectionNetwork(Network):
             getattr(own, name) is not getattr(ProjectionNetwork, name) for name in _METHODS
         ):
             return None
-        return CompiledForm(self.primal_projection)
+        return _PROJECTED if self.primal_projection else _FREE
 
     def state_size(self, qp: QP) -> int:
-        """Number of states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
+        """Count the states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
         n, m, p = qp.sizes
         return 3 * n + p + m
 
     def flow(self, qp: QP) -> Flow:
-        """The right-hand side and its derivative for this program."""
+        """Make the right-hand side and its derivative for this program."""
 
         def rates(state: Vector) -> Vector:
             result = np.empty(state.size)
@@ -75,14 +76,14 @@ class ProjectionNetwork(Network):
         return Flow(rates, lambda state: self._jacobian(qp, state))
 
     def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
-        """Write the point that the state stands for; returns its residuals."""
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
         n, m, p = qp.sizes
         check_size("state", state, 3 * n + m + p)
         check_size("point", point, 2 * n + m + p)
         return kkt_point(qp.data, n, m, p, state, point)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        r"""A step, in units of rho, below which explicit Euler is stable.
+        r"""Bound the stable steps of explicit Euler, in units of rho.
 
         On a fixed active set the network is linear. For an eigenvalue with eigenvector (v, w),
         \|v\| = 1, :math:`\lambda^2 + \pi\lambda + s = 0` with :math:`\pi = v^*Pv` and
@@ -108,7 +109,7 @@ class ProjectionNetwork(Network):
         return stable_step(qp.data, n, m, p, active)
 
     def _jacobian(self, qp: QP, state: Vector) -> Matrix:
-        """The derivative of the rates, (state_size, state_size)."""
+        """Differentiate the rates, (state_size, state_size)."""
         n, _, p = qp.sizes
         rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
         active = self._field(qp, state, np.empty(state.size)) > 0.0

@@ -12,10 +12,9 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.continuation import within
 from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
-from iiwa_dnn.qp.layout import Vector, check_size
+from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution, Status
 
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     import qpsolvers
 
 _PARTS = ("network", "tol", "settler", "follower")
-
-Sizes = tuple[int, int, int]
 
 
 class DNNSolver:
@@ -101,7 +98,7 @@ class DNNSolver:
             state[:n] += noise
 
     def warm_state(self, sizes: Sizes) -> Vector | None:
-        """The state itself, (size,), where the last program had these sizes; otherwise None."""
+        """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
         warm = self._warm()
         if warm is None or warm[1] != sizes or warm[0] is not self.network:
             return None
@@ -131,12 +128,12 @@ class DNNSolver:
         return None
 
     def settings(self) -> dict[str, Any]:
-        """Tolerance, network and integrators, as values that JSON can hold."""
+        """Return tolerance, network and integrators, as values that JSON can hold."""
         parts = {name: getattr(self, name) for name in ("network", "settler", "follower")}
         return {"tol": float(self.tol), **{name: part.settings() for name, part in parts.items()}}
 
     def solve(self, qp: QP) -> Solution:
-        """Advance the network until it has settled, and say how well it has.
+        """Advance the network until it has settled, and judge the point it has reached.
 
         Args:
             qp: The program; its values are taken as checked (`QP.check_values`).
@@ -144,21 +141,24 @@ class DNNSolver:
         Returns:
             The solution; `found` only where every residual is at most `tol`.
         """
-        network, tol, state, point = self.network, self.tol, self._take(qp), _point(qp)
+        network, tol, sizes = self.network, self.tol, qp.sizes
+        n, m, p = sizes
+        state, point = self._take(network, qp), np.empty(2 * n + m + p)
         settled = self.settler.settle(network, qp, state, point, tol)
         _, _, primal, dual, gap = settled
-        if within(primal, dual, gap, tol):
-            self._kept.append((network, qp.sizes, state))
-            return Solution(point, qp.sizes, Status.SOLVED, *settled)
+        # No residual may be above the tolerance, and none NaN.
+        if primal <= tol and dual <= tol and gap <= tol:
+            self._kept.append((network, sizes, state))
+            return Solution(point, sizes, Status.SOLVED, *settled)
         # The state is not kept: without a solution the multipliers grow without bound, or are no
         # numbers any more, and would spoil every later call.
         if not math.isfinite(primal + dual + gap):
-            return Solution(point, qp.sizes, Status.NOT_FINITE, *settled)
+            return Solution(point, sizes, Status.NOT_FINITE, *settled)
         status, certificate = find_certificate(qp, point) or (Status.NOT_SETTLED, None)
-        return Solution(point, qp.sizes, status, *settled, certificate)
+        return Solution(point, sizes, status, *settled, certificate)
 
     def advance(self, qp: QP, duration: float) -> Solution:
-        """Advance the network by `duration` and no more, settled or not.
+        """Advance the network by `duration`, settled or not.
 
         Args:
             qp: The program, held constant meanwhile.
@@ -167,8 +167,9 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        network, state, point = self.network, self._take(qp), _point(qp)
-        time = duration / network.rho
+        n, m, p = qp.sizes
+        network, point = self.network, np.empty(2 * n + m + p)
+        state, time = self._take(network, qp), duration / network.rho
         iterations = self.follower.advance(network, qp, state, time)
         residuals = network.read(qp, state, point)
         status = Status.NOT_FINITE
@@ -178,29 +179,23 @@ class DNNSolver:
         return Solution(point, qp.sizes, status, iterations, time, *residuals)
 
     def _warm(self) -> tuple[Network, Sizes, Vector] | None:
-        """The last network, sizes and state; None where there are none, or a call has them."""
+        """Return the last network, sizes and state; None where a call has them or none was."""
         try:
             return self._kept[-1]
         except IndexError:
             return None
 
-    def _take(self, qp: QP) -> Vector:
+    def _take(self, network: Network, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is put back."""
         try:
-            network, sizes, state = self._kept.pop()
+            owner, sizes, state = self._kept.pop()
+            if owner is network and sizes == qp.sizes:
+                return state
         except IndexError:
-            sizes = (0, 0, 0)
-        if sizes == qp.sizes and network is self.network:
-            return state
-        state = np.array(self.network.initial_state(qp), dtype=np.float64)
-        check_size("network", state, self.network.state_size(qp))
+            pass
+        state = np.array(network.initial_state(qp), dtype=np.float64)
+        check_size("network", state, network.state_size(qp))
         return state
-
-
-def _point(qp: QP) -> Vector:
-    """Make room for ``[x | y | z | z_box]``."""
-    n, m, p = qp.sizes
-    return np.empty(2 * n + m + p)
 
 
 def solve_problem(

@@ -88,7 +88,7 @@ def towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
 
 
 def _rounding(terms: int) -> float:
-    """Relative error of a sum of that many products."""
+    """Bound the relative rounding error of a sum of so many products."""
     return (terms + 2) * _EPS
 
 

@@ -39,7 +39,7 @@ def compiled(function: Function) -> Function:
 
 def check_size(argument: str, array: Vector, size: int) -> None:
     """Raise InvalidInputError unless an array is flat and of this size: compiled code trusts it."""
-    if array.shape != (size,):
+    if array.size != size or array.ndim != 1:
         raise InvalidInputError(argument, f"has shape {array.shape}, not ({size},)", array)
 
 

@@ -126,7 +126,7 @@ class QP:
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
-        """A program over an existing `data` array (size,), which is not copied.
+        """Make a program over an existing `data` array (size,), which is not copied.
 
         Raises:
             InvalidInputError: The array's size is not that of such a program.
@@ -147,7 +147,7 @@ class QP:
         return cls(*problem.unpack())
 
     def to_qpsolvers(self) -> qpsolvers.Problem:
-        """The same problem for qpsolvers; parts without rows are left out, as it expects."""
+        """Convert to a problem of qpsolvers; parts without rows are left out, as it expects."""
         import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
         _, m, p = self.sizes
@@ -165,11 +165,11 @@ class QP:
         )
 
     def arrays(self) -> tuple[Matrix, Vector, Matrix, Vector, Matrix, Vector, Vector, Vector]:
-        """``(P, q, G, h, A, b, lb, ub)``, of the shapes that the class states."""
+        """Return ``(P, q, G, h, A, b, lb, ub)``, of the shapes that the class states."""
         return self.P, self.q, self.G, self.h, self.A, self.b, self.lb, self.ub
 
     def bounds_as_inequalities(self) -> tuple[Matrix, Vector]:
-        """The paper's Omega and chi: bounds written as inequality rows.
+        """Write the bounds as inequality rows, the paper's Omega and chi.
 
         Returns:
             ``([I; -I], [ub; -lb])`` of shapes (2n, n) and (2n,). The paper prints chi with
@@ -181,7 +181,7 @@ class QP:
     def residuals(
         self, x: Vector, y: Vector | None, z: Vector | None, z_box: Vector | None
     ) -> Residuals:
-        """Qpsolvers' residuals of a primal-dual point, by its formulas and without its checks.
+        """Compute qpsolvers' residuals of a primal-dual point, without its checks.
 
         Args:
             x: Primal point, (n,).

@@ -95,3 +95,9 @@ def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) ->
             aim -= data[at_G + j * n + i] * point[at_z + j]
         point[at_z + m + i] = aim - min(max(aim, data[at_lb + i]), data[at_ub + i])
     return point_residuals(data, n, m, p, point)
+
+
+@compiled
+def within(primal: float, dual: float, gap: float, tol: float) -> bool:
+    """Tell whether no residual is above the tolerance, and none NaN."""
+    return primal <= tol and dual <= tol and gap <= tol

@@ -113,11 +113,11 @@ class Solution(NamedTuple):
 
     @property
     def found(self) -> bool:
-        """True only when every residual is at most the tolerance that was asked for."""
+        """Whether every residual is at most the tolerance that was asked for."""
         return self.status is Status.SOLVED
 
     def to_qpsolvers(self, problem: qpsolvers.Problem) -> qpsolvers.Solution:
-        """The same answer as a `qpsolvers.Solution` of `problem`.
+        """Convert to a `qpsolvers.Solution` of `problem`.
 
         Multipliers of constraints that `problem` does not have are empty arrays, as those of
         qpsolvers' own solvers. A solution that was not found carries no ``x``; the point that the

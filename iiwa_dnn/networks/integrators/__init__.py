@@ -1,4 +1,4 @@
-"""How a network's ODE is advanced in time."""
+"""Integrators of a network's ODE."""
 
 from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.networks.integrators.explicit import SAFETY, ExplicitEuler

@@ -46,7 +46,7 @@ class Integrator(Protocol):
         ...
 
     def settings(self) -> dict[str, Any]:
-        """Name and parameters, as values that JSON can hold."""
+        """Return name and parameters, as values that JSON can hold."""
         ...
 
 
@@ -54,5 +54,5 @@ class Settings:
     """The `settings` of an integrator that is a dataclass."""
 
     def settings(self) -> dict[str, Any]:
-        """Name and parameters, as values that JSON can hold."""
+        """Return name and parameters, as values that JSON can hold."""
         return settings_of(self)

@@ -12,10 +12,10 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import Settings, Settled
-from iiwa_dnn.networks.integrators.continuation import within
 from iiwa_dnn.networks.projection import field
 from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import within
 
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""

@@ -1,18 +1,17 @@
 r"""Implicit Euler with growing steps: pseudo-transient continuation to the equilibrium.
 
-**Two kinds of step.** `settle` first tries a single linearly implicit step with a very long h. If
-it makes no progress, a backward Euler step follows whose h grows tenfold a round, from 10 to 1e6
-(`iiwa_dnn.networks.integrators.continuation`). The budget is bounded, and mostly not used: once
-three of the longest steps have not halved the rates, the state is running off, and
+**The rules** of `settle`, by which linearly implicit and backward Euler steps take turns, are those
+of `iiwa_dnn.networks.integrators.pseudo_transient`. Its budget is mostly not used: once three of
+the longest steps have not halved the rates, the state is running off, and
 `iiwa_dnn.networks.refutation` looks for the proof that there is no solution.
 
 **The primal projection.** `advance` integrates the network as it is. `settle` leaves the projection
 of x out, with which a step would no longer be a convex problem
-(`iiwa_dnn.networks.integrators.backward_euler`): at the equilibrium the multipliers alone keep the
+(`iiwa_dnn.networks.integrators.implicit_steps`): at the equilibrium the multipliers alone keep the
 bounds, so the answer is the same, and the one that is handed out is put inside its bounds.
 
 **Networks without compiled loops**, and the projection in `advance`, go through a Newton iteration
-on the whole state (`iiwa_dnn.networks.integrators.pseudo_transient`).
+on the whole state.
 """
 
 from __future__ import annotations
@@ -27,22 +26,13 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
-from iiwa_dnn.networks.integrators.backward_euler import backward_euler
 from iiwa_dnn.networks.integrators.base import Settings, Settled
-from iiwa_dnn.networks.integrators.continuation import (
-    STALLED,
-    TRAVELLING,
-    TRIALS,
-    near,
-    next_step,
-    progress,
-    within,
-)
-from iiwa_dnn.networks.integrators.linear_step import begin_gram, linear_step
+from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_gram, linear_step
+from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
 from iiwa_dnn.networks.projection import field
 from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import kkt_point, within
 
 FIRST_STEP, GROWTH = 10.0, 10.0
 """Length of the first backward Euler step [rho], and its growth from round to round."""
@@ -147,20 +137,20 @@ def settle_implicit(
     rest = work[3 * size :]
     active, new_active = rest[:flags], rest[flags : 2 * flags]
     gram, K = rest[2 * flags : 2 * flags + n * n], rest[2 * flags + n * n : 2 * (flags + n * n)]
-    rhs, counted = np.empty(n), np.empty(m)
+    rhs, counted = np.empty(p + flags), np.empty(m)
     begin_gram(data, n, m, p, counted, gram)
     step, systems, time, factored = FIRST_STEP, 0, 0.0, project
     trial, stalled, travelling = 0, 0, 0
     rate = field(data, n, m, p, project, s, rates, active)
-    while systems < max_systems and travelling < TRAVELLING:
+    while systems < max_systems and travelling < pseudo_transient.TRAVELLING:
         if not rate > tol:
             primal, dual, gap = kkt_point(data, n, m, p, s, point)
             if within(primal, dual, gap, tol):
                 return systems, time, primal, dual, gap
             stalled += 1
-            if stalled > STALLED or rate != rate:
+            if stalled > pseudo_transient.STALLED or rate != rate:
                 break
-        systems, length = systems + 1, long_step * TRIALS[trial]
+        systems, length = systems + 1, long_step * pseudo_transient.TRIALS[trial]
         if linear_step(
             data, n, m, p, s, rates, active, length, factored, counted, gram, K, rhs, new
         ):
@@ -170,7 +160,7 @@ def settle_implicit(
                 if factored:
                     travelling = 0
                 else:
-                    trial = (trial + 1) % TRIALS.size
+                    trial = (trial + 1) % pseudo_transient.TRIALS.size
                 # The same rows active and the same length: the same matrix once more.
                 for k in range(flags):
                     factored = factored and active[k] == new_active[k]
@@ -181,7 +171,7 @@ def settle_implicit(
                 rate, time = new_rate, time + length
                 continue
         factored = False
-        if near(rate, tol) and trial + 1 < TRIALS.size:
+        if near(rate, tol) and trial + 1 < pseudo_transient.TRIALS.size:
             trial += 1
             continue
         count, before = min(MAX_NEWTON, max_systems - systems), rate

@@ -1,10 +1,19 @@
-"""Implicit integration of a network without compiled loops, by Newton's iteration on its state.
+"""Pseudo-transient continuation: rules of both settle loops, and the loop for any network.
 
-A backward Euler step is solved by a semismooth Newton iteration. Where that does not converge in
-`MAX_NEWTON` iterations, the step is cut to a quarter: below one over the field's Lipschitz constant
-it does converge, so the flow can always be followed, however slowly. `settle` follows the rules of
-`iiwa_dnn.networks.integrators.continuation`; a linearly implicit step is kept only where it does
-not go far, since these fields are small in some places that are far from any equilibrium.
+Each round of `settle` first tries one linearly implicit step, very long at first: near the
+equilibrium that is a Newton step, and a warm start in a control loop needs only that. Where it
+makes no `progress`, a fully solved backward Euler step follows, whose length grows from round to
+round. Where rounding is in the way, linearly implicit steps of other lengths are tried too.
+
+Here a backward Euler step is solved by a semismooth Newton iteration on the whole state. Where that
+does not converge in `MAX_NEWTON` iterations, the step is cut to a quarter: below one over the
+field's Lipschitz constant it does converge, so the flow can always be followed, however slowly. A
+linearly implicit step is kept only where it does not go far, since these fields are small in some
+places that are far from any equilibrium. The projection network has compiled loops
+(`iiwa_dnn.networks.integrators.implicit`).
+
+Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
+SIAM J. Numer. Anal. 35 (1998).
 """
 
 from __future__ import annotations
@@ -13,23 +22,50 @@ import numpy as np
 
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.continuation import (
-    STALLED,
-    TRAVELLING,
-    TRIALS,
-    near,
-    next_step,
-    progress,
-    within,
-)
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Vector, compiled
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import within
 
-MAX_NEWTON = 15
+LAST_STEP = 1e6
+"""Longest backward Euler step [rho]: beyond, the systems are singular to working precision."""
+TRIALS = np.array([1.0, 1e-2, 1e2, 1e-4, 1e4])
+"""Lengths of the linearly implicit steps, in units of the first: shorter ones have better
+conditioned systems, longer ones bring nearly dependent rows to rest."""
+STALLED = 30
+"""Rounds with small rates but large residuals, as large multipliers have them, before the end."""
+TRAVELLING = 3
+"""Longest steps that do not halve the rates, before the end: the state travels, since there is no
+solution or none that is near."""
 FIRST_STEP, GROWTH = 1.0, 4.0
 """Length of the first step [rho] and its growth; this iteration has no line search to go faster."""
+MAX_NEWTON = 15
 DEFECT = 1e-3
-"""How well a backward Euler step of `settle` is solved, in the state's unit."""
+"""Defect up to which `settle` solves a backward Euler step, in the state's unit."""
+
+
+@compiled
+def near(rate: float, tol: float) -> bool:
+    """Tell whether the rates are so near the tolerance that rounding is in the way."""
+    return rate <= 1e4 * tol
+
+
+@compiled
+def progress(rate: float, new_rate: float, tol: float) -> bool:
+    """Tell whether a step is kept: it halved the largest rate, or lowered it near rest."""
+    return new_rate <= 0.5 * rate or (near(rate, tol) and new_rate <= 0.9 * rate)
+
+
+@compiled
+def next_step(
+    step: float, growth: float, before: float, rate: float, tol: float, travelling: int
+) -> tuple[int, float]:
+    """Count the longest steps that did not halve the rates, and choose the next step's length."""
+    if step < LAST_STEP:
+        return travelling, step * growth
+    if rate <= 0.5 * before:
+        return travelling, step
+    # Not a long way to go, but rounding: shorter steps have better conditioned systems.
+    return travelling + 1, 100.0 if near(rate, tol) else step
 
 
 def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[Vector | None, int]:

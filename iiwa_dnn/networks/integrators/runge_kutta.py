@@ -19,9 +19,9 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import Settings, Settled
-from iiwa_dnn.networks.integrators.continuation import within
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import within
 
 _LEAST_RTOL = 100.0 * float(np.finfo(float).eps)
 """Relative tolerance below which scipy warns and takes this one."""

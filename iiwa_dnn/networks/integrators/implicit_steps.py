@@ -1,7 +1,17 @@
-r"""Backward Euler step of the projection network without its primal projection, compiled.
+r"""Implicit steps of the projection network without its primal projection, compiled.
 
-Of one step of length h (in units of rho) the multipliers' lines can be solved for, with
-:math:`\Omega = [G; I; -I]` and :math:`\chi = [h; ub; -lb]`:
+**The linearly implicit step** :math:`(I/h - F'(s))\,(s^+ - s) = F(s)` of length h [rho] is linear
+on the active set at s. Its multipliers are eliminated, which leaves n equations for the change of x
+with the condensed matrix
+
+.. math::
+
+    K = P + I/h + h\,(A^T A + C^T C),
+
+C being the active rows of :math:`\Omega = [G; I; -I]`.
+
+**The backward Euler step.** Its multipliers' lines can be solved for, with :math:`\chi = [h; ub;
+-lb]`:
 
 .. math::
 
@@ -11,8 +21,8 @@ Of one step of length h (in units of rho) the multipliers' lines can be solved f
 and both are increasing in :math:`x^+`. The line that is left, :math:`(x^+ - x)/h + P x^+ + q +
 A^T y^+ + \Omega^T \mu^+ = 0`, is therefore the stationarity of a strongly convex, piecewise
 quadratic function, for every h. It has one minimiser, and a semismooth Newton iteration with an
-exact line search reaches it. A bare Newton iteration on the KKT conditions can cycle when many
-bounds are active; this one cannot.
+exact line search reaches it, whose matrix is K again. A bare Newton iteration on the KKT conditions
+can cycle when many bounds are active; this one cannot.
 
 Source: R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point algorithm
 in convex programming", Math. Oper. Res. 1 (1976), for the same step of the plain saddle-point flow,
@@ -23,9 +33,110 @@ from __future__ import annotations
 
 import numpy as np
 
-from iiwa_dnn.networks.integrators.linear_step import condensed_matrix
-from iiwa_dnn.qp.dense import add_scaled, cholesky_factor, dot, factor_solve
-from iiwa_dnn.qp.layout import Vector, compiled, larger, offsets
+from iiwa_dnn.qp.dense import add_outer, add_scaled, cholesky_factor, dot, factor_solve
+from iiwa_dnn.qp.layout import ONE, Vector, compiled, larger, offsets
+
+
+@compiled
+def linear_step(
+    data: Vector, n: int, m: int, p: int, s: Vector, rates: Vector, active: Vector, step: float,
+    factored: bool, counted: Vector, gram: Vector, K: Vector, rhs: Vector, new: Vector,
+) -> bool:  # fmt: skip
+    """Write the state after a linearly implicit step into `new`, like `s` of size 3n + m + p.
+
+    `rates` and `active` are those of `field` at s. With `factored`, K holds the factor that the
+    last call left, for the same step and active set. K, `rhs` and the others are scratch of the
+    sizes that `condensed_matrix` states, `rhs` of size p + m + 2n.
+
+    Returns:
+        False if K is not positive definite to working precision; `new` is then meaningless.
+    """
+    if not factored:
+        condensed_matrix(data, n, m, p, step, active, counted, gram, K)
+        if not cholesky_factor(K, n):
+            return False
+    # The changes of the multipliers for an x that stands still, and what they leave of its rates.
+    decay = step / (1.0 + step)
+    for i in range(n):
+        rhs[i] = rates[i]
+    for j in range(p):
+        new[n + j] = step * rates[n + j]
+    for k in range(m + 2 * n):
+        new[n + p + k] = rates[n + p + k] * (step if active[k] != 0.0 else decay)
+    add_transposed(data, n, m, p, -1.0, new, rhs)
+    factor_solve(K, n, rhs, new)
+    rows_times(data, n, m, p, new, rhs)
+    for j in range(p):
+        new[n + j] += step * rhs[j]
+    for k in range(m + 2 * n):
+        new[n + p + k] += step * active[k] * rhs[p + k]
+    for k in range(s.size):
+        new[k] += s[k]
+    return True
+
+
+@compiled
+def begin_gram(data: Vector, n: int, m: int, p: int, counted: Vector, gram: Vector) -> None:
+    """Write A^T A into `gram` (n n,); no row of G is counted in it, so `counted` (m,) is zero."""
+    _, _, at_A, _ = offsets(n, m, p)
+    for j in range(m):
+        counted[j] = 0.0
+    for k in range(n * n):
+        gram[k] = 0.0
+    for j in range(p):
+        add_outer(gram, 1.0, data, at_A + j * n, n)
+
+
+@compiled
+def condensed_matrix(
+    data: Vector, n: int, m: int, p: int, step: float, active: Vector, counted: Vector,
+    gram: Vector, K: Vector,
+) -> None:  # fmt: skip
+    """Write the lower half of the condensed matrix of an active set (m + 2n,) into K (n n,).
+
+    `gram` (n n,), A^T A and the products of the rows of G in `counted` (m,), is kept from call to
+    call: between two steps few rows become active or cease to be.
+    """
+    _, at_G, _, _ = offsets(n, m, p)
+    for j in range(m):
+        if active[j] != counted[j]:
+            add_outer(gram, active[j] - counted[j], data, at_G + j * n, n)
+            counted[j] = active[j]
+    size = np.uint64(n)
+    for i in range(size):
+        for k in range(i + ONE):
+            K[i * size + k] = data[i * size + k] + step * gram[i * size + k]
+    for i in range(n):
+        K[i * n + i] += 1.0 / step + step * (active[m + i] + active[m + n + i])
+
+
+@compiled
+def rows_times(data: Vector, n: int, m: int, p: int, x: Vector, values: Vector) -> None:
+    """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
+    _, at_G, at_A, _ = offsets(n, m, p)
+    for j in range(p):
+        values[j] = dot(data, at_A + j * n, x, n)
+    for j in range(m):
+        values[p + j] = dot(data, at_G + j * n, x, n)
+    for i in range(n):
+        values[p + m + i] = x[i]
+        values[p + m + n + i] = -x[i]
+
+
+@compiled
+def add_transposed(
+    data: Vector, n: int, m: int, p: int, factor: float, s: Vector, out: Vector
+) -> None:
+    """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
+    _, at_G, at_A, _ = offsets(n, m, p)
+    at_z, at_u = n + p, n + p + m
+    for i in range(n):
+        out[i] += factor * (s[at_u + i] - s[at_u + n + i])
+    for j in range(p):
+        add_scaled(out, factor * s[n + j], data, at_A + j * n, n)
+    for j in range(m):
+        if s[at_z + j] != 0.0:
+            add_scaled(out, factor * s[at_z + j], data, at_G + j * n, n)
 
 
 @compiled
@@ -63,7 +174,7 @@ def backward_euler(
         factor_solve(K, n, gradient, direction)
         for i in range(n):
             direction[i] = -direction[i]
-        _rows_times(data, n, m, p, direction, change)
+        rows_times(data, n, m, p, direction, change)
         length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient)
         for i in range(n):
             new[i] += length * direction[i]
@@ -76,24 +187,11 @@ def backward_euler(
 
 
 @compiled
-def _rows_times(data: Vector, n: int, m: int, p: int, x: Vector, values: Vector) -> None:
-    """Write [A; G; I; -I] x into `values` (p + m + 2n)."""
-    _, at_G, at_A, _ = offsets(n, m, p)
-    for j in range(p):
-        values[j] = dot(data, at_A + j * n, x, n)
-    for j in range(m):
-        values[p + j] = dot(data, at_G + j * n, x, n)
-    for i in range(n):
-        values[p + m + i] = x[i]
-        values[p + m + n + i] = -x[i]
-
-
-@compiled
 def _slacks(data: Vector, n: int, m: int, p: int, x: Vector, slacks: Vector) -> None:
     """Write A x - b, G x - h, x - ub and lb - x into `slacks` (p + m + 2n)."""
     _, at_G, _, at_lb = offsets(n, m, p)
     at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    _rows_times(data, n, m, p, x, slacks)
+    rows_times(data, n, m, p, x, slacks)
     for j in range(p):
         slacks[j] -= data[at_b + j]
     for j in range(m):
@@ -124,18 +222,11 @@ def _gradient(
     data: Vector, n: int, m: int, p: int, s: Vector, step: float, new: Vector, gradient: Vector
 ) -> float:
     """Write the gradient of the step's convex function; returns its largest entry."""
-    at_q, at_G, at_A, _ = offsets(n, m, p)
-    at_z, at_u = n + p, n + p + m
     for i in range(n):
-        value = data[at_q + i] + new[at_u + i] - new[at_u + n + i]
-        gradient[i] = value + (new[i] - s[i]) / step
+        gradient[i] = data[n * n + i] + (new[i] - s[i]) / step
     for k in range(n):  # P is symmetric
         add_scaled(gradient, new[k], data, k * n, n)
-    for j in range(p):
-        add_scaled(gradient, new[n + j], data, at_A + j * n, n)
-    for j in range(m):
-        if new[at_z + j] != 0.0:
-            add_scaled(gradient, new[at_z + j], data, at_G + j * n, n)
+    add_transposed(data, n, m, p, 1.0, new, gradient)
     size = 0.0
     for i in range(n):
         size = larger(size, abs(gradient[i]))
