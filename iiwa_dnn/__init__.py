@@ -2,7 +2,8 @@
 
 from importlib.metadata import version
 
-from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,

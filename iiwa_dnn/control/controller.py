@@ -12,12 +12,13 @@ from pinocchio import computeJointJacobians, updateFramePlacement
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
+from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import POLICIES, Action, Policy, Resolution, resolve, stopped
+from iiwa_dnn.control.policies import POLICIES, Policy, resolve, stopped
 from iiwa_dnn.control.step import control_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -34,53 +35,10 @@ FAR = 0.05
 """Distance from the tip to the first target from which on a warning is given [m]."""
 
 
-class Command:
-    """Decision of one control step.
-
-    Attributes:
-        dq: Joint velocity [rad/s], (n,), within the limits.
-        resolution: Decision of the policy where the network had no answer; else None.
-    """
-
-    __slots__ = ("_answers", "_index", "dq", "resolution")
-
-    def __init__(self, answers: Answers, index: int, dq: Vector) -> None:
-        self._answers, self._index, self.dq = answers, index, dq
-        self.resolution: Resolution | None = answers.resolved.get(index)
-
-    @property
-    def qp(self) -> QP:
-        """The program that was answered."""
-        return self._answers.qp(self._index)
-
-    @property
-    def solution(self) -> Solution:
-        """The answer: the network's unless there is a resolution."""
-        return self._answers.solution(self._index)
-
-    @property
-    def action(self) -> Action:
-        """The action taken; ``Action.NONE`` where the network's answer was taken."""
-        return Action.NONE if self.resolution is None else self.resolution.action
-
-    @property
-    def ok(self) -> bool:
-        """Whether the command does all that the tasks ask: solved, by the network or a fallback."""
-        asked = self.resolution is None or self.resolution.action is Action.FALLBACK
-        return asked and self._index not in self._answers.unsolved
-
-    def __repr__(self) -> str:
-        dq = np.array2string(self.dq, precision=4, separator=", ")
-        return f"<Command dq = {dq} rad/s, {self.action.name.lower()}, ok = {self.ok}>"
-
-
 class Controller:
     """A robot, a scheme and a reference, closed by a network.
 
-    In a robot's loop, `step` takes the encoders' reading and returns the command::
-
-        controller = iiwa_dnn.Controller(robot, scheme, reference, dt=1e-3)
-        command = controller.step(q, t)
+    In a robot's loop, `step` takes the encoders' reading and returns the command.
 
     Attributes:
         robot: The robot, n joints, with the limits that the scheme keeps.

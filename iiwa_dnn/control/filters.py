@@ -10,10 +10,10 @@ The moving average is the paper's anti-noise mechanism, equation (9):
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
 
 
 class MovingAverage:
@@ -44,7 +44,7 @@ class MovingAverage:
         return mean
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def _window_mean(samples: Matrix, count: int, sample: Vector) -> Vector:
     """Put the sample (n,) that comes after `count` others into the ring `samples` (window, n).
 

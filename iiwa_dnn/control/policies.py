@@ -26,10 +26,9 @@ limits contradict each other, so that no velocity is within all of them, the arm
 that has a solution which the network missed is answered by the reference solver, whatever the
 policy.
 
-Source: slowing down along the path is dynamic scaling, J. M. Hollerbach, "Dynamic scaling of
-manipulator trajectories", Journal of Dynamic Systems, Measurement, and Control 106 (1984); for
-velocity limits, F. Flacco, A. De Luca, O. Khatib, "Control of redundant robots under hard joint
-constraints", IEEE Transactions on Robotics 31 (2015).
+Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
+Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
+"Control of redundant robots under hard joint constraints", IEEE Trans. Robotics 31 (2015).
 """
 
 from __future__ import annotations
@@ -49,10 +48,11 @@ Policy = Literal["slow", "relax", "stop", "raise"]
 POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop", "raise")
 
 _FEASIBLE = 1.0 - 1e-9  # the linear program's own tolerance is 1e-10
+
 SINGULAR = 0.05
 """Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
-There the joints would race for next to nothing, and over the singular pose and back at every step;
-``slow`` goes slower in proportion, so that the arm comes to rest there."""
+There the joints would race for next to nothing; ``slow`` goes slower in proportion, so that the arm
+comes to rest there."""
 
 REST = 1e-3
 """A fraction below it, in a singular pose, is none: the arm stands still."""
@@ -193,10 +193,10 @@ def largest_fraction(qp: QP) -> Reach:
     scale = float(np.abs(qp.b).max(initial=0.0)) or 1.0
     found = linprog(
         np.append(np.zeros(n), -1.0),
-        A_ub=np.column_stack([qp.G[limited], np.zeros(limited.sum())]) if limited.any() else None,
-        b_ub=qp.h[limited] if limited.any() else None,
-        A_eq=np.column_stack([qp.A, -qp.b / scale]) if p else None,
-        b_eq=np.zeros(p) if p else None,
+        A_ub=np.column_stack([qp.G[limited], np.zeros(limited.sum())]),
+        b_ub=qp.h[limited],
+        A_eq=np.column_stack([qp.A, -qp.b / scale]),
+        b_eq=np.zeros(p),
         bounds=np.vstack([np.column_stack([qp.lb, qp.ub]), [0.0, scale]]),
         method="highs-ds",
         options=_LINEAR,
@@ -207,8 +207,7 @@ def largest_fraction(qp: QP) -> Reach:
     push = -(found.lower.marginals[:n] + found.upper.marginals[:n])
     dq: Vector = np.clip(found.x[:n], qp.lb, qp.ub)
     rows = np.zeros(m)
-    if limited.any():
-        rows[limited] = -found.ineqlin.marginals
+    rows[limited] = -found.ineqlin.marginals
     return Reach(min(float(found.x[n]) / scale, 1.0), dq, _sides(push), _sides(rows))
 
 
@@ -294,7 +293,7 @@ def ask_reference(qp: QP, tol: float) -> Solution | None:
 
 
 def _slowed(qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
-    """The answer to the program with the share of b that `reach` gives."""
+    """Answer the program with the share of b that `reach` gives."""
     for share in _SHARES if _rest_is_allowed(qp) else _SHARES[:1]:
         slower = reach._replace(fraction=share * reach.fraction, dq=share * reach.dq)
         attainable = QP.from_data(qp.data.copy(), qp.sizes)

@@ -14,6 +14,7 @@ from iiwa_dnn.networks.integrators.explicit import explicit_euler
 from iiwa_dnn.networks.integrators.implicit import settle_implicit
 from iiwa_dnn.networks.projection import field, stable_step
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.qp.residuals import kkt_point
 from iiwa_dnn.schemes.assembly import assemble
 from iiwa_dnn.schemes.parts import Codes
@@ -22,7 +23,7 @@ NETWORK = 7
 """Numbers of a network, `DNNSolver.numbers`."""
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def control_step(
     rows: Matrix, index: int, codes: Codes, work: Vector, jacobian: Matrix, placements: Matrix,
     state: Vector, built: bool, motion: float,

@@ -12,11 +12,10 @@ from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.layout import offsets
+from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.costs import (
     CYCLIC_MOTION,
@@ -31,9 +30,9 @@ from iiwa_dnn.schemes.tasks import (
     ORIENTATION_BLOCK,
     ORIENTATION_SO3,
     POSITION,
-    orientation_rows_block,
-    orientation_rows_so3,
+    block_rows,
     position_rows,
+    so3_rows,
 )
 
 HEADER, BLOCK = 7, 7
@@ -197,7 +196,7 @@ def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matr
     return array
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def assemble(
     data: Vector, codes: Codes, numbers: Vector, q: Vector, jacobian: Matrix, placements: Matrix,
     inertia: Vector, targets: Vector, rate: float,
@@ -233,39 +232,29 @@ def assemble(
             add_cyclic_motion(data, n, dof, numbers, at, q)
         elif kind == JOINT_LIMITS:
             joint_limits(data, at_lb, n, dof, numbers, at, q, rate)
-        elif rows > 0:
-            task_rows(
-                kind, data, at_A + start * n, at_b + start, n, codes, codes[block + 4],
-                numbers[at], jacobian, placements[codes[block + 3]], targets, codes[block + 5],
-            )  # fmt: skip
         else:
-            soft = np.zeros(-rows * (n + 1))
-            task_rows(
-                kind, soft, 0, -rows * n, n, codes, codes[block + 4],
-                numbers[at], jacobian, placements[codes[block + 3]], targets, codes[block + 5],
-            )  # fmt: skip
-            _add_soft(data, n, soft, -rows, numbers[numbers.size - blocks + k])
+            count = abs(rows)
+            if rows > 0:
+                out, A, b = data, at_A + start * n, at_b + start
+            else:
+                out, A, b = np.zeros(count * (n + 1)), 0, count * n
+            place, support, target = (
+                placements[codes[block + 3]],
+                codes[block + 4],
+                codes[block + 5],
+            )
+            gain = numbers[at]
+            if kind == POSITION:
+                position_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
+            elif kind == ORIENTATION_SO3:
+                so3_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
+            elif kind == ORIENTATION_BLOCK:
+                block_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
+            if rows < 0:
+                _add_soft(data, n, out, count, numbers[numbers.size - blocks + k])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def task_rows(
-    kind: int, out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
-    jacobian: Matrix, place: Vector, targets: Vector, target: int,
-) -> None:  # fmt: skip
-    """Write the rows (k, n) of a task by the number of its form; arguments as `position_rows`."""
-    if kind == POSITION:
-        position_rows(out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target)
-    elif kind == ORIENTATION_SO3:
-        orientation_rows_so3(
-            out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target
-        )
-    elif kind == ORIENTATION_BLOCK:
-        orientation_rows_block(
-            out, rows, rhs, n, codes, support, gain, jacobian, place, targets, target
-        )
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def _add_soft(data: Vector, n: int, soft: Vector, rows: int, weight: float) -> None:
     """Add weight A^T A to P and -weight A^T b to q; `soft` holds A row by row, then b."""
     for k in range(rows):

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.parts import Cost
 
@@ -51,7 +51,7 @@ class KineticEnergy(Cost):
         return np.array([self.weight, float(self.kinetic == "inertia")])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def add_kinetic_energy(
     data: Vector, n: int, dof: int, numbers: Vector, at: int, inertia: Vector
 ) -> None:
@@ -120,7 +120,7 @@ class CyclicMotion(Cost):
         return np.concatenate([[self.weight, self.gain], self.home])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, q: Vector) -> None:
     """Add w I to P and w m (q - home) to the linear term, which follows P.
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit
 
@@ -48,7 +48,7 @@ class JointLimits(Limit):
         return np.concatenate([[self.gain], robot.limits.ravel()])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def joint_limits(
     data: Vector, at_lb: int, n: int, dof: int, numbers: Vector, at: int, q: Vector, rate: float
 ) -> None:

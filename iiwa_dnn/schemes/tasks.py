@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Codes, Task
 
@@ -59,7 +59,7 @@ class PositionTask(Task):
         return np.array([self.gain])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def position_rows(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
@@ -144,8 +144,8 @@ class OrientationTask(Task):
         return np.array([self.gain])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def orientation_rows_so3(
+@compiled
+def so3_rows(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
@@ -165,8 +165,8 @@ def orientation_rows_so3(
                 out[rows + i * n + j] = jacobian[j, 3 + i]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def orientation_rows_block(
+@compiled
+def block_rows(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
     jacobian: Matrix, place: Vector, targets: Vector, target: int,
 ) -> None:  # fmt: skip
@@ -195,7 +195,7 @@ def orientation_rows_block(
         out[rhs + i] = wanted[i]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def rotation_log(R: Matrix, out: Vector) -> None:
     """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 
@@ -228,7 +228,7 @@ def rotation_log(R: Matrix, out: Vector) -> None:
         out[i] *= scale
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def block_map(R: Matrix, out: Matrix) -> None:
     """Write W(R) (4, 3): the rate of [R11 R12 R21 R22] is W(R) times the angular velocity."""
     for i in range(4):
@@ -241,7 +241,7 @@ def block_map(R: Matrix, out: Matrix) -> None:
         out[2 + column, 2] = R[0, column]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def project_on_range(columns: Matrix, vector: Vector) -> None:
     """Replace `vector` (4,) by its projection on the range of `columns` (4, 3), which is spoilt.
 

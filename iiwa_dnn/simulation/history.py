@@ -97,3 +97,22 @@ class History:
             array.setflags(write=False)  # so that the record need not copy it
         cut = {name: array[: steps + 1] for name, array in samples.items()}
         return cut | {name: array[:steps] for name, array in of_steps.items()}
+
+
+def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
+    """Return what a record says of robot, scheme and network of a run from q0 (n,) [rad]."""
+    robot, solver = controller.robot, controller.solver
+    integrator = solver.settler if controller.mode == "converged" else solver.follower
+    return {
+        "robot": robot.name,
+        "tip": robot.tip,
+        "q_lower": robot.q_lower,
+        "q_upper": robot.q_upper,
+        "dq_max": robot.dq_max,
+        "q0": q0,
+        "tol": solver.tol,
+        "rho": solver.network.rho,
+        "network": solver.network.settings(),
+        "integrator": integrator.settings(),
+        "scheme": controller.scheme.settings(),
+    }

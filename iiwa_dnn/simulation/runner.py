@@ -5,17 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.controller import Controller, Mode, warn_if_far
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.feedback import IntegralFeedback
-from iiwa_dnn.control.filters import MovingAverage
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -26,15 +23,11 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.simulation.history import COMPLETED, History
+from iiwa_dnn.simulation.chain import SignalChain
+from iiwa_dnn.simulation.history import COMPLETED, History, settings_of
 from iiwa_dnn.simulation.incidents import Incidents
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
-from iiwa_dnn.simulation.noise import (
-    NOISE_ENTRIES,
-    NoiseEntry,
-    VelocityDisturbance,
-    gaussian_noise,
-)
+from iiwa_dnn.simulation.noise import NoiseEntry, VelocityDisturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
 
 MAX_STEPS = 20_000_000
@@ -51,16 +44,12 @@ class Simulation:
 
     Step k: the joints are read, the scheme builds the program at that reading and ``t[k]`` (and at
     the stages between, for midpoint and RK4), the network answers, every reference solver is asked
-    the same, noise is added to the velocity, the filter averages it, and the plant follows the
-    result for dt. Noise may enter elsewhere instead (`iiwa_dnn.simulation.noise.NOISE_ENTRIES`).
+    the same, noise and filter act on the velocity, and the plant follows the result for dt.
 
-    A command that noise, a filter or an estimator has altered is clipped to the limits at the
-    robot's true joint positions, as a drive does that watches its own limits; so noise cannot break
-    a limit.
-
-    At a step that the network cannot solve a policy decides (`iiwa_dnn.control.policies`), and the
-    record says so. Such a step is an Euler step, whatever the motion. Where a policy slows down,
-    the reference's clock does, and the record's desired positions are those of that clock.
+    A command that was altered on its way is clipped to the limits at the robot's true joint
+    positions, as by a drive that watches its own limits. At a step that the network cannot solve a
+    policy decides, and the record says so; such a step is an Euler step, whatever the motion. Where
+    a policy slows down, the record's desired positions are those of the slowed clock.
     """
 
     def __init__(
@@ -96,8 +85,6 @@ class Simulation:
         if motion != "euler" and not (mode == "converged" and self._ideal):
             problem = "must be euler in continuous mode and in physics: they have one clock"
             raise InvalidInputError("motion", problem, motion)
-        checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
-        checks.integer("filter_window", filter_window, 1)
         checks.not_negative("integral_gain", integral_gain)
         checks.integer("seed", seed, 0)
         self.steps = steps = _step_count(length, dt)
@@ -114,68 +101,29 @@ class Simulation:
         self._plant.start(robot, self._q0, dt, seed)
         warn_if_far(start, Target.from_data(self._controller.sample(np.zeros(1))[0, :18]), 4)
         self._motion = MOTIONS[motion]
-        drawn = gaussian_noise(noise, steps, robot.dof, seed)
-        self._noise, self._noise_at = (drawn if noise > 0.0 else None), noise_at
-        times = dt * np.arange(steps, dtype=np.float64)
-        self._disturbance = None if disturbance is None else disturbance.at(times)
         self._integral = IntegralFeedback(integral_gain) if integral_gain else None
-        self._estimator = None if estimator is None else JointEstimator(estimator, dt)
-        self._filter_window = filter_window
-        misread = self._noise is not None and noise_at == "measurement"
-        # Whether the controller may see another posture than the robot has.
-        self._misled = misread or estimator is not None or not self._ideal
-        # Whether the network's own answer, which keeps the limits, is not what moves the robot.
-        self._altered = (
-            self._noise is not None or disturbance is not None or estimator is not None
-            or filter_window > 1 or motion != "euler"
-        )  # fmt: skip
+        self._chain = chain = SignalChain(
+            steps, robot.dof, dt, noise, noise_at, disturbance, filter_window, estimator, seed
+        )
+        self._misled = chain.misleads or not self._ideal
+        self._altered = chain.alters or motion != "euler"
         scheme = self._controller.scheme
         layout = self._controller.plan.layout
         self._rows = [] if layout is None else layout.row_names()
-        network, settler, follower = solver.network, solver.settler, solver.follower
-        self._settings: dict[str, Any] = {
-            "robot": robot.name,
-            "tip": robot.tip,
-            "q_lower": robot.q_lower,
-            "q_upper": robot.q_upper,
-            "dq_max": robot.dq_max,
-            "q0": start.q,
-            "dt": dt,
-            "duration": length,
-            "mode": mode,
-            "motion": motion if self._ideal else "physics",
-            "noise": noise,
-            "noise_at": noise_at,
+        shared = {
+            "dt": dt, "duration": length, "mode": mode, "noise": noise, "noise_at": noise_at,
+            "motion": motion if self._ideal else "physics", "filter_window": filter_window,
+            "integral_gain": integral_gain, "policy": policy, "seed": seed,
             "disturbance": None if disturbance is None else disturbance.settings(),
-            "filter_window": filter_window,
-            "integral_gain": integral_gain,
             "estimator": None if estimator is None else estimator.settings(),
-            "policy": policy,
-            "seed": seed,
-            "tol": solver.tol,
-            "rho": network.rho,
-            "network": network.settings(),
-            "integrator": (settler if mode == "converged" else follower).settings(),
-            "scheme": scheme.settings(),
-            "rows": self._rows,
-            "reference": reference.settings(),
-            "check": self._check.settings(),
-            **self._plant.settings(),
-            "versions": {name: version(name) for name in (*_PACKAGES, *self._plant.packages)},
-        }
+            "rows": self._rows, "reference": reference.settings(), "check": self._check.settings(),
+        }  # fmt: skip
+        self._settings = shared | settings_of(self._controller, self._q0) | self._plant.settings()
+        packages = (*_PACKAGES, *self._plant.packages)
+        self._settings["versions"] = {name: version(name) for name in packages}
 
     def run(self, progress: Progress | None = None) -> Record:
-        """Take every step, or those until a policy stops or the plant diverges.
-
-        Args:
-            progress: Called now and then with the number of steps done since the last call.
-
-        Returns:
-            The record of the steps taken, with the wall time of this call [s].
-
-        Raises:
-            NoSolutionError: A step has no solution and the policy is ``raise``.
-        """
+        """Take every step, or those until a policy stops or the plant diverges; see `simulate`."""
         began = time.perf_counter()
         self._restart()
         status, done, room = COMPLETED, 0, BLOCK
@@ -213,16 +161,12 @@ class Simulation:
         """Put everything that a run changes back to where it begins."""
         self._controller.reset()
         self._plant.start(self._robot, self._q0, self._dt, self._seed)
-        for part in (self._integral, self._estimator):
-            if part is not None:
-                part.reset()
+        self._chain.restart()
+        if self._integral is not None:
+            self._integral.reset()
         self._incidents = Incidents(self.steps, self._robot, self._rows)
         torques = self._plant.torque is not None
         self._history = History(self.steps, self._controller, self._q0, torques)
-        # A window longer than the run never fills; so none is too long for the memory.
-        window = min(self._filter_window, self.steps)
-        self._average, self._known_average = MovingAverage(window), MovingAverage(window)
-        self._clipper = DNNSolver()
 
     def _take_plain_steps(self, done: int, taken: int, count: int) -> int:
         """Take Euler steps of the ideal plant that nothing alters, as many as compiled code can."""
@@ -241,15 +185,9 @@ class Simulation:
 
     def _step(self, k: int) -> str:
         """Take step k and return the status that the run has after it."""
-        history, answers, noise = self._history, self._answers, None
+        history, answers = self._history, self._answers
         q, t, first = history.q[k], k * self._dt, answers.count
-        seen = self._plant.read() if self._misled else q
-        if self._noise is not None:
-            noise = self._noise[k]
-            if self._noise_at == "measurement":
-                seen = seen + noise
-        if self._estimator is not None:
-            seen = self._estimator.update(seen)
+        seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
             velocity = self._motion.step(self._velocity_at, seen, t, self._dt)
         except NoSolutionError as error:
@@ -262,7 +200,7 @@ class Simulation:
         if k in history.stops:
             history.stay(k)
             return self._incidents.status(k, t)
-        command = self._command(k, first, velocity, noise)
+        command = self._command(k, first, velocity) if self._altered else velocity
         self._plant.move(command)
         torque = self._plant.torque
         if torque is not None and history.torque is not None:
@@ -304,32 +242,14 @@ class Simulation:
                 self._history.stops.add(k)
         return answers.dq(first)
 
-    def _command(self, k: int, first: int, velocity: Vector, noise: Vector | None) -> Vector:
-        """What leaves the controller: the answer with estimator, noise, filter and clip applied."""
-        if not self._altered:
-            return velocity
-        command = velocity if self._estimator is None else velocity - self._estimator.bias
-        known = command
-        if noise is not None:
-            if self._noise_at == "velocity":
-                command = command + noise
-            elif self._noise_at == "network":
-                self._controller.solver.disturb(noise)
-        if self._disturbance is not None:
-            command = command + self._disturbance[k]
-        if self._filter_window > 1:
-            command = self._average(command)
-        qp = self._answers.qp(first)
+    def _command(self, k: int, first: int, velocity: Vector) -> Vector:
+        """The velocity of step k on its way to the plant, kept within the limits at its true q."""
+        controller, qp = self._controller, self._answers.qp(first)
         if self._misled:
             targets = self._answers.targets[first]
-            qp = self._controller.program_at(self._history.q[k], targets, k * self._dt)
-        command, clipped = clip_command(qp, command, self._clipper)
+            qp = controller.program_at(self._history.q[k], targets, k * self._dt)
+        command, clipped = self._chain.act(k, velocity, qp, controller.solver)
         self._incidents.clip(k, clipped)
-        if self._estimator is not None:
-            # The joints get the average, clipped: the filter is told of that, less what is unknown.
-            if self._filter_window > 1:
-                known = self._known_average(known)
-            self._estimator.predict(np.clip(known, qp.lb[: known.size], qp.ub[: known.size]))
         return command
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
@@ -421,7 +341,7 @@ def simulate(
 
 
 def _step_count(duration: float, dt: float) -> int:
-    """Whole steps in a run; an InvalidInputError where there is none, or far too many."""
+    """Whole steps in a run, or an InvalidInputError."""
     steps = duration / dt
     if not 0.5 < steps <= MAX_STEPS:
         name, value = ("dt", dt) if steps > 1.0 and dt < 1e-6 else ("duration", duration)

@@ -15,7 +15,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.control.controller import Command, Controller
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector

@@ -1,0 +1,49 @@
+"""The decision of one control step, and the evidence for it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from iiwa_dnn.control.answers import Answers
+from iiwa_dnn.control.policies import Action, Resolution
+from iiwa_dnn.qp import QP, Solution, Vector
+
+
+class Command:
+    """Decision of one control step.
+
+    Attributes:
+        dq: Joint velocity [rad/s], (n,), within the limits.
+        resolution: Decision of the policy where the network had no answer; else None.
+    """
+
+    __slots__ = ("_answers", "_index", "dq", "resolution")
+
+    def __init__(self, answers: Answers, index: int, dq: Vector) -> None:
+        self._answers, self._index, self.dq = answers, index, dq
+        self.resolution: Resolution | None = answers.resolved.get(index)
+
+    @property
+    def qp(self) -> QP:
+        """The program that was answered."""
+        return self._answers.qp(self._index)
+
+    @property
+    def solution(self) -> Solution:
+        """The answer: the network's unless there is a resolution."""
+        return self._answers.solution(self._index)
+
+    @property
+    def action(self) -> Action:
+        """The action taken; ``Action.NONE`` where the network's answer was taken."""
+        return Action.NONE if self.resolution is None else self.resolution.action
+
+    @property
+    def ok(self) -> bool:
+        """Whether the command does all that the tasks ask: solved, by the network or a fallback."""
+        asked = self.resolution is None or self.resolution.action is Action.FALLBACK
+        return asked and self._index not in self._answers.unsolved
+
+    def __repr__(self) -> str:
+        dq = np.array2string(self.dq, precision=4, separator=", ")
+        return f"<Command dq = {dq} rad/s, {self.action.name.lower()}, ok = {self.ok}>"
