@@ -19,6 +19,7 @@ from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
@@ -29,7 +30,6 @@ from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry, simulate
 from iiwa_dnn.simulation.motion import Motion
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.stability import amplification
 from iiwa_dnn.studies.sweeps import Outcome
 
 _KEPT = (
@@ -188,6 +188,28 @@ def lap_drift(record: Record, period: float) -> list[float]:
     dt = float(record.settings["dt"])
     ends = [round(lap * period / dt) for lap in range(1, int(record.t[-1] / period + 0.5) + 1)]
     return [float(np.abs(record.q[k] - record.q[0]).max()) for k in ends if k <= record.steps]
+
+
+def amplification(qp: QP, step: float) -> float:
+    r"""Compute the largest growth of an error in one explicit Euler step, no bound being active.
+
+    On a fixed active set the network is linear; without active bounds x and y move by themselves
+    and every other multiplier decays. A step of length h, in units of rho, multiplies the error
+    along an eigenvector of their Jacobian by :math:`1 + h\lambda` (docs/theory.md).
+
+    Args:
+        qp: The program.
+        step: Length of the step, in units of rho.
+
+    Returns:
+        The largest :math:`|1 + h \lambda|`: above 1, the step is unstable. Eigenvalues at zero,
+        which belong to dependent equalities and to no error in x, are left out.
+    """
+    network = ProjectionNetwork(primal_projection=False)
+    jacobian, moving = network.flow(qp).jacobian(network.initial_state(qp)), qp.q.size + qp.b.size
+    eigenvalues = np.linalg.eigvals(jacobian[:moving, :moving])
+    growth = np.abs(1.0 + step * eigenvalues[np.abs(eigenvalues) > 1e-9])
+    return float(growth.max(initial=0.0))
 
 
 def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:

@@ -424,6 +424,10 @@ def test_reasons_to_the_letter():
     assert failures(make_record(kkt_residual=residual)) == [
         "step 3 (t = 0.3 s): KKT residual 2.35e-09, tolerance 1e-09; 2 steps unsolved in all"
     ]
+    residual[8] = 0.0
+    assert failures(compute_metrics(make_record(kkt_residual=residual))) == [
+        "largest KKT residual 2.35e-09, tolerance 1e-09"
+    ]
     lost = sample(make_record(settings={"mode": "continuous"}), "position", 5, np.nan)
     assert failures(lost) == ["the tip position is not finite at every step"]
     nowhere = sample(make_record(), "solution_gap", 3, np.nan)
