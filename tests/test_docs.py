@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import importlib
 import io
+import operator
 import re
 import sys
 import types
@@ -22,8 +24,8 @@ ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
 WITH_CODE = (
-    "README.md", "commands.md", "index.md", "own_network.md", "own_reference.md", "own_scheme.md",
-    "robots.md", "theory.md",
+    "README.md", "commands.md", "control_loop.md", "index.md", "networks.md", "noise.md",
+    "own_network.md", "own_reference.md", "own_scheme.md", "robots.md", "theory.md",
 )  # fmt: skip
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -101,6 +103,22 @@ def test_the_api_page_and_the_table_of_contents_are_complete() -> None:
     trees = re.findall(r"^```{toctree}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
     named = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
     assert named == pages
+
+
+def test_the_table_of_equations_names_what_exists() -> None:
+    text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    section = text.split("## Equations and files")[1].split("\n## ")[0]
+    rows = re.findall(
+        r"\| \[([\w/.]+)\]\(\.\./iiwa_dnn/([\w/.]+)\) \| (.+) \|$", section, re.MULTILINE
+    )
+    assert len(rows) == sum(line.startswith("| ") for line in section.splitlines()) - 4
+    for label, file, names in rows:
+        assert label == file
+        module = importlib.import_module(f"iiwa_dnn.{file.removesuffix('.py').replace('/', '.')}")
+        for name in re.findall(r"`([\w.]+)`", names):
+            found = operator.attrgetter(name)(module)
+            found = getattr(found, "py_func", found)  # numba's dispatchers wrap the function
+            assert found.__module__ == module.__name__, f"{name} comes from {found.__module__}"
 
 
 def test_every_erratum_has_its_tests_and_every_test_its_erratum() -> None:

@@ -120,7 +120,7 @@ class Cost(Part):
 
 
 class Task(Part):
-    """Equality rows A x = b, or with a `weight` the cost 1/2 weight |A x - b|^2.
+    r"""Equality rows A x = b, or with a `weight` w the cost :math:`\tfrac12 w\,\|A x - b\|^2`.
 
     Attributes:
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
