@@ -1,0 +1,67 @@
+"""The worked examples run from anywhere, end with 0 and print what they promise."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = Path(__file__).parents[2] / "scripts"
+
+
+def example(folder: Path, name: str, *arguments: str) -> str:
+    """What an example prints, run in `folder`."""
+    done = subprocess.run(
+        [sys.executable, SCRIPTS / name, *arguments],
+        cwd=folder, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def number(pattern: str, text: str) -> float:
+    """The number that stands where the pattern has its group."""
+    found = re.search(pattern, text)
+    assert found is not None, text
+    return float(found[1])
+
+
+def test_a_control_loop(tmp_path: Path) -> None:
+    text = example(tmp_path, "control_loop.py", "200")
+    assert 0.0 < number(r"median ([\d.]+) us", text) <= number(r"p99 ([\d.]+) us", text)
+    assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-5
+
+
+def test_a_limit_of_ones_own(tmp_path: Path) -> None:
+    text = example(tmp_path, "own_parts.py", "10", "5e-3")
+    assert 0.1999 <= number(r"smallest distance ([\d.]+) m", text) < 0.2001
+    assert 100 < number(r"active in (\d+) of 2000", text) < 1000
+    assert "failures []" in text
+
+
+def test_a_network_of_ones_own(tmp_path: Path) -> None:
+    text = example(tmp_path, "own_network.py", "100")
+    assert text.count("failures []") == 2
+    errors = re.findall(r"largest error (\S+) m", text)
+    assert float(errors[0]) == pytest.approx(float(errors[1]), rel=1e-3)
+    assert number(r"velocities (\S+) rad/s", text) < 1e-7
+
+
+def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
+    text = example(tmp_path, "sweep_weight.py")
+    drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]
+    index = [float(value) for value in re.findall(r"kinetic index (\S+) rad", text)]
+    assert len(drift) == len(index) == 7
+    assert drift[-1] > 10.0 * drift[0]
+    assert index == sorted(index, reverse=True)
+    figure = tmp_path / "runs" / "sweep_weight" / "weight.png"
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert figure.stat().st_size > 10_000
+
+
+def test_each_example_is_short() -> None:
+    for path in sorted(SCRIPTS.glob("*.py")):
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= 70, path.name
