@@ -326,7 +326,7 @@ class Controller:
         return place
 
     def program_at(self, q: Vector, targets: Vector, t: float) -> QP:
-        """Build the program at joint positions, without solving it."""
+        """Build the program at joint positions q (n,) [rad] for targets (18 frames,)."""
         plan = self.plan
         n, m, p = plan.sizes
         plan.update(q)
