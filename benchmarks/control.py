@@ -1,167 +1,199 @@
-"""One control step of this package beside one of Pink's: same URDF, heart and period."""
+"""The control loop beside its peers', whole runs, and the parts of a step."""
 
 from __future__ import annotations
 
+import importlib.util
+import json
+import subprocess
+import sys
+import tempfile
 import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
-import pink
 import pinocchio as pin
 
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.errors import IiwaDnnError
+from iiwa_dnn.files import one_line
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.references import Heart, Target
-from iiwa_dnn.references.targets import Targets
+from iiwa_dnn.references import Heart
 from iiwa_dnn.robot import Configuration, Robot, load_robot
+from iiwa_dnn.robot.robot import file_of
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import MOTIONS, Simulation
+from iiwa_dnn.simulation import Simulation
 from iiwa_dnn.studies import paper
+from scripts import own_parts
 
-CHUNK = 50
+CHUNK = 250
 """Steps that one takes before it is the next one's turn."""
 
 
-def paper_robot() -> Robot:
-    """The iiwa 7 with the paper's position limits."""
-    return load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-
-
-class Stepper(ABC):
-    """Somebody who follows the heart, one control step after the other.
+class Loop(NamedTuple):
+    """A loop that is measured.
 
     Attributes:
-        name: What the report calls it.
-        q: Where its robot is [rad], (n,).
+        name: Its name in the report.
+        module: The module that its Python has to have.
+        driver: File in ``loops``, without its ending.
+        variant: Argument of the driver.
     """
 
     name: str
-    q: Vector
-
-    @abstractmethod
-    def step(self, targets: Targets, k: int) -> None:
-        """Go from t_k to t_k + dt; targets lie half a period apart."""
+    module: str
+    driver: str
+    variant: str = ""
 
 
-class Ours(Stepper):
-    """The classes that a person uses step by step."""
-
-    def __init__(self, dt: float, motion: str = "euler") -> None:
-        robot = paper_robot()
-        start = Configuration(robot, paper.START)
-        scheme = DoubleIndicator().anchored(start)
-        self._controller, self._dt = Controller(robot, scheme, dt=dt), dt
-        self._motion = MOTIONS[motion].step
-        self.name = f"iiwa_dnn, {motion}"
-        self.q = np.array(start.q)
-
-    def step(self, targets: Targets, k: int) -> None:
-        """Take one step by the method of motion."""
-        dt = self._dt
-
-        def velocity(q: Vector, t: float) -> Vector:
-            target = targets[2 * k + round(2.0 * t / dt)]
-            return self._controller.step(q, k * dt + t, target).dq
-
-        self.q = self.q + dt * self._motion(velocity, self.q, 0.0, dt)
+LOOPS = (
+    Loop("iiwa_dnn, Controller.step", "iiwa_dnn", "own_loop", "command"),
+    Loop("iiwa_dnn, with q + dt dq", "iiwa_dnn", "own_loop", "euler"),
+    Loop("iiwa_dnn, with midpoint", "iiwa_dnn", "own_loop", "midpoint"),
+    Loop("PlaCo", "placo", "placo_loop"),
+    Loop("Pink, daqp", "pink", "pink_loop", "daqp"),
+    Loop("Pink, daqp, target one step ahead", "pink", "pink_loop", "daqp, ahead"),
+    Loop("Pink, proxqp", "pink", "pink_loop", "proxqp"),
+    Loop("mink, daqp", "mink", "mink_loop", "daqp"),
+    Loop("Drake", "pydrake", "drake_loop"),
+)
 
 
-class Pink(Stepper):
-    """Pink's differential inverse kinematics: a frame task and a weak posture task.
-
-    With `ahead`, the task's target is that of the step's end; without, as in Pink's examples, that
-    of its beginning.
-    """
-
-    def __init__(self, dt: float, solver: str, ahead: bool = False, **options: Any) -> None:
-        robot = paper_robot()
-        self._model = robot.model.copy()
-        self._model.lowerPositionLimit = robot.q_lower
-        self._model.upperPositionLimit = robot.q_upper
-        self._model.velocityLimit = robot.dq_max
-        self._configuration = pink.Configuration(
-            self._model, self._model.createData(), np.array(paper.START)
-        )
-        self._frame = pink.FrameTask(robot.tip, position_cost=1.0, orientation_cost=1.0)
-        posture = pink.PostureTask(cost=1e-3)
-        posture.set_target(np.array(paper.START))
-        self._tasks = [self._frame, posture]
-        self._dt, self._solver, self._options, self._later = dt, solver, options, 2 * ahead
-        self.name = f"Pink, {solver}{', target one step ahead' if ahead else ''}"
-
-    @property
-    def q(self) -> Vector:  # type: ignore[override]
-        """Where Pink's robot is [rad], (n,)."""
-        return np.asarray(self._configuration.q)
-
-    def step(self, targets: Targets, k: int) -> None:
-        """Set the frame task's target, solve and integrate, as in Pink's examples."""
-        target: Target = targets[2 * k + self._later]
-        self._frame.set_target(pin.SE3(np.array(target.rotation), np.array(target.position)))
-        velocity = pink.solve_ik(
-            self._configuration, self._tasks, self._dt, solver=self._solver, **self._options
-        )
-        self._configuration.integrate_inplace(velocity, self._dt)
+def paper_robot() -> Robot:
+    """Load the iiwa 7 with the paper's position limits."""
+    return load_robot("iiwa7").with_limits(lower=-paper.JOINT_LIMIT, upper=paper.JOINT_LIMIT)
 
 
-def steppers(dt: float) -> list[Stepper]:
-    """All that are compared; the first is this package."""
-    return [
-        Ours(dt),
-        Ours(dt, "midpoint"),
-        Pink(dt, "daqp"),
-        Pink(dt, "daqp", ahead=True),
-        Pink(dt, "proxqp", eps_abs=1e-9, eps_rel=0.0),
-    ]
+class Driver:
+    """A process that takes the steps of a loop, in the Python that has its library."""
+
+    def __init__(self, loop: Loop, python: Path, task: Path) -> None:
+        file = Path(__file__).with_name("loops") / f"{loop.driver}.py"
+        self._loop, self._errors = loop, tempfile.TemporaryFile("w+")  # noqa: SIM115
+        try:
+            self._process = subprocess.Popen(
+                [python, file, task, loop.variant],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, text=True,
+            )  # fmt: skip
+        except OSError as error:
+            self._errors.close()
+            raise IiwaDnnError(f"{loop.name}: {python}: {one_line(error)}") from error
+
+    def take(self, first: int, last: int) -> dict[str, Any]:
+        """Take steps; returns the time ``us`` [us] and the joint positions ``q`` of each.
+
+        Raises:
+            IiwaDnnError: The driver ended; the message has its last line on standard error.
+        """
+        answer = ""
+        with suppress(BrokenPipeError):
+            if self._process.stdin and self._process.stdout:
+                self._process.stdin.write(f"{first} {last}\n")
+                self._process.stdin.flush()
+                answer = self._process.stdout.readline()
+        if not answer:
+            self._errors.seek(0)
+            reason = self._errors.read().strip().rpartition("\n")[2]
+            raise IiwaDnnError(f"{self._loop.name}: {reason or 'the driver ended'}")
+        taken: dict[str, Any] = json.loads(answer)
+        return taken
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.communicate()
+        self._errors.close()
 
 
 def measure_steps(
-    steps: int, dt: float, progress: Callable[[int], object] = lambda done: None
-) -> list[dict[str, Any]]:
-    """Let everyone follow the beginning of the heart, in turns.
+    steps: int,
+    dt: float,
+    pythons: Mapping[str, Path | None] | None = None,
+    progress: Callable[[int], object] = lambda done: None,
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """Let all loops follow the beginning of the heart, in turns, each in a process of its own.
 
     Args:
         steps: Control steps of each.
         dt: Control period [s].
+        pythons: Python interpreter by module, for libraries that this one does not have.
         progress: Called with the number of steps done since the last call.
 
     Returns:
-        For each, times per step [us] and the largest distance to the reference [m] after a step.
+        Of each loop the times per step [us] and the largest distance to the reference [m] after a
+        step, and the modules that no Python was found for.
+    """
+    robot, given = paper_robot(), pythons or {}
+    reference = Heart().anchored(Configuration(robot, paper.START))
+    targets = reference.sample(np.arange(max(steps, 20) + 1) * dt)
+    found: dict[str, Path] = {}
+    for module in dict.fromkeys(loop.module for loop in LOOPS):
+        python = given.get(module) or (importlib.util.find_spec(module) and Path(sys.executable))
+        if python:
+            found[module] = python
+    loops = [loop for loop in LOOPS if loop.module in found]
+    times: dict[Loop, list[float]] = {loop: [] for loop in loops}
+    errors, data = dict.fromkeys(loops, 0.0), robot.model.createData()
+    drivers: list[Driver] = []
+    with tempfile.TemporaryDirectory() as folder:
+        task = Path(folder) / "task.npz"
+        np.savez(
+            task, urdf=str(file_of(robot)), tip=robot.tip, names=robot.joint_names, dt=dt,
+            q0=paper.START, lower=robot.q_lower, upper=robot.q_upper, velocity=robot.dq_max,
+            poses=[pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
+        )  # fmt: skip
+        try:
+            drivers += [Driver(loop, found[loop.module], task) for loop in loops]
+            for first in range(0, steps, CHUNK):
+                last = min(first + CHUNK, steps)
+                for loop, driver in zip(loops, drivers, strict=True):
+                    taken = driver.take(first, last)
+                    times[loop] += taken["us"]
+                    for k, q in enumerate(taken["q"], first + 1):
+                        tip = Configuration(robot, q, data).position
+                        error = float(np.linalg.norm(tip - targets[k].position))
+                        errors[loop] = max(errors[loop], error)
+                progress(last - first)
+        finally:
+            for driver in drivers:
+                driver.close()
+    rows = [
+        {
+            "name": loop.name,
+            "median_us": float(np.median(times[loop])),
+            "p99_us": float(np.percentile(times[loop], 99.0)),
+            "p999_us": float(np.percentile(times[loop], 99.9)),
+            "max_position_error_m": errors[loop],
+        }
+        for loop in loops
+    ]
+    return rows, sorted({loop.module for loop in LOOPS} - set(found))
+
+
+def measure_own_part(duration: float, dt: float, rounds: int = 3) -> dict[str, float]:
+    """Time checked runs with and without the limit of ``scripts/own_parts.py``, in turns.
+
+    Returns:
+        Median wall times [s] ``built_in`` and ``own_part``, and their ratio.
     """
     robot = paper_robot()
-    reference = Heart().anchored(Configuration(robot, paper.START))
-    targets = reference.sample(np.arange(2 * steps + 1) * (0.5 * dt))
-    everyone = steppers(dt)
-    for somebody in steppers(dt):  # compiles, and loads what is loaded late
-        for k in range(3):
-            somebody.step(targets, k)
-    times = {somebody.name: np.empty(steps) for somebody in everyone}
-    errors = dict.fromkeys(times, 0.0)
-    data = robot.model.createData()
-    for first in range(0, steps, CHUNK):
-        for somebody in everyone:
-            for k in range(first, min(first + CHUNK, steps)):
-                began = time.perf_counter_ns()
-                somebody.step(targets, k)
-                times[somebody.name][k] = 1e-3 * (time.perf_counter_ns() - began)
-                tip = Configuration(robot, somebody.q, data).position
-                error = float(np.linalg.norm(tip - targets[2 * k + 2].position))
-                errors[somebody.name] = max(errors[somebody.name], error)
-        progress(CHUNK)
-    return [
-        {
-            "name": name,
-            "median_us": float(np.median(samples)),
-            "p99_us": float(np.percentile(samples, 99.0)),
-            "p999_us": float(np.percentile(samples, 99.9)),
-            "max_position_error_m": errors[name],
-        }
-        for name, samples in times.items()
-    ]
+    heart = Heart().anchored(Configuration(robot, own_parts.START))
+    limit = own_parts.Clearance(own_parts.ELBOW, own_parts.POINT, 0.20)
+    schemes = {"built_in": own_parts.scheme(), "own_part": own_parts.scheme(limit)}
+    walls: dict[str, list[float]] = {name: [] for name in schemes}
+    for k in range(rounds + 1):
+        for name, scheme in schemes.items():
+            length = duration if k else min(duration, 20 * dt)  # the first round compiles
+            run = Simulation(robot, scheme, heart, own_parts.START, dt=dt, duration=length)
+            began = time.perf_counter()
+            run.run()
+            if k:
+                walls[name].append(time.perf_counter() - began)
+    medians = {name: float(np.median(values)) for name, values in walls.items()}
+    return {**medians, "ratio": medians["own_part"] / medians["built_in"]}
 
 
 def measure_runs(duration: float, dt: float, rounds: int = 3) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""``bench-loop``: the control loop measured beside Pink's, its start-up and its memory."""
+"""``bench-loop``: the control loop measured beside its peers', its start-up and its memory."""
 
 from __future__ import annotations
 
@@ -31,9 +31,10 @@ def _bench(options: BenchLoopSettings) -> int:
     checks.integer("--rounds", options.rounds, 1)
     checks.positive("--duration", options.duration)
     checks.positive("--dt", options.dt)
+    checks.positive("--period", options.period)
     folder = claim_folder(options)
     try:
-        from benchmarks.control import measure_runs, measure_steps, profile_step
+        from benchmarks.control import measure_own_part, measure_runs, measure_steps, profile_step
     except ImportError as error:
         remedy = 'pip install "iiwa-dnn[bench]"'
         raise MissingDependencyError(str(error.name), remedy) from error
@@ -42,11 +43,19 @@ def _bench(options: BenchLoopSettings) -> int:
     from benchmarks.report import environment
 
     with tqdm(total=options.steps, unit="step", disable=options.quiet) as bar:
-        steps = measure_steps(options.steps, options.dt, bar.update)
+        pythons = {
+            "placo": options.placo_python, "mink": options.mink_python,
+            "pydrake": options.drake_python,
+        }  # fmt: skip
+        steps, missing = measure_steps(options.steps, options.period, pythons, bar.update)
     results = {
         "environment": environment(("pin-pink",)),
-        "dt": options.dt,
+        "dt": options.period,
         "steps": steps,
+        "missing": missing,
+        "own_part": measure_own_part(
+            options.steps * options.period, options.period, options.rounds
+        ),
         "runs": measure_runs(options.duration, options.dt, options.rounds),
         "profile": profile_step(options.dt),
         "startup": measure_startup(options.rounds),

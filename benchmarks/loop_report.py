@@ -14,17 +14,18 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LIMITS = """\
-- One machine, with whatever else runs on it. All steps are taken in one process, in turns of 50, so
-  that noise falls on all alike; differences of a few per cent mean nothing.
-- A step is what a caller of the classes waits for: kinematics, program, solver, integration. The
-  targets are computed before. Inside `simulate` a step is shorter still.
-- Pink's step includes what Pink makes of its tasks and limits. Its tasks are a frame task at full
-  gain and a weak posture task; its frame task is a cost, not a constraint, and it has no term that
-  brings the posture back. It is the wider library: several tasks, barriers, floating bases.
+- One machine, with whatever else runs on it. Each loop is a process in the Python of its library;
+  they take turns of 250 steps, so that noise falls on all alike; differences of a few per cent mean
+  nothing.
+- A step is the call that a robot's loop waits for: kinematics, program and solver, in
+  `Controller.step` the reference too; for the peers, whose targets are computed before, the
+  integration too. Inside `simulate` a step is shorter still.
+- PlaCo has a hard frame task, as this package; Pink and mink weigh a frame task against a weak
+  posture task in one cost; Drake tracks the direction of the tip's velocity. None has a term that
+  brings the posture back. They are the wider libraries: several tasks, barriers, floating bases.
 - The tracking error depends on when a target is meant to be reached. Pink's examples set that of
-  the step's beginning, so the tip comes one period late; given that of its end, it is not late,
-  and what is left comes of the posture task and of the linearisation. Here the desired velocity is
-  fed forward.
+  the step's beginning, so the tip comes one period late; the other peers get that of its end. Here
+  the desired velocity is fed forward. All postures are judged by the same kinematics.
 - The check runs in worker processes on the other cores, and so profits from them; ProxQP alone
   runs in one process.
 """
@@ -34,8 +35,8 @@ def save_loop_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
     """Write ``report.md``, ``results.json`` and ``steps.png``/``.pdf``.
 
     Args:
-        results: ``environment``, ``dt``, ``steps``, ``runs``, ``profile``, ``startup`` and
-            ``memory``.
+        results: ``environment``, ``dt``, ``steps``, ``missing``, ``own_part``, ``runs``,
+            ``profile``, ``startup`` and ``memory``.
         folder: Where to; it exists.
 
     Returns:
@@ -52,30 +53,32 @@ def markdown(results: Mapping[str, Any]) -> str:
     where, runs, memory = results["environment"], results["runs"], results["memory"]
     versions = ", ".join(f"{name} {number}" for name, number in where["versions"].items())
     rows = results["steps"]
-    ours, daqp = rows[0], rows[2]
+    placo = next((row["median_us"] for row in rows if row["name"] == "PlaCo"), None)
+    unchecked = 1e6 * runs["wall_s"]["unchecked"] / runs["steps"]
+    own = results["own_part"]
     lines = [
         "# The control loop",
         "",
         f"{where['date']}, {where['cpu']}, {where['cores']} cores, Python {where['python']}, "
         f"{versions}. Control period {results['dt']:g} s.",
         "",
-        "## One step, beside Pink",
+        "## One step, beside its peers",
         "",
         "![Median and tail of a step's time](steps.png)",
         "",
         *table(
-            ("step", "median µs", "p99 µs", "p99.9 µs", "largest position error m"),
+            ("step", "median µs", "p99 µs", "p99.9 µs", "of PlaCo's", "largest position error m"),
             [
                 (
                     row["name"], f"{row['median_us']:.1f}", f"{row['p99_us']:.1f}",
-                    f"{row['p999_us']:.1f}", f"{row['max_position_error_m']:.2e}",
+                    f"{row['p999_us']:.1f}", _ratio(row["median_us"], placo),
+                    f"{row['max_position_error_m']:.2e}",
                 )
                 for row in rows
             ],
         ),
         "",
-        f"A step takes {ours['median_us'] / daqp['median_us']:.3f} of Pink's with DAQP, with "
-        f"{ours['max_position_error_m'] / daqp['max_position_error_m']:.3f} of its error.",
+        *(f"Not measured, since no Python has it: {name}." for name in results["missing"]),
         "",
         f"## A run of {runs['steps']} steps",
         "",
@@ -95,6 +98,12 @@ def markdown(results: Mapping[str, Any]) -> str:
         f"The checked run takes {runs['checked_over_proxqp_with_problem']:.2f} of the time of "
         f"ProxQP alone in one process with making its problems, {runs['checked_over_proxqp']:.2f} "
         "of its solving.",
+        "",
+        f"A step of the unchecked run takes {unchecked:.2f} µs, {_ratio(unchecked, placo) or '?'} "
+        "of PlaCo's median step.",
+        "",
+        f"The checked run of `scripts/own_parts.py` takes {own['own_part']:.2f} s, "
+        f"{own['ratio']:.2f} times the run of the built-in parts, {own['built_in']:.2f} s.",
         "",
         "## Where a step's time goes",
         "",
@@ -166,3 +175,7 @@ def steps_figure(rows: list[dict[str, Any]]) -> Figure:
 
 def _factor(value: float | None) -> str:
     return "" if value is None else f"{value:.1f}"
+
+
+def _ratio(value: float, placo: float | None) -> str:
+    return "" if placo is None else f"{value / placo:.2f}"

@@ -22,11 +22,15 @@ class BenchSettings(RunOptions):
 
 @dataclass(frozen=True)
 class BenchLoopSettings(RunOptions):
-    """Measure the control loop beside Pink's, whole runs, start-up and memory."""
+    """Measure the control loop beside its peers', whole runs, start-up and memory."""
 
     command: ClassVar[str] = "loop"
     out: Folder = Path("runs/bench_loop")  # folder that the results are written to
-    steps: Count = 20_000  # number of steps beside Pink
+    steps: Count = 10_000  # number of steps beside the peers
+    period: Time = 1e-3  # control period of these steps [s]
+    placo_python: Path | None = None  # Python interpreter of an environment with PlaCo
+    mink_python: Path | None = None  # Python interpreter with mink; by default this one
+    drake_python: Path | None = None  # Python interpreter of an environment with Drake
     duration: Time = 10.0  # length of a whole run [s]
-    dt: Time = 1e-4  # control period [s]
+    dt: Time = 1e-4  # control period of a whole run [s]
     rounds: Count = 3  # number of repetitions of all that is not a step

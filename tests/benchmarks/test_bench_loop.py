@@ -3,23 +3,44 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
 
 from benchmarks import process
-from benchmarks.control import measure_runs, measure_steps
+from benchmarks.control import measure_own_part, measure_runs, measure_steps
 from benchmarks.loop_cli import bench_loop
+from benchmarks.loop_report import markdown
+from iiwa_dnn import IiwaDnnError
 
 
 def test_everyone_follows_the_heart() -> None:
-    rows = {row["name"]: row for row in measure_steps(100, 1e-3)}
+    measured, missing = measure_steps(100, 1e-3)
+    rows = {row["name"]: row for row in measured}
+    assert set(missing) <= {"placo", "mink", "pydrake"}
     error = {name: row["max_position_error_m"] for name, row in rows.items()}
     # One period late is dt times the speed; the others have their methods' own errors.
     assert error["Pink, daqp"] > 5.0 * error["Pink, daqp, target one step ahead"]
     assert error["Pink, daqp"] == pytest.approx(error["Pink, proxqp"], rel=0.05)
-    assert error["iiwa_dnn, midpoint"] < 0.1 * error["iiwa_dnn, euler"] < 1e-5
+    assert error["iiwa_dnn, with midpoint"] < 0.1 * error["iiwa_dnn, with q + dt dq"] < 1e-5
+    assert error["iiwa_dnn, with q + dt dq"] == error["iiwa_dnn, Controller.step"]
     assert all(0.0 < row["median_us"] <= row["p99_us"] <= row["p999_us"] for row in rows.values())
+
+
+@pytest.mark.parametrize(
+    ("python", "reason"),
+    [(sys.executable, "PlaCo: ModuleNotFoundError"), ("no/python", "PlaCo: no/python: ")],
+)
+def test_a_python_without_the_library_is_named(python: str, reason: str) -> None:
+    with pytest.raises(IiwaDnnError, match=reason):
+        measure_steps(10, 1e-3, {"placo": Path(python)})
+
+
+def test_a_limit_of_ones_own_is_measured_beside_the_built_in_parts() -> None:
+    walls = measure_own_part(0.02, 1e-3, rounds=1)
+    assert min(walls.values()) > 0.0
+    assert walls["ratio"] == pytest.approx(walls["own_part"] / walls["built_in"])
 
 
 def test_runs_are_measured_against_proxqp_on_the_same_programs() -> None:
@@ -51,10 +72,17 @@ def test_the_script_writes_its_report(tmp_path: Path, monkeypatch: pytest.Monkey
     assert f"{results['steps'][0]['median_us']:.1f}" in report
     assert "pin-pink" in report
     assert "grows by 1.10 times" in report
+    assert all(f"no Python has it: {name}." in report for name in results["missing"])
+    assert "The checked run of `scripts/own_parts.py`" in report
+    results["steps"].append({**results["steps"][0], "name": "PlaCo", "median_us": 1000.0})
+    results["runs"]["wall_s"]["unchecked"] = 1e-3 * results["runs"]["steps"]
+    assert "takes 1000.00 µs, 1.00 of PlaCo's" in markdown(results)
     assert (tmp_path / "steps.png").stat().st_size > 5000
 
 
-@pytest.mark.parametrize("option", ["--steps=1", "--duration=0", "--rounds=0", "--dt=nan"])
+@pytest.mark.parametrize(
+    "option", ["--steps=1", "--duration=0", "--rounds=0", "--dt=nan", "--period=0"]
+)
 def test_bad_numbers_are_refused_by_name(
     option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -60,8 +60,3 @@ def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
     figure = tmp_path / "runs" / "sweep_weight" / "weight.png"
     assert figure.read_bytes().startswith(b"\x89PNG")
     assert figure.stat().st_size > 10_000
-
-
-def test_each_example_is_short() -> None:
-    for path in sorted(SCRIPTS.glob("*.py")):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= 70, path.name

@@ -1,0 +1,49 @@
+"""This package's loop as documented: `Controller.step(q, t)`, with and without integration."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from serve import Loop, Task, serve
+
+import iiwa_dnn
+from iiwa_dnn.simulation import MOTIONS
+
+
+def make(task: Task, variant: str) -> Loop:
+    """Make the loop; the variants are ``command``, ``euler`` and ``midpoint``."""
+    robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
+        lower=task["lower"], upper=task["upper"], velocity=task["velocity"]
+    )
+    q, dt = np.array(task["q0"]), float(task["dt"])
+    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q))
+    controller = iiwa_dnn.Controller(robot, iiwa_dnn.DoubleIndicator(), heart, dt=dt)
+    controller.warm_up()
+    command: Any = None
+
+    def only_command(k: int) -> None:
+        nonlocal command
+        command = controller.step(q, k * dt)
+
+    def integrated() -> Any:
+        nonlocal q
+        q = q + dt * command.dq
+        return q
+
+    def euler(k: int) -> None:
+        nonlocal q
+        q = q + dt * controller.step(q, k * dt).dq
+
+    def midpoint(k: int) -> None:
+        nonlocal q
+        q = q + dt * motion(lambda at, t: controller.step(at, t).dq, q, k * dt, dt)
+
+    motion = MOTIONS["midpoint"].step
+    if variant == "command":
+        return only_command, integrated
+    return {"euler": euler, "midpoint": midpoint}[variant], lambda: q
+
+
+if __name__ == "__main__":
+    serve(make)

@@ -1,0 +1,38 @@
+"""PlaCo's loop: a hard frame task, a weak joints task, joint and velocity limits."""
+
+from __future__ import annotations
+
+import placo
+from serve import Loop, Task, serve
+
+
+def make(task: Task, variant: str) -> Loop:
+    """Make the loop."""
+    robot = placo.RobotWrapper(str(task["urdf"]))
+    names = [str(name) for name in task["names"]]
+    for i, name in enumerate(names):
+        robot.set_joint(name, float(task["q0"][i]))
+        robot.set_joint_limits(name, float(task["lower"][i]), float(task["upper"][i]))
+        robot.set_velocity_limit(name, float(task["velocity"][i]))
+    robot.update_kinematics()
+    solver, poses = placo.KinematicsSolver(robot), list(task["poses"])
+    solver.mask_fbase(True)
+    frame = solver.add_frame_task(str(task["tip"]), poses[0])
+    frame.configure("tip", "hard", 1.0, 1.0)
+    joints = solver.add_joints_task()
+    joints.set_joints(dict(zip(names, task["q0"].tolist(), strict=True)))
+    joints.configure("posture", "soft", 1e-3)
+    solver.enable_joint_limits(True)
+    solver.enable_velocity_limits(True)
+    solver.dt = float(task["dt"])
+
+    def step(k: int) -> None:
+        frame.T_world_frame = poses[k + 1]
+        solver.solve(True)
+        robot.update_kinematics()
+
+    return step, lambda: robot.state.q[7:]  # after the pose of the floating base
+
+
+if __name__ == "__main__":
+    serve(make)
