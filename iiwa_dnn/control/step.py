@@ -15,7 +15,7 @@ from iiwa_dnn.networks.integrators.implicit import settle_implicit
 from iiwa_dnn.networks.projection import field, stable_step
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import kkt_point, within
 from iiwa_dnn.schemes.assembly import assemble
 from iiwa_dnn.schemes.parts import Codes
 
@@ -76,11 +76,10 @@ def control_step(
         primal, dual, gap = kkt_point(data, n, m, p, state, point)
         succeeded = primal + dual + gap < np.inf
     else:
-        tol = network[0]
         iterations, time, primal, dual, gap = settle_implicit(
-            data, n, m, p, state, point, tol, int(network[1]), network[2]
+            data, n, m, p, state, point, network[0], int(network[1]), network[2]
         )
-        succeeded = primal <= tol and dual <= tol and gap <= tol
+        succeeded = within(primal, dual, gap, network[0])
     if not succeeded:
         for i in range(state.size):
             state[i] = before[i]

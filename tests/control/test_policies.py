@@ -10,7 +10,8 @@ from scipy.optimize import lsq_linear
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import near_target, paper_robot, solve_by
 from iiwa_dnn.control import policies
-from iiwa_dnn.control.policies import Action, largest_fraction, least_violation, resolve
+from iiwa_dnn.control.policies import Action, resolve
+from iiwa_dnn.control.reach import Reach, largest_fraction, least_violation
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
@@ -46,7 +47,7 @@ def inside(dq: np.ndarray, qp: QP) -> bool:
     return bool(((qp.lb <= dq) & (dq <= qp.ub)).all())
 
 
-def undamped(qp: QP) -> policies.Reach:
+def undamped(qp: QP) -> Reach:
     return least_violation(qp, WEIGHTS.diagonal(), damping=0.0)
 
 
