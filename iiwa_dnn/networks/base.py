@@ -31,7 +31,7 @@ class CompiledForm(NamedTuple):
     """The compiled loops of the projection network, which stand in for a network's methods.
 
     Attributes:
-        project: Whether x goes through its bounds.
+        project: True if x goes through its bounds.
     """
 
     project: bool
@@ -43,7 +43,7 @@ class Network(ABC):
 
     Attributes:
         rho: Time constant [s].
-        carries_x: Whether the state begins with x; otherwise x is computed from it.
+        carries_x: True if the state begins with x; otherwise x is computed from it.
     """
 
     rho: float = 9e-5
@@ -75,7 +75,7 @@ class Network(ABC):
 
         Args:
             qp: The program.
-            state: Where given, (state_size,), the bound need only hold around there.
+            state: A state, (state_size,), around which the bound has to hold; None: everywhere.
         """
 
     @property

@@ -32,7 +32,7 @@ class BatchSolution(NamedTuple):
         y: Multipliers of the equalities, (k, p).
         z: Multipliers of the inequalities, (k, m).
         z_box: Multipliers of the bounds, (k, n).
-        found: Whether every residual is at most the tolerance, (k,).
+        found: True where every residual is at most the tolerance, (k,).
         residuals: Primal residual, dual residual and duality gap, (k, 3).
         iterations: Linear systems solved, (k,).
         faults: Errors of programs that no convex solver could make sense of, by their number.
@@ -172,8 +172,8 @@ def _settle_rows(
 ) -> None:  # fmt: skip
     """Settle the programs from `first` up to `last`, each from a cold start.
 
-    A part has one row, which all programs share, or one for each program. Where the cost is not
-    convex the residuals are infinite.
+    A part has one row, which all programs share, or one for each program. The residuals are
+    infinite where the cost is not convex.
     """
     n, m, p = sizes
     data, K = np.empty((n + m + p) * (n + 1) + 2 * n), np.empty(n * n)

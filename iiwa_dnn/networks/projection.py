@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.networks.base import CompiledForm, Flow, Network
-from iiwa_dnn.qp.dense import extreme_eigenvalues
+from iiwa_dnn.qp.dense import dot, extreme_eigenvalues
 from iiwa_dnn.qp.layout import Matrix, Vector, check_size, compiled, larger, offsets
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
@@ -42,7 +42,7 @@ class ProjectionNetwork(Network):
 
     Attributes:
         rho: Time constant [s].
-        primal_projection: Whether x goes through its bounds, as in the paper. Without it the
+        primal_projection: True if x goes through its bounds, as in the paper. Without it the
             bounds act through their multipliers alone; the equilibria are the same, and a
             backward Euler step becomes a convex problem
             (`iiwa_dnn.networks.integrators.implicit_steps`).
@@ -93,8 +93,8 @@ class ProjectionNetwork(Network):
 
         Args:
             qp: The program.
-            state: Where given, only the rows active at this state are counted; otherwise every
-                inequality row is, and the bound holds on every active set.
+            state: A state, (state_size,), whose active rows are counted; None counts every
+                inequality row, and the bound holds on every active set.
 
         Returns:
             The bound; zero where P is singular, since then no step is known to be stable.
@@ -151,9 +151,7 @@ def field(
     at_z, at_u = n + p, n + p + m
     largest = 0.0
     for i in range(n):
-        gradient = data[at_q + i] + s[at_u + i] - s[at_u + n + i]
-        for k in range(n):
-            gradient += data[i * n + k] * s[k]
+        gradient = data[at_q + i] + s[at_u + i] - s[at_u + n + i] + dot(data, i * n, s, n)
         for j in range(p):
             gradient += data[at_A + j * n + i] * s[n + j]
         for j in range(m):
@@ -172,15 +170,11 @@ def field(
             rates[at_u + side * n + i] = rate
             largest = larger(largest, abs(rate))
     for j in range(p):
-        rate = -data[at_b + j]
-        for i in range(n):
-            rate += data[at_A + j * n + i] * s[i]
+        rate = dot(data, at_A + j * n, s, n) - data[at_b + j]
         rates[n + j] = rate
         largest = larger(largest, abs(rate))
     for j in range(m):
-        slack = -data[at_h + j]
-        for i in range(n):
-            slack += data[at_G + j * n + i] * s[i]
+        slack = dot(data, at_G + j * n, s, n) - data[at_h + j]
         is_active = s[at_z + j] + slack > 0.0
         rate = slack if is_active else -s[at_z + j]
         active[j] = is_active

@@ -176,7 +176,7 @@ class CrossCheck:
         return dict(self._options[name])
 
     def settings(self) -> dict[str, Any]:
-        """Solvers and tolerances, as values that JSON can hold."""
+        """Return solvers and tolerances, as values that JSON can hold."""
         return {
             "solvers": list(self.solvers),
             "tolerance": self.tolerance,
@@ -188,8 +188,8 @@ class CrossCheck:
         import qpsolvers
 
         with warnings.catch_warnings():
-            # Of dense matrices for OSQP, and of every program that is not solved, which the
-            # residual says too.
+            # They speak of dense matrices for OSQP, and of programs that are not solved, as the
+            # residual does.
             warnings.simplefilter("ignore", UserWarning)
             try:
                 solution = qpsolvers.solve_problem(problem, solver=name, **self._options[name])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.qp.dense import dot
 from iiwa_dnn.qp.layout import Matrix, Triple, Vector, compiled, larger, offsets
 
 
@@ -16,25 +17,17 @@ def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Trip
     at_z, at_box = n + p, n + p + m
     primal, dual, gap = 0.0, 0.0, 0.0
     for j in range(p):
-        value = -data[at_b + j]
-        for i in range(n):
-            value += data[at_A + j * n + i] * point[i]
-        primal = larger(primal, abs(value))
+        primal = larger(primal, abs(dot(data, at_A + j * n, point, n) - data[at_b + j]))
         gap += data[at_b + j] * point[n + j]
     for j in range(m):
-        value = -data[at_h + j]
-        for i in range(n):
-            value += data[at_G + j * n + i] * point[i]
-        primal = larger(primal, value)
+        primal = larger(primal, dot(data, at_G + j * n, point, n) - data[at_h + j])
         if point[at_z + j] != 0.0:
             gap += data[at_h + j] * point[at_z + j]
     for i in range(n):
         x, lb, ub, multiplier = point[i], data[at_lb + i], data[at_ub + i], point[at_box + i]
         primal = larger(primal, x - ub)
         primal = larger(primal, lb - x)
-        value = data[at_q + i]
-        for k in range(n):
-            value += data[i * n + k] * point[k]
+        value = data[at_q + i] + dot(data, i * n, point, n)
         gap += x * value
         value += multiplier
         for j in range(p):
@@ -86,9 +79,7 @@ def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) ->
     for j in range(m):
         point[at_z + j] = max(s[at_z + j], 0.0)
     for i in range(n):
-        aim = point[i] - data[at_q + i]
-        for k in range(n):
-            aim -= data[i * n + k] * point[k]
+        aim = point[i] - data[at_q + i] - dot(data, i * n, point, n)
         for j in range(p):
             aim -= data[at_A + j * n + i] * point[n + j]
         for j in range(m):

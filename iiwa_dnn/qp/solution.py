@@ -113,7 +113,7 @@ class Solution(NamedTuple):
 
     @property
     def found(self) -> bool:
-        """Whether every residual is at most the tolerance that was asked for."""
+        """True if every residual is at most the tolerance that was asked for, else False."""
         return self.status is Status.SOLVED
 
     def to_qpsolvers(self, problem: qpsolvers.Problem) -> qpsolvers.Solution:

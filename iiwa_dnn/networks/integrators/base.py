@@ -18,7 +18,7 @@ since a control loop asks for it at every step.
 
 
 class Integrator(Protocol):
-    """One way to integrate a network.
+    """One way to integrate a network; one that derives from this is a dataclass.
 
     Attributes:
         order: Order of the method in its step length.
@@ -44,14 +44,6 @@ class Integrator(Protocol):
             The progress and the residuals, above `tol` if the budget of steps ended first.
         """
         ...
-
-    def settings(self) -> dict[str, Any]:
-        """Return name and parameters, as values that JSON can hold."""
-        ...
-
-
-class Settings:
-    """The `settings` of an integrator that is a dataclass."""
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""

@@ -11,7 +11,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network
-from iiwa_dnn.networks.integrators.base import Settings, Settled
+from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.networks.projection import field
 from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
@@ -22,7 +22,7 @@ SAFETY = 0.95
 
 
 @dataclass(frozen=True)
-class ExplicitEuler(Settings):
+class ExplicitEuler(Integrator):
     r"""Explicit Euler: ``s <- s + h F(s)``, of order 1.
 
     One control step of the paper is h = 1.11 in units of rho, where its own heart needs h < 0.155:

@@ -26,7 +26,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
-from iiwa_dnn.networks.integrators.base import Settings, Settled
+from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_gram, linear_step
 from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
 from iiwa_dnn.networks.projection import field
@@ -41,7 +41,7 @@ MAX_NEWTON = 50
 
 
 @dataclass(frozen=True)
-class ImplicitEuler(Settings):
+class ImplicitEuler(Integrator):
     """Backward Euler, of order 1, stable at any step.
 
     Attributes:
@@ -85,7 +85,7 @@ class ImplicitEuler(Settings):
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
 
-        Of the projection network the version without primal projection is integrated.
+        The projection network is integrated without its primal projection.
         """
         if network.compiled is None:
             return pseudo_transient.settle(

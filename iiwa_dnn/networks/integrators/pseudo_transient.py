@@ -1,11 +1,11 @@
 """Pseudo-transient continuation: rules of both settle loops, and the loop for any network.
 
 Each round of `settle` first tries one linearly implicit step, very long at first: near the
-equilibrium that is a Newton step, and a warm start in a control loop needs only that. Where it
-makes no `progress`, a fully solved backward Euler step follows, whose length grows from round to
-round. Where rounding is in the way, linearly implicit steps of other lengths are tried too.
+equilibrium that is a Newton step, and a warm start in a control loop needs only that. If it makes
+no `progress`, a fully solved backward Euler step follows, whose length grows from round to round.
+Linearly implicit steps of other lengths are tried too where rounding is in the way.
 
-Here a backward Euler step is solved by a semismooth Newton iteration on the whole state. Where that
+Here a backward Euler step is solved by a semismooth Newton iteration on the whole state. If that
 does not converge in `MAX_NEWTON` iterations, the step is cut to a quarter: below one over the
 field's Lipschitz constant it does converge, so the flow can always be followed, however slowly. A
 linearly implicit step is kept only where it does not go far, since these fields are small in some

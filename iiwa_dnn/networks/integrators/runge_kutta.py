@@ -1,8 +1,8 @@
 r"""An adaptive explicit Runge-Kutta method: Bogacki and Shampine's pair of orders 3 and 2.
 
-Each step is taken by the method of order 3 and judged by the embedded one of order 2. Where the
-field is stiff the error estimate feels the edge of stability and holds the step below it, so no
-stable step has to be known beforehand: it serves singular P too.
+Each step is taken by the method of order 3 and judged by the embedded one of order 2. On a
+stiff field the error estimate feels the edge of stability and holds the step below it, so no stable
+step has to be known beforehand: it serves singular P too.
 
 Source: P. Bogacki, L. F. Shampine, "A 3(2) pair of Runge-Kutta formulas", Applied Mathematics
 Letters 2 (1989), as `scipy.integrate.RK23` implements it.
@@ -18,7 +18,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
-from iiwa_dnn.networks.integrators.base import Settings, Settled
+from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
@@ -28,7 +28,7 @@ _LEAST_RTOL = 100.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
-class AdaptiveRungeKutta(Settings):
+class AdaptiveRungeKutta(Integrator):
     """Bogacki-Shampine 3(2), of order 3, with a step that follows its own error estimate.
 
     Attributes:
