@@ -10,8 +10,9 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import kkt_point
 
 
 class Flow(NamedTuple):
@@ -62,7 +63,7 @@ class Network(ABC):
         """Make the right-hand side and its derivative for this program."""
 
     @abstractmethod
-    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point ``[x | y | z | z_box]`` of a state (state_size,) into `point`.
 
         Returns:
@@ -94,6 +95,14 @@ class Network(ABC):
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         return settings_of(self)
+
+
+def read_point(qp: QP, state: Vector, point: Vector, size: int) -> Triple:
+    """Write the point of ``[x | y | z | ...]``, of this size, into `point`; see `Network.read`."""
+    n, m, p = qp.sizes
+    check_size("state", state, size)
+    check_size("point", point, 2 * n + m + p)
+    return kkt_point(qp.data, n, m, p, state, point)
 
 
 def settings_of(part: Any) -> dict[str, Any]:

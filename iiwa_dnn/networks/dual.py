@@ -27,10 +27,9 @@ from typing import ClassVar
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.networks.base import Flow, Network, read_point
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
 
 
 @dataclass(frozen=True)
@@ -69,14 +68,14 @@ class DualNetwork(Network):
 
         return Flow(rates, jacobian)
 
-    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
         n, m, p = qp.sizes
-        check_size("point", point, 2 * n + m + p)
+        check_size("state", state, n + m + p)
         rows, _, _ = _two_sided(qp)
         x = _solved(qp, rows.T @ state - qp.q)
         known = np.concatenate([x, -state[: p + m]])
-        return kkt_point(qp.data, n, m, p, known, point)
+        return read_point(qp, known, point, n + m + p)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho, on every active set.

@@ -26,10 +26,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.networks.base import Flow, Network, read_point
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
 
 
 @dataclass(frozen=True)
@@ -61,12 +60,9 @@ class PrimalDualNetwork(Network):
 
         return Flow(rates, jacobian)
 
-    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        n, m, p = qp.sizes
-        check_size("state", state, n + m + p)
-        check_size("point", point, 2 * n + m + p)
-        return kkt_point(qp.data, n, m, p, state, point)
+        return read_point(qp, state, point, self.state_size(qp))
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""

@@ -25,11 +25,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import CompiledForm, Flow, Network
+from iiwa_dnn.networks.base import CompiledForm, Flow, Network, read_point
 from iiwa_dnn.qp.dense import dot, extreme_eigenvalues
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size, compiled, larger, offsets
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size, compiled, larger, offsets
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
 
 _PROJECTED, _FREE = CompiledForm(project=True), CompiledForm(project=False)
 _METHODS = ("state_size", "flow", "read", "stable_step")
@@ -75,12 +74,9 @@ class ProjectionNetwork(Network):
 
         return Flow(rates, lambda state: self._jacobian(qp, state))
 
-    def read(self, qp: QP, state: Vector, point: Vector) -> tuple[float, float, float]:
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        n, m, p = qp.sizes
-        check_size("state", state, 3 * n + m + p)
-        check_size("point", point, 2 * n + m + p)
-        return kkt_point(qp.data, n, m, p, state, point)
+        return read_point(qp, state, point, self.state_size(qp))
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.

@@ -127,11 +127,6 @@ class DNNSolver:
             return np.array([self.tol, budget, long_step, 0.0, form.project, 0.0, SAFETY])
         return None
 
-    def settings(self) -> dict[str, Any]:
-        """Return tolerance, network and integrators, as values that JSON can hold."""
-        parts = {name: getattr(self, name) for name in ("network", "settler", "follower")}
-        return {"tol": float(self.tol), **{name: part.settings() for name, part in parts.items()}}
-
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
@@ -117,59 +118,42 @@ class CrossCheck:
         Returns:
             Gaps and residuals, one row a program and one column a reference.
         """
-        count, k = len(x), len(self.solvers)
-        n, m, p = sizes
-        points = np.full((count, k, 2 * n + m + p), np.nan)
-        # Solvers may take minutes over one NaN.
-        askable = ~np.isnan(programs).any(axis=1) & (k > 0)
-        for i in np.flatnonzero(askable):
-            problem = QP.from_data(programs[i], sizes).to_qpsolvers()
-            for j, name in enumerate(self.solvers):
-                self._ask(name, problem, sizes, points[i, j])
-        residuals = np.empty((count, k))
-        largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
-        believed = residuals <= self.reference_tolerance
-        believed[~askable] = True  # nobody is asked
-        for i, j in np.argwhere(~believed):
-            second = self._second_opinion(self.solvers[j], programs[i], sizes)
-            if second is not None:
-                points[i, j], residuals[i, j] = second
-        references = np.where(
-            residuals[..., np.newaxis] <= self.reference_tolerance, points, np.nan
-        )
-        references = references[..., :n]
+        n = sizes[0]
+        points, residuals = self._answers(self.solvers, programs, sizes)
+        for i, j in np.argwhere(~(residuals <= self.reference_tolerance)):
+            # ProxQP calls one in some thousand programs infeasible that are not.
+            second = SECOND[self.solvers[j]]
+            if second in self._options:
+                point, residual = self._answers((second,), programs[i : i + 1], sizes)
+                if residual[0, 0] <= self.reference_tolerance:
+                    points[i, j], residuals[i, j] = point[0, 0], residual[0, 0]
+        believed = (residuals <= self.reference_tolerance)[..., np.newaxis]
+        references = np.where(believed, points, np.nan)[..., :n]
         step = x[:, np.newaxis] - references
-        cost = programs[:, : n * n].reshape(count, n, n)
+        cost = programs[:, : n * n].reshape(len(x), n, n)
         linear = programs[:, n * n : n * (n + 1)]
         # As a difference of points: subtracting two objectives would cancel.
         curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
         objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
         return Agreement(np.abs(step).max(axis=2), objective_gap, residuals)
 
-    def _ask(
-        self, name: str, problem: qpsolvers.Problem, sizes: tuple[int, int, int], point: Vector
-    ) -> None:
-        """Write a solver's answer into `point`; one without an answer leaves it alone."""
-        reference = self._solve(name, problem)
-        if reference is not None and reference.x is not None:
-            point[:] = _point(reference, sizes)
-
-    def _second_opinion(
-        self, name: str, program: Vector, sizes: tuple[int, int, int]
-    ) -> tuple[Vector, float] | None:
-        """The other solver's point and its residual, where it is to be believed.
-
-        ProxQP calls one in some thousand programs infeasible that are not.
-        """
-        if SECOND[name] not in self._options:
-            return None
+    def _answers(
+        self, solvers: Sequence[str], programs: Matrix, sizes: Sizes
+    ) -> tuple[NDArray[np.float64], Matrix]:
+        """Ask k solvers for the points of N programs, (N, k, size), and judge them, (N, k)."""
         n, m, p = sizes
-        point, residual = np.full((1, 1, 2 * n + m + p), np.nan), np.full((1, 1), np.inf)
-        problem = QP.from_data(program, sizes).to_qpsolvers()
-        self._ask(SECOND[name], problem, sizes, point[0, 0])
-        largest_residuals(program[np.newaxis].copy(), n, m, p, point, residual)
-        found = float(residual[0, 0])
-        return (point[0, 0], found) if found <= self.reference_tolerance else None
+        points = np.full((len(programs), len(solvers), 2 * n + m + p), np.nan)
+        residuals = np.empty(points.shape[:2])
+        # Solvers may take minutes over one NaN.
+        askable = ~np.isnan(programs).any(axis=1) & (len(solvers) > 0)
+        for i in np.flatnonzero(askable):
+            problem = QP.from_data(programs[i], sizes).to_qpsolvers()
+            for j, name in enumerate(solvers):
+                reference = self._solve(name, problem)
+                if reference is not None and reference.x is not None:
+                    points[i, j] = _point(reference, sizes)
+        largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
+        return points, residuals
 
     def options(self, name: str) -> dict[str, Any]:
         """Return a copy of the options with which qpsolvers asks the reference of this name."""

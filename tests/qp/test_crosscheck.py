@@ -163,6 +163,30 @@ def test_a_reference_that_gives_up_is_not_believed(name: str) -> None:
     assert not (agreement.reference_residual <= 1e-8).any()
 
 
+@pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1]])
+def test_a_second_solver_is_asked_where_the_first_has_no_answer(
+    first: str, second: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve, asked = qpsolvers.solve_problem, []
+
+    def fail_once(problem: qpsolvers.Problem, solver: str, **options: object) -> object:
+        asked.append(solver)
+        if solver == first:
+            raise qpsolvers.exceptions.SolverError("out of order")
+        return solve(problem, solver, **options)
+
+    monkeypatch.setattr(qpsolvers, "solve_problem", fail_once)
+    known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(3)]
+    x = np.stack([best for _, best in known])
+    programs = np.stack([qp.data for qp, _ in known])
+    programs[2, 0] = np.nan
+    agreement = CrossCheck((first,)).check_block(programs, known[0][0].sizes, x)
+    assert asked == [first, first, second, second]
+    assert agreement.solution_gap[:2].max() <= 1e-7
+    assert agreement.reference_residual[:2].max() <= 1e-8
+    assert np.isnan(agreement.solution_gap[2]).all()
+
+
 def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*args: object, **options: object) -> None:
         raise qpsolvers.exceptions.SolverError("out of order")

@@ -13,7 +13,6 @@ from iiwa_dnn import (
     Configuration,
     DNNSolver,
     DoubleIndicator,
-    DualNetwork,
     ExplicitEuler,
     Heart,
     ImplicitEuler,
@@ -228,12 +227,11 @@ def test_integrators_and_networks_name_themselves() -> None:
     }  # fmt: skip
     assert ImplicitEuler(step=np.float64(0.5)).settings()["step"] == 0.5
     assert AdaptiveRungeKutta().settings()["name"] == "AdaptiveRungeKutta"
-    solver = DNNSolver(DualNetwork(rho=1e-4), tol=np.float64(1e-7))
-    settings = json.loads(json.dumps(solver.settings()))
-    assert settings["network"] == {"name": "DualNetwork", "rho": 1e-4}
-    assert settings["tol"] == 1e-7
-    assert settings["settler"] == ImplicitEuler().settings()
-    assert settings["follower"] == ExplicitEuler().settings()
+    network = ProjectionNetwork(np.float64(1e-4), primal_projection=False)
+    assert json.loads(json.dumps(network.settings())) == {
+        "name": "ProjectionNetwork", "rho": 1e-4, "primal_projection": False,
+    }  # fmt: skip
+    assert Doubled().settings()["name"] == "Doubled"
     json.dumps(ExplicitEuler(np.int64(8)).settings())
 
 
