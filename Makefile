@@ -69,4 +69,4 @@ types: $(STAMP)  ## check the types of the package
 
 clean:  ## remove .venv, caches and what was built; runs/ stays
 	rm -rf $(VENV) build dist site htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
-	find iiwa_dnn tests scripts -name __pycache__ -prune -exec rm -rf {} +
+	find iiwa_dnn tests scripts benchmarks -name __pycache__ -prune -exec rm -rf {} +

@@ -2,8 +2,7 @@
 
 import sys
 
-from benchmarks.cli import bench_solvers
-from benchmarks.loop_cli import bench_loop
+from benchmarks.cli import bench_loop, bench_solvers
 
 COMMANDS = {"solvers": bench_solvers, "loop": bench_loop}
 

@@ -1,17 +1,47 @@
-"""``bench``: this package's solver measured beside others."""
+"""The two commands: options, measurements, report."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
 
 from tqdm import tqdm
 
-from benchmarks.settings import BenchSettings
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files, run_command
 from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.options import Count, Folder, RunOptions, Time
+from iiwa_dnn.errors import MissingDependencyError
+
+
+@dataclass(frozen=True)
+class BenchSettings(RunOptions):
+    """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP."""
+
+    command: ClassVar[str] = "solvers"
+    out: Folder = Path("runs/bench")  # folder that the results are written to
+    steps: Count = 5000  # number of steps in a stream of programs
+    cold: Count = 1000  # number of random programs of each size
+    batch: Count = 100_000  # number of programs in the batch
+
+
+@dataclass(frozen=True)
+class BenchLoopSettings(RunOptions):
+    """Measure the control loop beside its peers', whole runs, start-up and memory."""
+
+    command: ClassVar[str] = "loop"
+    out: Folder = Path("runs/bench_loop")  # folder that the results are written to
+    steps: Count = 10_000  # number of steps beside the peers
+    period: Time = 1e-3  # control period of these steps [s]
+    placo_python: Path | None = None  # Python interpreter of an environment with PlaCo
+    mink_python: Path | None = None  # Python interpreter with mink; by default this one
+    drake_python: Path | None = None  # Python interpreter of an environment with Drake
+    duration: Time = 10.0  # length of a whole run [s]
+    dt: Time = 1e-4  # control period of a whole run [s]
+    rounds: Count = 3  # number of repetitions of all that is not a step
 
 
 def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
@@ -19,15 +49,20 @@ def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_sol
 
     Args:
         arguments: Command line without the program's name; None takes the process's own.
-        prog: What the command is called in messages.
+        prog: Name of the command in messages.
 
     Returns:
         The exit code: 0 done, 2 bad input or something is missing.
     """
-    return run_command(BenchSettings, prog, _bench, arguments)
+    return run_command(BenchSettings, prog, _solvers, arguments)
 
 
-def _bench(options: BenchSettings) -> int:
+def bench_loop(arguments: Sequence[str] | None = None, prog: str = "bench_loop") -> int:
+    """Measure steps, runs, start-up and memory and write the report; as `bench_solvers`."""
+    return run_command(BenchLoopSettings, prog, _loop, arguments)
+
+
+def _solvers(options: BenchSettings) -> int:
     for name in ("steps", "cold", "batch"):
         checks.integer(f"--{name}", getattr(options, name), 50)
     folder = claim_folder(options)
@@ -70,6 +105,48 @@ def _bench(options: BenchSettings) -> int:
         for entry in measured:
             print(f"{entry['name']:20} {verdict(entry['rows'])}")
     print(written[0])
+    save_settings(options, folder)
+    if options.verbose:
+        list_files(folder)
+    return 0
+
+
+def _loop(options: BenchLoopSettings) -> int:
+    checks.integer("--steps", options.steps, 50)
+    checks.integer("--rounds", options.rounds, 1)
+    checks.positive("--duration", options.duration)
+    checks.positive("--dt", options.dt)
+    checks.positive("--period", options.period)
+    folder = claim_folder(options)
+    try:
+        from benchmarks.control import measure_own_part, measure_runs, measure_steps, profile_step
+    except ImportError as error:
+        remedy = 'pip install "iiwa-dnn[bench]"'
+        raise MissingDependencyError(str(error.name), remedy) from error
+    from benchmarks.loop_report import save_loop_report
+    from benchmarks.process import measure_memory, measure_startup
+    from benchmarks.report import environment
+
+    with tqdm(total=options.steps, unit="step", disable=options.quiet) as bar:
+        pythons = {
+            "placo": options.placo_python, "mink": options.mink_python,
+            "pydrake": options.drake_python,
+        }  # fmt: skip
+        steps, missing = measure_steps(options.steps, options.period, pythons, bar.update)
+    results = {
+        "environment": environment(("pin-pink",)),
+        "dt": options.period,
+        "steps": steps,
+        "missing": missing,
+        "own_part": measure_own_part(
+            options.steps * options.period, options.period, options.rounds
+        ),
+        "runs": measure_runs(options.duration, options.dt, options.rounds),
+        "profile": profile_step(options.dt),
+        "startup": measure_startup(options.rounds),
+        "memory": measure_memory(0.2 * options.duration),
+    }
+    print(save_loop_report(results, folder)[0])
     save_settings(options, folder)
     if options.verbose:
         list_files(folder)

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from benchmarks import process
+from benchmarks.cli import bench_loop
 from benchmarks.control import measure_own_part, measure_runs, measure_steps
-from benchmarks.loop_cli import bench_loop
 from benchmarks.loop_report import markdown
 from iiwa_dnn import IiwaDnnError
 
