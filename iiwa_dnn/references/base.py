@@ -1,4 +1,4 @@
-"""What every reference is: a path, a place to start from, and targets along it."""
+"""The base of all references: a path, a place to start from, and targets along it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any, ClassVar, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite, finite_array
+from iiwa_dnn.checks import finite, finite_array, read_only
 from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
 
 class Pose(Protocol):
-    """What :meth:`Reference.anchored` needs; an ``iiwa_dnn.Configuration`` is one."""
+    """A pose to anchor a reference at; an ``iiwa_dnn.Configuration`` is one."""
 
     @property
     def position(self) -> NDArray[np.float64]:
@@ -28,23 +28,17 @@ class Pose(Protocol):
         """Orientation, shape (3, 3)."""
 
 
-def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
-    array.setflags(write=False)
-    return array
-
-
-_AT_REST = _read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
-
 Array = NDArray[np.float64]
+
+_AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
 
 
 class Reference(ABC):
     """A path for a frame, with a fixed orientation.
 
-    A subclass says how far the path is from its own origin and how fast it runs, by `displacement`
-    and `velocity`; where the origin lies, :meth:`anchored` says: until then at position 0 with
-    orientation identity. References are immutable, and a subclass is a frozen dataclass of the
-    path's parameters. The package's own paths have a compiled form instead, `path`.
+    A subclass is a frozen dataclass of the path's parameters and gives `displacement` and
+    `velocity`, or, as the package's own paths do, a compiled form, `path`. Until :meth:`anchored`
+    the origin is at position 0 with orientation identity.
 
     Attributes:
         name: Name of the path in settings and on the command line.
@@ -57,19 +51,24 @@ class Reference(ABC):
 
     name: ClassVar[str]
     path: ClassVar[Any] = None
-    numbers: NDArray[np.float64] = _read_only(np.zeros(0))
-    _base: NDArray[np.float64] = _AT_REST  # the target at the origin, at rest
+    numbers: Array = read_only(np.zeros(0))
+    _base: Array = _AT_REST  # the target at the origin, at rest
 
     @property
-    def origin(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
-        return _read_only(self._base[:3].copy())
+    def origin(self) -> Array:  # noqa: D102 - described in the class
+        return read_only(self._base[:3])
 
     @property
-    def orientation(self) -> NDArray[np.float64]:  # noqa: D102
-        return _read_only(self._base[3:12].reshape(3, 3).copy())
+    def orientation(self) -> Array:  # noqa: D102
+        return read_only(self._base[3:12].reshape(3, 3))
+
+    def _set(self, **values: Any) -> None:
+        """Set checked parameters of a frozen dataclass."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     def displacement(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Displacement from the path's origin along the world's axes, zero at t = 0.
+        """Compute the displacement from the path's origin along the world's axes, zero at t = 0.
 
         Args:
             t: Times [s], shape (...,).
@@ -80,7 +79,7 @@ class Reference(ABC):
         return self._along(t)[..., :3]
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Time derivative of :meth:`displacement`, exact.
+        """Compute the exact time derivative of :meth:`displacement`.
 
         Args:
             t: Times [s], shape (...,).
@@ -92,7 +91,7 @@ class Reference(ABC):
 
     @property
     def compiled(self) -> Any:
-        """`path`, where no subclass says otherwise how the path runs; else None."""
+        """`path`, unless a subclass overrides what computes the targets; else None."""
         cls = type(self)
         own = (cls.displacement, cls.velocity, cls._targets)
         inherited = (Reference.displacement, Reference.velocity, Reference._targets)
@@ -104,7 +103,7 @@ class Reference(ABC):
         return self._base
 
     def _along(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Displacements and velocities in the places that targets have them, (..., 18)."""
+        """Compute displacements and velocities, in the places of targets, (..., 18)."""
         path = type(self).path
         if path is None:
             raise TypeError(f"{type(self).__name__} overrides neither displacement nor path")
@@ -124,15 +123,10 @@ class Reference(ABC):
         return self.period
 
     def anchored(self: Self, pose: Pose) -> Self:
-        """The same path, starting at a pose and keeping its orientation.
-
-        The path is moved, not turned: displacements stay along the world's axes.
+        """Return a copy that starts at a pose and keeps its orientation: moved, not turned.
 
         Args:
             pose: The pose, for example an ``iiwa_dnn.Configuration``.
-
-        Returns:
-            A new reference; this one is unchanged.
 
         Raises:
             InvalidInputError: If the pose is not finite or has wrong shapes.
@@ -141,17 +135,11 @@ class Reference(ABC):
         position = finite_array("position", pose.position, (3,))
         rotation = finite_array("rotation", pose.rotation, (3, 3))
         base = np.concatenate([position, rotation.ravel(), np.zeros(6)])
-        object.__setattr__(clone, "_base", _read_only(base))
+        clone._set(_base=read_only(base))
         return clone
 
     def at(self, t: float) -> Target:
-        """Compute the target at one time.
-
-        Args:
-            t: Time [s].
-
-        Returns:
-            The target.
+        """Compute the target at time t [s].
 
         Raises:
             InvalidInputError: If ``t`` is not a finite number.
@@ -160,13 +148,7 @@ class Reference(ABC):
         return Target.from_data(self._targets(np.array([t], dtype=np.float64))[0])
 
     def sample(self, times: ArrayLike) -> Targets:
-        """Compute the targets at many times.
-
-        Args:
-            times: Times [s], shape (k,).
-
-        Returns:
-            The targets, in read-only arrays.
+        """Compute the targets at times (k,) [s], in read-only arrays.
 
         Raises:
             InvalidInputError: If ``times`` is not a list of finite numbers.
@@ -174,7 +156,7 @@ class Reference(ABC):
         return Targets.from_data(self._targets(finite_array("times", times, (-1,)).copy()))
 
     def _targets(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
-        """`Target.data` at times (k,), one a row."""
+        """Compute `Target.data` at times (k,), one a row."""
         targets = np.empty((times.size, _AT_REST.size))
         targets[:] = self._base
         if self.compiled is not None:
@@ -185,11 +167,7 @@ class Reference(ABC):
         return targets
 
     def settings(self) -> dict[str, Any]:
-        """Name and parameters of the path, in values that JSON knows; not where it is anchored.
-
-        Returns:
-            A dictionary from which the path can be made again.
-        """
+        """Return name and parameters, in JSON types, to make the path again, not anchored."""
         parameters = [f.name for f in fields(self) if f.init]  # type: ignore[arg-type]
         values = {name: getattr(self, name) for name in parameters}
         return {"name": self.name} | {

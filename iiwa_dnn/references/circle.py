@@ -55,19 +55,14 @@ class Circle(Reference):
     normal: Vector3 = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", positive("radius", self.radius))
-        object.__setattr__(self, "period", positive("period", self.period))
-        object.__setattr__(self, "normal", vector3("normal", self.normal))
+        self._set(radius=positive("radius", self.radius), period=positive("period", self.period))
+        self._set(normal=vector3("normal", self.normal))
         if not any(self.normal):
             raise InvalidInputError("normal", "must not be zero", self.normal)
-        numbers = np.concatenate([[self.radius, 2.0 * np.pi / self.period], *self._plane()])
-        object.__setattr__(self, "numbers", numbers)
-
-    def _plane(self) -> tuple[Array, Array]:
-        """Orthonormal u and v, each of shape (3,), with u x v along the normal."""
         normal = np.array(self.normal) / np.abs(self.normal).max()  # its square may not underflow
         normal /= np.linalg.norm(normal)
         axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)
-        return u, np.cross(normal, u)
+        head = [self.radius, 2.0 * np.pi / self.period]
+        self._set(numbers=np.concatenate([head, u, np.cross(normal, u)]))

@@ -56,7 +56,5 @@ class Heart(Reference):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "scale", positive("scale", self.scale))
-        object.__setattr__(self, "period", positive("period", self.period))
-        numbers = np.array([self.scale, 2.0 * np.pi / self.period])
-        object.__setattr__(self, "numbers", numbers)
+        self._set(scale=positive("scale", self.scale), period=positive("period", self.period))
+        self._set(numbers=np.array([self.scale, 2.0 * np.pi / self.period]))

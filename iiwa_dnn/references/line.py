@@ -49,9 +49,7 @@ class Line(Reference):
     period: float = 10.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "offset", vector3("offset", self.offset))
-        object.__setattr__(self, "period", positive("period", self.period))
+        self._set(offset=vector3("offset", self.offset), period=positive("period", self.period))
         if not any(self.offset):
             raise InvalidInputError("offset", "must not be zero", self.offset)
-        numbers = np.array([2.0 * np.pi / self.period, *self.offset])
-        object.__setattr__(self, "numbers", numbers)
+        self._set(numbers=np.array([2.0 * np.pi / self.period, *self.offset]))

@@ -54,12 +54,11 @@ class Lissajous(Reference):
 
     def __post_init__(self) -> None:
         for name in ("amplitudes", "turns", "phases"):
-            object.__setattr__(self, name, vector3(name, getattr(self, name)))
-        object.__setattr__(self, "period", positive("period", self.period))
+            self._set(**{name: vector3(name, getattr(self, name))})
+        self._set(period=positive("period", self.period))
         if not all(turns.is_integer() for turns in self.turns):
             raise InvalidInputError("turns", "must be whole numbers", self.turns)
         if not any(a * k for a, k in zip(self.amplitudes, self.turns, strict=True)):
             raise InvalidInputError("amplitudes", "nothing moves", self.amplitudes)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        numbers = np.concatenate([self.amplitudes, rates, self.phases])
-        object.__setattr__(self, "numbers", numbers)
+        self._set(numbers=np.concatenate([self.amplitudes, rates, self.phases]))

@@ -17,9 +17,8 @@ from iiwa_dnn.references.base import Pose, Reference
 class MovingTarget(Reference):
     """A pose that may jump, approached at a limited speed.
 
-    `set` says where the frame is wanted. The target itself moves there in a straight line and about
-    a fixed axis, no faster than `speed` and `rate`, as time goes on in `at`: so a controller never
-    sees a jump, and a clock that a policy slows down slows the target too.
+    The target moves to the pose given by `set` in a straight line and about a fixed axis, as time
+    goes on in `at`: a controller never sees a jump, and a policy's slowed clock slows the target.
 
     Attributes:
         speed: Largest linear speed of the target [m/s].
@@ -42,7 +41,7 @@ class MovingTarget(Reference):
         self._now = self._wanted
 
     def set(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
-        """Say where the frame is wanted.
+        """Set the desired pose of the frame.
 
         Args:
             position: Position [m], (3,).
@@ -87,5 +86,5 @@ class MovingTarget(Reference):
 
 
 def _share(size: float, most: float) -> float:
-    """Share of a way that may be gone."""
+    """Return the share of a way that may be gone."""
     return 1.0 if size <= most else most / size

@@ -1,20 +1,51 @@
-"""Targets: where the tip should be, and how it should move, at one time or at many."""
+"""Targets of the tip, at one time or at many: its desired pose and motion."""
 
 from __future__ import annotations
 
 from operator import index
-from typing import SupportsIndex
+from typing import SupportsIndex, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import finite_array, read_only
 
-_SIZE = 18
+Self = TypeVar("Self", bound="_Data")  # typing.Self needs Python 3.11
 
 
-class Target:
-    """Where the tip should be at one time, and how it should move; all along the world's axes.
+class _Data:
+    """Numbers of targets, (..., 18), and read-only views of their parts."""
+
+    __slots__ = ("data",)
+
+    data: NDArray[np.float64]
+
+    @classmethod
+    def from_data(cls: type[Self], data: NDArray[np.float64]) -> Self:
+        """Make targets over an existing `data` array, which is neither copied nor checked."""
+        targets = cls.__new__(cls)
+        targets.data = data
+        return targets
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        return read_only(self.data[..., :3])
+
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        return read_only(self.data[..., 3:12].reshape(*self.data.shape[:-1], 3, 3))
+
+    @property
+    def linear_velocity(self) -> NDArray[np.float64]:
+        return read_only(self.data[..., 12:15])
+
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        return read_only(self.data[..., 15:])
+
+
+class Target(_Data):
+    """A desired pose of the tip and its motion at one time, along the world's axes.
 
     Attributes:
         data: All numbers, [position | rotation row by row | linear | angular velocity], (18,). One
@@ -26,7 +57,7 @@ class Target:
         angular_velocity: Desired angular velocity [rad/s], shape (3,).
     """
 
-    __slots__ = ("data",)
+    __slots__ = ()
 
     def __init__(
         self,
@@ -40,44 +71,18 @@ class Target:
         Raises:
             InvalidInputError: An array is not finite or has a wrong shape; it is named.
         """
-        self.data: NDArray[np.float64] = np.concatenate(
-            [
-                finite_array("position", position, (3,)),
-                finite_array("rotation", rotation, (3, 3)).ravel(),
-                finite_array("linear_velocity", linear_velocity, (3,)),
-                finite_array("angular_velocity", angular_velocity, (3,)),
-            ]
-        )
-
-    @classmethod
-    def from_data(cls, data: NDArray[np.float64]) -> Target:
-        """A target over an existing `data` array, which is neither copied nor checked."""
-        target = cls.__new__(cls)
-        target.data = data
-        return target
-
-    @property
-    def position(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
-        return read_only(self.data[:3])
-
-    @property
-    def rotation(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[3:12].reshape(3, 3))
-
-    @property
-    def linear_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[12:15])
-
-    @property
-    def angular_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[15:])
+        place = finite_array("position", position, (3,))
+        turn = finite_array("rotation", rotation, (3, 3)).ravel()
+        linear = finite_array("linear_velocity", linear_velocity, (3,))
+        angular = finite_array("angular_velocity", angular_velocity, (3,))
+        self.data = np.concatenate([place, turn, linear, angular])
 
     def __repr__(self) -> str:
         position = np.array2string(self.position, precision=4, separator=", ")
         return f"<Target at {position} m>"
 
 
-class Targets:
+class Targets(_Data):
     """Targets at k times; ``targets[i]`` is the i-th :class:`Target`, a view of this array.
 
     Attributes:
@@ -88,7 +93,7 @@ class Targets:
         angular_velocity: Desired angular velocities [rad/s], shape (k, 3).
     """
 
-    __slots__ = ("data",)
+    __slots__ = ()
 
     def __init__(
         self,
@@ -98,36 +103,9 @@ class Targets:
         angular_velocity: NDArray[np.float64],
     ) -> None:
         """Copy the four arrays into one; `rotation` and `angular_velocity` may be for all times."""
-        count = len(position)
-        data = np.empty((count, _SIZE))
-        data[:, :3] = position
-        data[:, 3:12] = rotation.reshape(-1, 9)
-        data[:, 12:15] = linear_velocity
-        data[:, 15:] = angular_velocity
-        self.data: NDArray[np.float64] = data
-
-    @classmethod
-    def from_data(cls, data: NDArray[np.float64]) -> Targets:
-        """Return targets over an existing `data` array (k, 18), neither copied nor checked."""
-        targets = cls.__new__(cls)
-        targets.data = data
-        return targets
-
-    @property
-    def position(self) -> NDArray[np.float64]:  # noqa: D102 - described in the class
-        return read_only(self.data[:, :3])
-
-    @property
-    def rotation(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[:, 3:12].reshape(-1, 3, 3))
-
-    @property
-    def linear_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[:, 12:15])
-
-    @property
-    def angular_velocity(self) -> NDArray[np.float64]:  # noqa: D102
-        return read_only(self.data[:, 15:])
+        self.data = np.empty((len(position), 18))
+        self.data[:, :3], self.data[:, 12:15] = position, linear_velocity
+        self.data[:, 3:12], self.data[:, 15:] = rotation.reshape(-1, 9), angular_velocity
 
     def __len__(self) -> int:
         return len(self.data)

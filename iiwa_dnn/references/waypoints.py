@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -78,13 +79,12 @@ class Waypoints(Reference):
             raise InvalidInputError("times", f"at least {least} points are needed", times)
         if not (times[1:] > times[:-1]).all():
             raise InvalidInputError("times", "must increase from point to point", times)
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "points", points)
+        self._set(times=times, points=points)
         spline = self._fit()
         head = [float(self.ends == "closed"), len(spline.x) - 1]
         # Of each piece the coefficients of every power, of each power x, y and z.
         pieces = spline.c.transpose(1, 0, 2).ravel()
-        object.__setattr__(self, "numbers", np.concatenate([head, spline.x, pieces]))
+        self._set(numbers=np.concatenate([head, spline.x, pieces]))
 
     def _fit(self) -> CubicSpline:
         from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
@@ -96,16 +96,12 @@ class Waypoints(Reference):
                 problem = "the last one of a closed path must be the first one"
                 raise InvalidInputError("points", problem, self.points)
             displacements[-1] = 0.0  # scipy asks for the very same numbers
-        with np.errstate(all="ignore"):
-            try:
-                spline = CubicSpline(times, displacements, bc_type=_SCIPY_ENDS[self.ends])
-                fine = bool(np.isfinite(spline.c).all())
-            except (ValueError, np.linalg.LinAlgError):
-                fine = False
-        if not fine:
-            problem = "no spline fits: too close together, or the points too far apart"
-            raise InvalidInputError("times", problem, self.times)
-        return spline
+        with np.errstate(all="ignore"), suppress(ValueError, np.linalg.LinAlgError):
+            spline = CubicSpline(times, displacements, bc_type=_SCIPY_ENDS[self.ends])
+            if np.isfinite(spline.c).all():
+                return spline
+        problem = "no spline fits: too close together, or the points too far apart"
+        raise InvalidInputError("times", problem, self.times)
 
     @classmethod
     def from_csv(cls, path: str | os.PathLike[str], ends: Ends = "clamped") -> Waypoints:
@@ -113,10 +109,7 @@ class Waypoints(Reference):
 
         Args:
             path: The file. Empty lines in it are skipped.
-            ends: What the path does at its ends; see :class:`Waypoints`.
-
-        Returns:
-            The path.
+            ends: As for :class:`Waypoints`.
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
@@ -157,42 +150,29 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _rows(path: Path, file: Iterator[str]) -> Iterator[list[float]]:
-    """Rows of t, x, y, z; each complaint names its line."""
-    reader = csv.reader(file)
-    header: list[str] | None = None
-    last = -math.inf
+def _rows(path: Path, file: Iterable[str]) -> Iterator[list[float]]:
+    """Read rows of t, x, y, z; each complaint names its line."""
+    reader, last = csv.reader(file), -math.inf
+    stripped = ([cell.strip() for cell in row] for row in reader)
+    filled = ((f"line {reader.line_num}", cells) for cells in stripped if any(cells))
     try:
-        for row in reader:
-            cells = [cell.strip() for cell in row]
-            if not any(cells):
-                continue
-            if header is None:
-                header = [cell.lower() for cell in cells]
-                if header != _COLUMNS:
-                    raise FileError(path, f"line {reader.line_num}: the header must be t,x,y,z")
-                continue
-            values = _numbers(path, reader.line_num, cells)
+        line, header = next(filled, ("line 1", []))
+        if [cell.lower() for cell in header] != _COLUMNS:
+            raise FileError(path, f"{line}: the header must be t,x,y,z")
+        for line, cells in filled:
+            if len(cells) != len(_COLUMNS):
+                raise FileError(path, f"{line}: 4 columns are needed, it has {len(cells)}")
+            values = []
+            for column, cell in zip(_COLUMNS, cells, strict=True):
+                try:
+                    values.append(float(cell))
+                except ValueError:
+                    raise FileError(path, f"{line}: {column} is {cell!r}, not a number") from None
+                if not math.isfinite(values[-1]):
+                    raise FileError(path, f"{line}: {column} is {cell}, not finite")
             if values[0] <= last:
-                raise FileError(path, f"line {reader.line_num}: t does not increase")
+                raise FileError(path, f"{line}: t does not increase")
             last = values[0]
             yield values
     except csv.Error as error:
         raise FileError(path, f"line {reader.line_num}: {error}") from error
-    if header is None:
-        raise FileError(path, "line 1: the header must be t,x,y,z")
-
-
-def _numbers(path: Path, line: int, cells: list[str]) -> list[float]:
-    if len(cells) != len(_COLUMNS):
-        raise FileError(path, f"line {line}: 4 columns are needed, it has {len(cells)}")
-    values = []
-    for column, cell in zip(_COLUMNS, cells, strict=True):
-        try:
-            value = float(cell)
-        except ValueError:
-            raise FileError(path, f"line {line}: {column} is {cell!r}, not a number") from None
-        if not math.isfinite(value):
-            raise FileError(path, f"line {line}: {column} is {cell}, not finite")
-        values.append(value)
-    return values
