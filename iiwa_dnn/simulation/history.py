@@ -59,8 +59,9 @@ class History:
         self._kkt_residual[rows] = answers.residuals.reshape(steps, -1).max(axis=1)
         self._iterations[rows] = answers.iterations.reshape(steps, stages).sum(axis=1)
         scheme = self._controller.scheme
-        own = getattr(type(scheme), "kinetic_index", None) is not Scheme.kinetic_index
-        if not own and scheme.kinetic == "identity":
+        # A scheme of one's own may have an index of its own, or none.
+        index = getattr(type(scheme), "kinetic_index", None)
+        if index is None or (index is Scheme.kinetic_index and scheme.kinetic == "identity"):
             self._kinetic_index[rows] = np.square(self.dq[rows]).sum(axis=1)
             return
         robot = self._controller.robot
