@@ -434,3 +434,19 @@ def test_reasons_to_the_letter():
     assert "proxqp differs by not a number rad/s" in failures(nowhere)[0]
     limits = {"q_upper": [0.0] * 7}
     assert failures(sample(make_record(settings=limits), "q", (3, 5), 1e-9)) == []
+
+
+def test_three_limits_in_the_way_are_named_and_digits_are_few():
+    blocking = np.zeros((10, 7), int)
+    for joint in range(4):
+        blocking[: 8 - joint, joint] = 1
+    reason, clock = failures(slowed([1.0 / 3.0] * 8 + [1.0] * 2, blocking=blocking))[1:]
+    assert reason.endswith("in the way: " + ", ".join(
+        f"joint {joint} upper position limit" for joint in (1, 2, 3)
+    ))  # fmt: skip
+    assert clock == "slowed: path time 0.466667 s after 1 s"
+    not_finite = sample(make_record(settings={"mode": "continuous"}), "q", 5, np.nan)
+    assert failures(not_finite) == ["a joint position is not finite"]
+    residual = np.array([0.0, 0.0, 3e-9, 5e-9, *[0.0] * 6])
+    assert failures(make_record(kkt_residual=residual))[0].startswith("step 2 (t = 0.2 s): KKT r")
+    assert "residual 3e-09" in failures(make_record(kkt_residual=residual))[0]
