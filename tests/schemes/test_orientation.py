@@ -17,7 +17,7 @@ from helpers_simulation import (
 )
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.schemes import PseudoInverse
+from iiwa_dnn.schemes import OrientationTask, PseudoInverse, Scheme
 from iiwa_dnn.simulation.motion import rk4
 
 POSTURES = np.random.default_rng(21).uniform(-2.5, 2.5, (30, 7))
@@ -141,3 +141,36 @@ def test_block_rows_can_all_be_fulfilled_off_the_path() -> None:
         rows, rhs = rows_at("block", q, near_target(q, seed, size=1e-3))
         left = rhs - rows @ np.linalg.lstsq(rows, rhs, rcond=1e-9)[0]
         np.testing.assert_allclose(left, 0.0, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "axis", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (3, -2, 1), (-1, 3, 2), (1, 2, -3)]
+)
+@pytest.mark.parametrize("angle", [2.2, -2.9, np.pi - 1e-4])
+def test_so3_right_hand_side_of_large_turns_about_any_axis(
+    axis: tuple[int, int, int], angle: float
+) -> None:
+    # Beyond 2 pi / 3 the quaternion's largest component may be any of four.
+    conf = Configuration(paper_robot(), POSTURES[1])
+    vector = angle * np.array(axis) / np.linalg.norm(axis)
+    turn = Rotation.from_rotvec(vector).as_matrix()
+    target = Target(conf.position, turn @ conf.rotation, np.zeros(3), np.zeros(3))
+    _, rhs = orientation_rows("so3", conf, target, 1.0)
+    np.testing.assert_allclose(rhs, vector, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("frame", ["iiwa7_link_3", "iiwa7_link_6"])
+def test_block_rows_of_another_frame_leave_the_joints_beyond_it_alone(frame: str) -> None:
+    conf = Configuration(paper_robot(), POSTURES[2])
+    state = conf.frame(frame)
+    target = Target(state.position, state.rotation, np.zeros(3), np.array([0.1, -0.2, 0.3]))
+    scheme = Scheme(tasks=[OrientationTask(form="block", frame=frame)])
+    qp = scheme.build_qp(conf, {frame: target})
+
+    def block(q: Array) -> Array:
+        return block_vector(Configuration(paper_robot(), q).frame(frame).rotation)
+
+    np.testing.assert_allclose(qp.A, finite_difference(block, conf.q), rtol=0, atol=1e-8)
+    assert not qp.A[:, int(frame[-1]) :].any()
+    expected = block_map(state.rotation) @ target.angular_velocity
+    np.testing.assert_allclose(qp.b, expected, rtol=0, atol=1e-14)

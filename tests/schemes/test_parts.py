@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from typing import Any
 
@@ -303,3 +304,21 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
     assert anchored.settings()["costs"][1] == {
         "name": "CyclicMotion", "weight": 1.0, "gain": 10.2, "home": PAPER_Q0
     }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("part", "parameters"),
+    [
+        (KineticEnergy, ["weight", "kinetic"]),
+        (CyclicMotion, ["weight", "gain", "home"]),
+        (PositionTask, ["gain", "frame", "weight"]),
+        (OrientationTask, ["gain", "form", "frame", "weight"]),
+        (JointLimits, ["gain"]),
+    ],
+)
+def test_the_form_of_a_part_is_neither_an_argument_nor_printed(
+    part: type, parameters: list[str]
+) -> None:
+    assert list(inspect.signature(part).parameters) == parameters
+    values = ", ".join(f"{name}={getattr(part(), name)!r}" for name in parameters)
+    assert repr(part()) == f"{part.__name__}({values})"

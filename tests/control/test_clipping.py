@@ -1,0 +1,99 @@
+"""Clipped commands: the nearest velocity within the bounds and the inequality rows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import linprog
+
+from iiwa_dnn.control.clipping import clip_command
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Solution, Status
+
+
+def limited(G: object = None, h: object = None, n: int = 3) -> QP:
+    """A program whose cost and linear term must not matter: bounds -1, -2, ... and 1, 2, ..."""
+    ub = np.arange(1.0, n + 1.0)
+    return QP(3.0 * np.eye(n), np.full(n, 7.0), G=G, h=h, lb=-ub, ub=ub)
+
+
+def test_a_command_within_the_limits_is_left_alone() -> None:
+    qp = limited(G=[[1.0, 1.0, 0.0]], h=[1.0])
+    dq = np.array([0.5, 0.5, -3.0])
+    clipped, which = clip_command(qp, dq, DNNSolver())
+    assert_array_equal(clipped, dq)
+    assert_array_equal(which, [0, 0, 0])
+
+
+def test_each_joint_is_clipped_to_its_own_bound_and_counted() -> None:
+    clipped, which = clip_command(limited(), np.array([1.5, -0.5, -9.0]), DNNSolver())
+    assert_array_equal(clipped, [1.0, -0.5, -3.0])
+    assert_array_equal(which, [1, 0, 1])
+    assert which.dtype == np.int8
+
+
+def test_no_number_becomes_the_bound_nearest_to_rest() -> None:
+    qp = limited()
+    qp.lb[1] = 0.5
+    qp.ub[2] = -0.25
+    clipped, which = clip_command(qp, np.full(3, np.nan), DNNSolver())
+    assert_array_equal(clipped, [0.0, 0.5, -0.25])
+    assert_array_equal(which, [1, 1, 1])
+
+
+@pytest.mark.parametrize(("excess", "count"), [(5e-13, 0), (5e-12, 1)])
+def test_rounding_beyond_a_bound_is_not_counted(excess: float, count: int) -> None:
+    clipped, which = clip_command(limited(), np.array([1.0 + excess, 0.0, 0.0]), DNNSolver())
+    assert clipped[0] == 1.0
+    assert_array_equal(which, [count, 0, 0])
+
+
+@pytest.mark.parametrize(("excess", "count"), [(5e-10, 0), (5e-9, 1)])
+def test_a_row_is_kept_to_the_networks_tolerance(excess: float, count: int) -> None:
+    qp = limited(G=[[0.0, 1.0, 0.0]], h=[0.5])
+    dq = np.array([0.0, 0.5 + excess, 0.0])
+    clipped, which = clip_command(qp, dq, DNNSolver(tol=1e-12))
+    assert_array_equal(which, [0, count, 0])
+    assert clipped[1] == (pytest.approx(0.5, abs=1e-11) if count else dq[1])
+
+
+def test_beyond_rows_the_velocity_is_the_nearest() -> None:
+    # A projection y of a has (a - y)(v - y) <= 0 for all v within; the largest by linear program.
+    rng = np.random.default_rng(41)
+    changed = 0
+    for _ in range(20):
+        qp = limited(G=rng.normal(size=(2, 4)), h=rng.uniform(0.1, 0.5, 2), n=4)
+        dq = 2.0 * rng.normal(size=4)
+        clipped, which = clip_command(qp, dq, DNNSolver())
+        away = np.clip(dq, qp.lb, qp.ub) - clipped
+        assert (qp.G @ clipped <= qp.h + 1e-9).all()
+        assert ((qp.lb - 1e-9 <= clipped) & (clipped <= qp.ub + 1e-9)).all()
+        bounds = np.column_stack([qp.lb, qp.ub])
+        assert -linprog(-away, qp.G, qp.h, bounds=bounds).fun <= away @ clipped + 1e-7
+        assert_array_equal(which, np.abs(clipped - dq) > 1e-12)
+        changed += int(away.any())
+    assert changed >= 5
+
+
+def test_rows_on_slack_variables_are_left_to_the_scheme() -> None:
+    # Three joints, one slack variable: the first row is softened by it, the second is not.
+    qp = limited(G=[[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 0.0]], h=[0.1, 0.1], n=4)
+    clipped, which = clip_command(qp, np.array([0.9, 0.9, 0.9]), DNNSolver())
+    assert_allclose(clipped, [0.9, 0.1, 0.9], rtol=0, atol=1e-8)
+    assert which[1] == 1
+    clipped, which = clip_command(qp, np.array([0.9, 0.05, 0.9]), DNNSolver())
+    assert_array_equal(clipped, [0.9, 0.05, 0.9])
+    assert_array_equal(which, [0, 0, 0])
+
+
+def test_where_the_network_finds_nothing_the_command_is_the_bound_nearest_to_rest() -> None:
+    class Lost(DNNSolver):
+        def solve(self, qp: QP) -> Solution:
+            return super().solve(qp)._replace(status=Status.NOT_SETTLED)
+
+    qp = limited(G=[[1.0, 1.0, 1.0]], h=[0.5])
+    qp.lb[2] = 0.25
+    clipped, which = clip_command(qp, np.ones(3), Lost())
+    assert_array_equal(clipped, [0.0, 0.0, 0.25])
+    assert_array_equal(which, [1, 1, 1])
