@@ -290,3 +290,70 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: policies.Policy)
     answer = resolve(qp, DNNSolver().solve(qp), policy, DNNSolver())
     assert answer.action is Action.STOP
     assert not answer.solution.x.any()
+
+
+@pytest.mark.parametrize(
+    ("row", "b", "lowest", "fraction", "dq"),
+    [
+        (
+            0.01,
+            1.0,
+            -1.0,
+            0.002,
+            0.2,
+        ),  # full speed gives 0.01 of b, and the brake takes four fifths
+        (0.01, 5.0, -1.0, 0.0, 0.0),  # less than a thousandth is left: rest
+        (0.06, 1.0, -1.0, 0.06, 1.0),  # no singular pose
+        (0.01, 1.0, 0.5, 0.01, 1.0),  # a joint that may not rest is not braked
+    ],
+)
+def test_slow_brakes_where_the_joints_race_for_next_to_nothing(
+    row: float, b: float, lowest: float, fraction: float, dq: float
+) -> None:
+    qp = QP(np.eye(1), np.zeros(1), A=[[row]], b=[b], lb=[lowest], ub=[1.0])
+    answer = resolve(qp, failed(qp), "slow", DNNSolver())
+    assert answer.action is Action.SLOW
+    assert answer.fraction == pytest.approx(fraction, rel=1e-6)
+    np.testing.assert_allclose(answer.solution.x, [dq], rtol=0, atol=1e-7)
+    assert answer.solution.status is Status.SOLVED
+    np.testing.assert_allclose(answer.qp.b, [row * dq], rtol=0, atol=1e-9)
+    assert answer.sides.tolist() == [1]
+
+
+def test_a_decided_velocity_is_the_best_point_of_its_program() -> None:
+    qp = walled(6.0, 0.5)
+    answer = resolve(qp, failed(qp), "relax", DNNSolver())
+    residuals = answer.qp.residuals(answer.solution.x, None, None, None)
+    assert residuals.largest < 1e-12
+    assert answer.solution.residuals == residuals
+    assert answer.fraction == 1.0
+    assert answer.rows.tolist() == [1]
+    np.testing.assert_allclose(answer.solution.x, [-0.5, 1.0], rtol=0, atol=0.05)
+    for part in (answer.solution.y, answer.solution.z, answer.solution.z_box):
+        assert not part.any()
+
+
+def test_stop_has_the_residuals_of_what_failed_and_the_size_of_the_program() -> None:
+    qp = walled(6.0, 0.5)
+    last = failed(qp)
+    answer = resolve(qp, last, "stop", DNNSolver())
+    assert answer.solution.residuals == last.residuals
+    assert answer.solution.status is last.status
+    assert answer.fraction == 0.0
+    assert answer.rows.tolist() == [1]
+    assert answer.sides.tolist() == [0, 1]
+    assert answer.solution.point.shape == last.point.shape
+    unknown = policies.stopped(qp, last)
+    assert (unknown.sides.tolist(), unknown.rows.tolist()) == ([0, 0], [0])
+
+
+def test_the_share_of_a_wide_task_is_as_exact_as_of_a_small_one() -> None:
+    # Whatever b is in units of the arm's reach, the linear program is scaled by it.
+    for size in (3e-6, 3.0, 3e6):
+        assert largest_fraction(two_joints(4.0 * size)).fraction == pytest.approx(
+            min(3.0 / (4.0 * size), 1.0), rel=1e-7
+        )
+    nothing = QP(np.eye(1), np.zeros(1), A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
+    assert largest_fraction(nothing).fraction == 1.0
+    free = QP(np.eye(2), np.zeros(2), lb=[-1.0, -1.0], ub=[1.0, 1.0])
+    assert largest_fraction(free).fraction == 1.0

@@ -130,6 +130,35 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         assert (point[n + p : n + p + m] >= 0).all()
 
 
+def test_the_point_of_a_state_in_numpy() -> None:
+    rng = np.random.default_rng(4)
+    n, m, p = 5, 3, 2
+    for _ in range(20):
+        root = rng.standard_normal((n, n))
+        G, A = rng.standard_normal((m, n)), rng.standard_normal((p, n))
+        q, h, b = rng.standard_normal(n), rng.standard_normal(m), rng.standard_normal(p)
+        qp = QP(root @ root.T, q, G, h, A, b, lb=-rng.random(n), ub=rng.random(n))
+        state, point = 2.0 * rng.standard_normal(n + p + m), np.empty(n + p + m + n)
+        kkt_point(qp.data, *qp.sizes, state, point)
+        x, y, z = np.clip(state[:n], qp.lb, qp.ub), state[n : n + p], np.maximum(state[n + p :], 0)
+        aim = x - (qp.P @ x + q + A.T @ y + G.T @ z)
+        expected = np.concatenate([x, y, z, aim - np.clip(aim, qp.lb, qp.ub)])
+        np.testing.assert_allclose(point, expected, rtol=0, atol=1e-13)
+
+
+def test_multipliers_of_absent_limits_leave_the_gap_alone() -> None:
+    # An infinite bound or h under a multiplier counts in the dual residual, not as 0 times inf.
+    qp = QP(
+        np.eye(2), np.zeros(2), G=[[1.0, 0.0]], h=[np.inf], lb=[-np.inf, -4.0], ub=[4.0, np.inf]
+    )
+    x, none = np.zeros(2), np.zeros(1)
+    assert qp.residuals(x, None, none, np.zeros(2)) == (0.0, 0.0, 0.0)
+    assert qp.residuals(x, None, none, np.array([-3.0, 0.0])) == (0.0, 3.0, 0.0)
+    assert qp.residuals(x, None, none, np.array([0.0, 2.0])) == (0.0, 2.0, 0.0)
+    assert qp.residuals(x, None, none, np.array([0.5, 0.0])) == (0.0, 0.5, 2.0)
+    assert qp.residuals(x, None, none, np.array([0.0, -0.25])) == (0.0, 0.25, 1.0)
+
+
 @pytest.mark.parametrize(("lb", "ub"), [(1.0, np.inf), (-np.inf, -1.0), (1.0, 2.0), (-2.0, -1.0)])
 def test_a_point_outside_its_bounds_is_not_primal_feasible(lb: float, ub: float) -> None:
     qp = QP(np.eye(1), np.zeros(1), lb=[lb], ub=[ub])
