@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import linprog
 
-from iiwa_dnn.control.clipping import clip_command
+from iiwa_dnn.control.clipping import ROW_TOLERANCE, clip_command
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
 
@@ -97,3 +97,10 @@ def test_where_the_network_finds_nothing_the_command_is_the_bound_nearest_to_res
     clipped, which = clip_command(qp, np.ones(3), Lost())
     assert_array_equal(clipped, [0.0, 0.0, 0.25])
     assert_array_equal(which, [1, 1, 1])
+
+
+def test_a_row_broken_by_its_tolerance_and_no_more_is_left_alone() -> None:
+    dq = np.array([0.0, ROW_TOLERANCE, 0.0])
+    clipped, which = clip_command(limited(G=[[0.0, 1.0, 0.0]], h=[0.0]), dq, DNNSolver(tol=1e-12))
+    assert_array_equal(clipped, dq)
+    assert_array_equal(which, [0, 0, 0])

@@ -15,6 +15,7 @@ from iiwa_dnn.control.reach import Reach, largest_fraction, least_violation
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
+from iiwa_dnn.results.metrics import ACTIONS
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 
@@ -218,6 +219,8 @@ def test_no_answer_at_all_is_still_inside_the_bounds(monkeypatch: pytest.MonkeyP
     answer = resolve(qp, failed(qp), "slow", Lost())
     assert inside(answer.solution.x, qp)
     assert not answer.solution.found
+    assert answer.solution.point.shape == (7 + 6 + 7,)
+    assert not answer.solution.point[7:].any()
     np.testing.assert_allclose(qp.A @ answer.solution.x, answer.fraction * qp.b, atol=1e-6)
 
 
@@ -358,3 +361,9 @@ def test_the_share_of_a_wide_task_is_as_exact_as_of_a_small_one() -> None:
     assert largest_fraction(nothing).fraction == 1.0
     free = QP(np.eye(2), np.zeros(2), lb=[-1.0, -1.0], ub=[1.0, 1.0])
     assert largest_fraction(free).fraction == 1.0
+
+
+def test_the_codes_in_a_record_stay_what_they_are() -> None:
+    codes = {action.name.lower(): int(action) for action in Action}
+    assert codes == {"none": 0, "fallback": 1, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
+    assert {code: name for name, code in codes.items() if code} == ACTIONS
