@@ -186,3 +186,14 @@ def test_programs_of_two_shapes_are_refused_by_name() -> None:
     answers.add(first, solver.solve(first), place, np.zeros(2))
     with pytest.raises(InvalidInputError, match="scheme"):
         answers.add(second, solver.solve(second), place, np.zeros(2))
+
+
+@pytest.mark.parametrize("status", [status for status in Status if status is not Status.SOLVED])
+def test_an_answer_of_another_status_keeps_it(status: Status) -> None:
+    answers = Answers((2, 0, 0), 2, Status.SOLVED, np.zeros((2, 18)))
+    qp = QP(np.eye(2), np.ones(2))
+    solution = DNNSolver().solve(qp)
+    answers.add(qp, solution, np.zeros(12), np.zeros(2))
+    answers.add(qp, solution._replace(status=status), np.zeros(12), np.zeros(2))
+    assert list(answers.unsolved) == [1]
+    assert [answers.solution(i).status for i in range(2)] == [Status.SOLVED, status]

@@ -172,3 +172,12 @@ def test_a_network_without_a_compiled_form_serves_the_loop() -> None:
     solver = DNNSolver(PrimalDualNetwork(), tol=1e-9)
     other = loop(Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT, solver=solver), 5)
     np.testing.assert_allclose(other, quick, rtol=0, atol=1e-9)
+
+
+def test_sixty_four_steps_share_one_array() -> None:
+    # New room at every step would be right too, and slow.
+    controller = Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT)
+    commands = [controller.step(PAPER_Q0, 0.0) for _ in range(65)]
+    arrays = [command.dq.base for command in commands]
+    assert all(array is arrays[0] for array in arrays[:64])
+    assert arrays[64] is not arrays[0]

@@ -175,6 +175,7 @@ def test_data_of_another_size_is_refused() -> None:
 
 def test_largest_residual_does_not_lose_a_nan() -> None:
     assert Residuals(1e-9, 3e-9, 2e-9).largest == 3e-9
+    assert Residuals(0.0, 0.0, 0.0).largest == 0.0
     assert np.isnan(Residuals(1.0, float("nan"), 0.0).largest)
 
 

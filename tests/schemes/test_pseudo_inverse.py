@@ -103,3 +103,8 @@ def test_settings_make_the_scheme_again() -> None:
     settings = scheme.settings()
     assert settings.pop("name") == "pseudo-inverse"
     assert PseudoInverse(**settings) == scheme
+
+
+def test_the_gains_are_the_papers_unless_others_are_given() -> None:
+    scheme = PseudoInverse()
+    assert (scheme.position_gain, scheme.orientation_gain) == (10.2, 10.2)
