@@ -40,7 +40,7 @@ class Command:
 
     @property
     def ok(self) -> bool:
-        """Whether the command does all that the tasks ask: solved, by the network or a fallback."""
+        """True if the command does all that the tasks ask: solved, by the network or a fallback."""
         asked = self.resolution is None or self.resolution.action is Action.FALLBACK
         return asked and self._index not in self._answers.unsolved
 

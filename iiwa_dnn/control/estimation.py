@@ -30,7 +30,7 @@ from iiwa_dnn.qp.program import Vector
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """What the filter is told of the noise.
+    """Noise that the filter reckons with.
 
     Attributes:
         velocity: Standard deviation sigma of white noise on each velocity command [rad/s].

@@ -1,4 +1,4 @@
-r"""What to do at a step whose program has no solution, or one that the network did not find.
+r"""Policies for a step whose program has no solution, or one that the network did not find.
 
 A program without a solution asks for a task velocity b that no joint velocity within the limits
 gives. Every policy that goes on replaces b by one that can be had and leaves bounds and inequality
@@ -62,7 +62,7 @@ _SHARES = (1.0, 0.99, 0.9)
 
 
 class Action(IntEnum):
-    """What was done at a step in place of the network's answer; the code in a record."""
+    """Action at a step in place of the network's answer; its code in a record."""
 
     NONE = 0
     """The network's answer was taken."""
@@ -79,7 +79,7 @@ class Action(IntEnum):
 
 
 class Resolution(NamedTuple):
-    """What a policy decided at one step.
+    """Decision of a policy at one step.
 
     Attributes:
         action: What was done.

@@ -39,7 +39,7 @@ _AT_REST = np.zeros(3)
 
 @dataclass(frozen=True)
 class FollowerState:
-    """What a step came to.
+    """Result of a step.
 
     Attributes:
         q: Joint positions [rad], (n,).
