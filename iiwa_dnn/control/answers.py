@@ -25,6 +25,7 @@ class Answers:
         sizes: ``(n, m, p)`` of the programs.
         status: Status of the answers that are not in `unsolved`.
         rows: The array, (capacity, width).
+        at_figures: Column in which the figures begin.
         at_targets: Column in which the targets begin.
         unsolved: Solutions of another status, by their number.
         resolved: Decisions of a policy, by the number of the answer.
@@ -39,7 +40,8 @@ class Answers:
         program, point = (n + m + p) * (n + 1) + 2 * n, 2 * n + m + p
         self._program, self._point = slice(0, program), slice(program, program + point)
         self._x = slice(program, program + joints)
-        self._figures = slice(program + point, program + point + FIGURES)
+        self.at_figures = program + point
+        self._figures = slice(self.at_figures, self.at_figures + FIGURES)
         self._place = slice(self._figures.stop, self._figures.stop + PLACE)
         self._q = slice(self._place.stop, self._place.stop + joints)
         self.at_targets = self._q.stop
@@ -114,16 +116,6 @@ class Answers:
         """Multipliers of the inequality rows, `Solution.z`, (count, m)."""
         stop = self._point.stop - self.sizes[0]
         return self.rows[: self.count, stop - self.sizes[1] : stop]
-
-    @property
-    def iterations(self) -> Vector:
-        """Linear systems or sub-steps of each answer, (count,)."""
-        return self.rows[: self.count, self._figures.start]
-
-    @property
-    def residuals(self) -> Matrix:
-        """Primal and dual residual and gap, (count, 3)."""
-        return self.rows[: self.count, self._figures][:, 2:]
 
     @property
     def places(self) -> Matrix:

@@ -14,14 +14,17 @@ class Command:
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        resolution: Decision of the policy where the network had no answer; else None.
     """
 
-    __slots__ = ("_answers", "_index", "dq", "resolution")
+    __slots__ = ("_answers", "_index", "dq")
 
     def __init__(self, answers: Answers, index: int, dq: Vector) -> None:
         self._answers, self._index, self.dq = answers, index, dq
-        self.resolution: Resolution | None = answers.resolved.get(index)
+
+    @property
+    def resolution(self) -> Resolution | None:
+        """Decision of the policy where the network had no answer; else None."""
+        return self._answers.resolved.get(self._index)
 
     @property
     def qp(self) -> QP:
@@ -36,12 +39,13 @@ class Command:
     @property
     def action(self) -> Action:
         """The action taken; ``Action.NONE`` where the network's answer was taken."""
-        return Action.NONE if self.resolution is None else self.resolution.action
+        resolution = self.resolution
+        return Action.NONE if resolution is None else resolution.action
 
     @property
     def ok(self) -> bool:
         """True if the command does all that the tasks ask: solved, by the network or a fallback."""
-        asked = self.resolution is None or self.resolution.action is Action.FALLBACK
+        asked = self.action in (Action.NONE, Action.FALLBACK)
         return asked and self._index not in self._answers.unsolved
 
     def __repr__(self) -> str:

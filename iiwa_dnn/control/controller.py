@@ -15,7 +15,7 @@ from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.control.policies import POLICIES, Policy, resolve, stopped
-from iiwa_dnn.control.step import control_step
+from iiwa_dnn.control.room import SIZE, Room
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -27,9 +27,6 @@ Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 References = Reference | Mapping[str, Reference]
-
-_ROOM = 64
-"""Steps of a robot's loop whose programs and answers share one array."""
 
 FAR = 0.05
 """Distance from the tip to the first target from which on a warning is given [m]."""
@@ -89,13 +86,12 @@ class Controller:
         self.delay = 0.0
         self._q = np.zeros(robot.dof)
         self._begun = False
-        self._time = np.zeros(1)
 
     def __setattr__(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
         if name in _PLANNED:
             self._plan: Plan | None = None
-            self._room: Answers | None = None
+            self._room: Room | None = None
 
     def step(
         self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None = None
@@ -115,33 +111,31 @@ class Controller:
                 there is neither reference nor target.
             NoSolutionError: There is no solution and the policy is ``raise``.
         """
-        plan, answers = self._plan, self._room
-        if answers is None or plan is None or plan.version != self.solver.version:
-            plan, answers = self._prepare(q, t, target)
-        if type(q) is not np.ndarray or q.shape != plan.q.shape:
-            q = checks.finite_array("q", q, plan.q.shape)
+        plan, room = self._plan, self._room
+        if room is None or plan is None or plan.version != self.solver.version:
+            plan, room = self._prepare(q, t, target)
+        if type(q) is not np.ndarray or q.shape != plan.shape:
+            q = checks.finite_array("q", q, plan.shape)
         plan.q[:] = q
-        index = answers.count
-        if index == _ROOM:
-            self._room = answers = self.answers(self._base)
-            index = 0
-        if target is None and self._path is not None:
-            self._time[0] = t - self.delay
-            self._path(self._time, self._constants, answers.rows, index, answers.at_targets)
-        else:
-            answers.targets[index] = self.targets(t - self.delay, target)
+        index = room.count
+        if index == SIZE:
+            self._room, index = (room := room.following()), 0
+        if target is not None or room.path is None:
+            room.targets[index] = self.targets(t - self.delay, target)
+        elif t - self.delay != room.times[index]:
+            room.look_ahead(t - self.delay, index)
         try:
-            command = Command(answers, index, self._answer(plan, answers, t))
+            self._answer(plan, room, index, t)
         except BaseException:
             self._room = None  # its row is half written
             raise
-        if command.resolution is not None:
-            self.delay += self.dt * (1.0 - command.resolution.fraction)
-        return command
+        if index in room.resolved:
+            self.delay += self.dt * (1.0 - room.resolved[index].fraction)
+        return Command(room, index, room.commands[index])
 
     def _prepare(
         self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None
-    ) -> tuple[Plan, Answers]:
+    ) -> tuple[Plan, Room]:
         """Lay out whatever a step needs, and at the first step anchor the scheme."""
         posture = checks.finite_array("q", q, (self.robot.dof,))
         if not self._begun:
@@ -150,14 +144,14 @@ class Controller:
             if target is None:
                 warn_if_far(start, Target.from_data(self.targets(t)[:18]), stacklevel=4)
         plan, reference = self.plan, self.reference
-        single = isinstance(reference, Reference) and plan.frames == (self.robot.tip,)
-        self._path = reference.compiled if single and isinstance(reference, Reference) else None
         base: Vector = np.zeros(18 * len(plan.frames))
-        if self._path is not None and isinstance(reference, Reference):
-            base, self._constants = reference.base, reference.numbers
-        self._base = np.tile(base, (_ROOM, 1))
-        self._room = answers = self.answers(self._base)
-        return plan, answers
+        path, numbers = None, base[:0]
+        if isinstance(reference, Reference) and plan.frames == (self.robot.tip,):
+            path = reference.compiled
+            if path is not None:
+                base, numbers = reference.base, reference.numbers
+        self._room = room = Room(plan, self.dt, path, base, numbers)
+        return plan, room
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
@@ -239,29 +233,30 @@ class Controller:
         Returns:
             Joint velocity [rad/s], (n,), a view into `answers`.
         """
-        plan = self.plan
+        plan, index = self.plan, answers.count
         plan.q[:] = q
-        return self._answer(plan, answers, t)
+        self._answer(plan, answers, index, t)
+        return answers.dq(index)
 
-    def _answer(self, plan: Plan, answers: Answers, t: float) -> Vector:
+    def _answer(self, plan: Plan, answers: Answers, index: int, t: float) -> None:
         """Take a step at the joint positions that the plan holds."""
-        index = answers.count
-        model, data, tip, others = plan.pinocchio
-        computeJointJacobians(model, data, plan.q)
-        updateFramePlacement(model, data, tip)
-        if others or plan.inertia.size:
+        if plan.needs_more:
             plan.update(plan.q)
+        else:
+            model, data, tip, _ = plan.pinocchio
+            computeJointJacobians(model, data, plan.q)
+            updateFramePlacement(model, data, tip)
         if plan.asks:
             plan.build(answers.program(index), answers.targets[index], t)
         state = self.solver.warm_state(plan.sizes)
         if (
             state is not None
             and plan.network is not None
-            and control_step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
+            and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
         ):
             answers.count = index + 1
-            return answers.dq(index)
-        return self._solve(answers)
+        else:
+            self._solve(answers)
 
     def follow(self, q: Vector, answers: Answers, count: int) -> int:
         """Take up to `count` steps of which each answer moves `q` for one control period.
@@ -278,7 +273,7 @@ class Controller:
         state = self.solver.warm_state(plan.sizes)
         if state is None or plan.network is None or plan.asks or plan.inertia.size:
             return 0
-        rows, first, dt, step = answers.rows, answers.count, self.dt, control_step
+        rows, first, dt, step = answers.rows, answers.count, self.dt, plan.step
         codes, work, jacobian, placements = plan.compiled
         model, data, tip, others = plan.pinocchio
         plan.q[:] = q
@@ -296,7 +291,7 @@ class Controller:
         answers.count = index
         return index - first
 
-    def _solve(self, answers: Answers) -> Vector:
+    def _solve(self, answers: Answers) -> None:
         """Take a first step, one that does not succeed, or one without a compiled form."""
         plan, index = self.plan, answers.count
         checks.finite_array("q", plan.q, (plan.q.size,))
@@ -317,7 +312,6 @@ class Controller:
             answers.resolved[index] = resolution
         answers.add(qp, solution, plan.kinematics.placements[self.robot.tip_id], plan.q)
         plan.last[:] = answers.dq(index)
-        return answers.dq(index)
 
     def place(self, q: Vector) -> Vector:
         """Return the tip's placement at joint positions q (n,), as `Kinematics.placements`."""

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Callable
 
-from iiwa_dnn.control.step import NETWORK
+import numpy as np
+from numba import typeof
+from numba.core.dispatcher import Dispatcher
+
+from iiwa_dnn.control.step import NETWORK, control_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Status, Vector
@@ -27,9 +31,12 @@ class Plan:
         network: The solver's compiled form, if it has one.
         pinocchio: `Kinematics.pinocchio`.
         compiled: Arguments of `control_step`: codes, work, jacobian, placements.
+        step: `control_step`, entered without looking at the types of its arguments again.
         last: Last command [rad/s], (n,), a view into the work array.
         q: Joint positions [rad], (n,), likewise.
+        shape: Shape of q.
         inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
+        needs_more: Whether more kinematics than Jacobian and tip are asked for.
         asks: Whether Python code has to be asked for (a part of) the program.
         frames: Names of the frames that tasks track, in the order of the targets.
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
@@ -82,6 +89,11 @@ class Plan:
         self._constants = work[1 + 2 * dof + NETWORK + inertia.size :]
         self.pinocchio = self.kinematics.pinocchio
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
+        self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
+        self.step: Callable[..., bool] = control_step
+        if isinstance(control_step, Dispatcher):
+            given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)
+            self.step = control_step.compile(tuple(map(typeof, given)))
 
     def update(self, q: Vector) -> None:
         """Bring the kinematics to joint positions q (n,) [rad]."""

@@ -99,10 +99,11 @@ class DNNSolver:
 
     def warm_state(self, sizes: Sizes) -> Vector | None:
         """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
-        warm = self._warm()
-        if warm is None or warm[1] != sizes or warm[0] is not self.network:
+        try:
+            owner, last, state = self._kept[-1]
+        except IndexError:  # another thread has it, or there was no call yet
             return None
-        return warm[2]
+        return state if last == sizes and owner is self.network else None
 
     def numbers(self, duration: float = 0.0) -> Vector | None:
         """Collect the numbers that a compiled control step needs to stand in for this solver.

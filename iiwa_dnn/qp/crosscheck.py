@@ -119,6 +119,9 @@ class CrossCheck:
             Gaps and residuals, one row a program and one column a reference.
         """
         n = sizes[0]
+        if not self.solvers:
+            nothing = np.empty((len(x), 0))
+            return Agreement(nothing, nothing, nothing)
         points, residuals = self._answers(self.solvers, programs, sizes)
         for i, j in np.argwhere(~(residuals <= self.reference_tolerance)):
             # ProxQP calls one in some thousand programs infeasible that are not.
@@ -145,7 +148,7 @@ class CrossCheck:
         points = np.full((len(programs), len(solvers), 2 * n + m + p), np.nan)
         residuals = np.empty(points.shape[:2])
         # Solvers may take minutes over one NaN.
-        askable = ~np.isnan(programs).any(axis=1) & (len(solvers) > 0)
+        askable = ~np.isnan(programs).any(axis=1)
         with warnings.catch_warnings():
             # They speak of dense matrices for OSQP, and of programs that are not solved, as the
             # residual does. Once a block: for each program it would take a tenth of ProxQP's time.

@@ -41,6 +41,7 @@ class Kinematics:
         self._model, self._data = robot.model, robot.model.createData()
         ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
         self.frame_ids = tuple(dict.fromkeys(ids))
+        self._ids: dict[str, int] = {}
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.
         self.jacobian: _Array = self._data.J.T.reshape(robot.dof, 6)
@@ -61,12 +62,18 @@ class Kinematics:
         for index in self.frame_ids:
             pin.updateFramePlacement(model, data, index)
 
-    def frame(self, index: int) -> tuple[_Array, _Array]:
+    def frame(self, name: str) -> tuple[_Array, _Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.
 
         The Jacobian's rows are [linear; angular] at the frame's origin, along the world's axes.
+
+        Raises:
+            NotFoundError: The robot has no frame of that name.
         """
         model, data = self._model, self._data
+        if name not in self._ids:
+            self._ids[name] = self.robot.frame_id(name)
+        index = self._ids[name]
         place = pin.updateFramePlacement(model, data, index)
         jacobian = pin.getFrameJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)
         return place.homogeneous, jacobian

@@ -60,8 +60,7 @@ class Step:
         Raises:
             NotFoundError: The robot has no frame of that name.
         """
-        index = self.robot.tip_id if name is None else self.robot.frame_id(name)
-        return FrameState(*self._kinematics.frame(index))
+        return FrameState(*self._kinematics.frame(self.robot.tip if name is None else name))
 
     def target(self, name: str | None = None) -> Target:
         """Return the target of a frame that some task tracks; None stands for the tip."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from iiwa_dnn.control.answers import Answers
+from iiwa_dnn.control.answers import FIGURES, Answers
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled, larger
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import Scheme
 
@@ -49,15 +51,11 @@ class History:
     def add_block(self, first: int, steps: int, stages: int, answers: Answers) -> None:
         """Take in the answers of a stretch of steps, each of so many stages."""
         rows = slice(first, first + steps)
-        places = answers.places[::stages]
-        # A placement holds the rotation column by column.
-        self._rotation[rows] = places[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)
-        self._position[rows] = places[:, 9:]
-        at_steps = answers.targets[: steps * stages : stages]
-        self._position_desired[rows] = at_steps[:, :3]
-        self._rotation_desired[rows] = at_steps[:, 3:12].reshape(-1, 3, 3)
-        self._kkt_residual[rows] = answers.residuals.reshape(steps, -1).max(axis=1)
-        self._iterations[rows] = answers.iterations.reshape(steps, stages).sum(axis=1)
+        take_in(
+            answers.rows[: steps * stages], stages, answers.at_figures, answers.at_targets,
+            self._position[rows], self._rotation[rows], self._position_desired[rows],
+            self._rotation_desired[rows], self._kkt_residual[rows], self._iterations[rows],
+        )  # fmt: skip
         scheme = self._controller.scheme
         # A scheme of one's own may have an index of its own, or none.
         index = getattr(type(scheme), "kinetic_index", None)
@@ -98,6 +96,44 @@ class History:
             array.setflags(write=False)  # so that the record need not copy it
         cut = {name: array[: steps + 1] for name, array in samples.items()}
         return cut | {name: array[:steps] for name, array in of_steps.items()}
+
+
+@compiled
+def take_in(
+    rows: Matrix, stages: int, at_figures: int, at_targets: int, position: Matrix,
+    rotation: NDArray[np.float64], position_desired: Matrix,
+    rotation_desired: NDArray[np.float64], residual: Vector, iterations: NDArray[np.int64],
+) -> None:  # fmt: skip
+    """Copy what `Answers.rows` say of N steps, each of so many stages, into arrays of a record.
+
+    Args:
+        rows: Answers, (N stages, width).
+        stages: Rows of a step; poses and targets are the first one's.
+        at_figures: Column of the figures, the tip's placement after them.
+        at_targets: Column of the targets.
+        position: Position of the tip [m], (N, 3).
+        rotation: Its orientation, (N, 3, 3).
+        position_desired: Desired position [m], (N, 3).
+        rotation_desired: Desired orientation, (N, 3, 3).
+        residual: Largest KKT residual of the stages, (N,).
+        iterations: Linear systems or sub-steps of all stages, (N,).
+    """
+    at_place = at_figures + FIGURES
+    for k in range(len(position)):
+        row = rows[k * stages]
+        for i in range(3):
+            position[k, i] = row[at_place + 9 + i]
+            position_desired[k, i] = row[at_targets + i]
+            for j in range(3):
+                # A placement holds the rotation column by column, a target row by row.
+                rotation[k, i, j] = row[at_place + 3 * j + i]
+                rotation_desired[k, i, j] = row[at_targets + 3 + 3 * i + j]
+        residual[k], iterations[k] = 0.0, 0
+        for stage in range(stages):
+            figures = rows[k * stages + stage, at_figures:]
+            iterations[k] += int(figures[0])
+            for i in range(2, FIGURES):
+                residual[k] = larger(residual[k], figures[i])
 
 
 def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:

@@ -175,12 +175,12 @@ class Simulation:
         if not plain or not isinstance(plant, IdealPlant):
             return 0
         steps = self._controller.follow(plant.state, self._answers, count - taken)
-        first = done + taken
-        rows = slice(taken, taken + steps)
-        self._history.q[first : first + steps] = self._answers.q[rows]
-        self._history.q[first + steps] = plant.state
-        self._history.dq[first : first + steps] = self._answers.all_dq[rows]
-        self._history.dq_solver[first : first + steps] = self._answers.all_dq[rows]
+        if not steps:
+            return 0
+        history, answers, rows = self._history, self._answers, slice(taken, taken + steps)
+        to = slice(done + taken, done + taken + steps)
+        history.q[to], history.q[to.stop] = answers.q[rows], plant.state
+        history.dq[to] = history.dq_solver[to] = answers.all_dq[rows]
         return steps
 
     def _step(self, k: int) -> str:

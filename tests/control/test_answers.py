@@ -66,8 +66,8 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(
         np.testing.assert_array_equal(answers.places[k][9:], conf.position)
         np.testing.assert_array_equal(answers.q[k], q)
         np.testing.assert_array_equal(answers.all_x[k], one.x)
-        assert answers.residuals[k].tolist() == list(one.residuals)
-        assert answers.iterations[k] == one.iterations
+        assert list(answers.solution(k).residuals) == list(one.residuals)
+        assert answers.solution(k).iterations == one.iterations
     np.testing.assert_array_equal(answers.programs, others.programs)
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
 

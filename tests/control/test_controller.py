@@ -14,7 +14,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Status
-from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.references import Heart
+from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 
 SCHEME = DoubleIndicator(home=PAPER_Q0)
@@ -119,3 +120,40 @@ def test_an_unknown_mode_is_named() -> None:
 def test_a_bad_period_is_named(dt: float) -> None:
     with pytest.raises(InvalidInputError, match=r"^dt\b"):
         controller_of(SCHEME, mode="continuous", dt=dt)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 1e-13, 3e-4])
+def test_targets_sampled_ahead_are_those_of_the_time_asked_for(jitter: float) -> None:
+    robot = load_robot("iiwa7")
+    start = Configuration(robot, robot.start_posture())
+    reference = Heart().anchored(start)
+    ahead = Controller(robot, DoubleIndicator(), reference, dt=1e-3)
+    one_by_one = Controller(robot, DoubleIndicator(), dt=1e-3)
+    shifts = np.random.default_rng(3).uniform(0.0, jitter, 200)
+    shifts[150:] += 0.005  # the clock jumps
+    q = start.q
+    for k in range(200):
+        t = k * 1e-3 + shifts[k]
+        dq = ahead.step(q, t).dq
+        np.testing.assert_allclose(dq, one_by_one.step(q, t, reference.at(t)).dq, rtol=0, atol=1e-9)
+        q = q + 1e-3 * dq
+
+
+def test_targets_sampled_ahead_follow_a_changed_period_and_delay() -> None:
+    robot = load_robot("iiwa7")
+    start = Configuration(robot, robot.start_posture())
+    reference = Heart().anchored(start)
+    controller = Controller(robot, DoubleIndicator(), reference, dt=1e-3)
+    for k in range(10):
+        controller.step(start.q, k * 1e-3)
+    controller.delay = 0.5
+    late = controller.step(start.q, 0.51)
+    controller.delay, controller.dt = 0.0, 2e-3
+    for k in range(10):
+        early = controller.step(start.q, 2e-3 * k)
+    fresh = Controller(robot, DoubleIndicator(), dt=1e-3)
+    want = fresh.step(start.q, 0.0, reference.at(0.01)).dq
+    np.testing.assert_allclose(late.dq, want, rtol=0, atol=1e-7)
+    fresh.dt = 2e-3
+    want = fresh.step(start.q, 0.0, reference.at(0.018)).dq
+    np.testing.assert_allclose(early.dq, want, rtol=0, atol=1e-7)
