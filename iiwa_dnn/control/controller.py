@@ -142,7 +142,7 @@ class Controller:
             start = Configuration(self.robot, posture)
             self.anchor(start)
             if target is None:
-                warn_if_far(start, Target.from_data(self.targets(t)[:18]), stacklevel=4)
+                self.warn_if_far(start, t, stacklevel=4)
         plan, reference = self.plan, self.reference
         base: Vector = np.zeros(18 * len(plan.frames))
         path, numbers = None, base[:0]
@@ -152,6 +152,18 @@ class Controller:
                 base, numbers = reference.base, reference.numbers
         self._room = room = Room(plan, self.dt, path, base, numbers)
         return plan, room
+
+    def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
+        """Warn where a first target is far from its frame: most likely it was not anchored."""
+        for name, target in zip(self.plan.frames, self.targets(t).reshape(-1, 18), strict=True):
+            distance = float(np.linalg.norm(target[:3] - start.frame(name).position))
+            if distance > FAR:
+                where = "tip" if name == self.robot.tip else f"frame {name}"
+                warnings.warn(
+                    f"the reference begins {distance:.3g} m from the {where}; to begin where it "
+                    "is: reference.anchored(configuration)",
+                    stacklevel=stacklevel,
+                )
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
@@ -310,14 +322,13 @@ class Controller:
                 resolution = stopped(qp, solution)  # it is no longer a number
             qp, solution = resolution.qp, resolution.solution
             answers.resolved[index] = resolution
-        answers.add(qp, solution, plan.kinematics.placements[self.robot.tip_id], plan.q)
+        answers.add(qp, solution, plan.place, plan.q)
         plan.last[:] = answers.dq(index)
 
     def place(self, q: Vector) -> Vector:
-        """Return the tip's placement at joint positions q (n,), as `Kinematics.placements`."""
+        """Return the first frame's placement at joint positions q (n,), (12,)."""
         self.plan.update(q)
-        place: Vector = self.plan.kinematics.placements[self.robot.tip_id]
-        return place
+        return self.plan.place
 
     def program_at(self, q: Vector, targets: Vector, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (18 frames,)."""
@@ -330,14 +341,3 @@ class Controller:
 
 
 _PLANNED = frozenset({"robot", "scheme", "reference", "dt", "mode", "policy", "solver"})
-
-
-def warn_if_far(start: Configuration, first: Target, stacklevel: int) -> None:
-    """Warn where the first target is far from the tip: most likely it was not anchored."""
-    distance = float(np.linalg.norm(first.position - start.position))
-    if distance > FAR:
-        warnings.warn(
-            f"the reference begins {distance:.3g} m from the tip; to begin where the tip is: "
-            "reference.anchored(configuration)",
-            stacklevel=stacklevel,
-        )

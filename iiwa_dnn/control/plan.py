@@ -39,6 +39,7 @@ class Plan:
         needs_more: Whether more kinematics than Jacobian and tip are asked for.
         asks: Whether Python code has to be asked for (a part of) the program.
         frames: Names of the frames that tasks track, in the order of the targets.
+        place: Placement of the first of them, (12,), as `Kinematics.placements`.
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
     """
 
@@ -75,6 +76,7 @@ class Plan:
             inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
         self.asks = layout is None or bool(layout.custom)
         self.frames = (robot.tip,) if layout is None else layout.target_frames
+        self.place: Vector = self.kinematics.placements[codes[5]]
         self.row_weights = None if layout is None else layout.row_weights
         self.version = solver.version
         self.expected = Status.SOLVED if converged else Status.ADVANCED

@@ -33,15 +33,20 @@ def position_error(record: Record) -> FloatArray:
 
 
 def orientation_error(record: Record) -> FloatArray:
-    """Compute the angle between the tip's orientation and the desired one [rad], (N+1,), in [0, π].
+    """Compute the angle between the tip's orientation and the desired one [rad], (N+1,)."""
+    return rotation_angle(record.rotation, record.rotation_desired)
+
+
+def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
+    """Compute the angle between two orientations (..., 3, 3) [rad], (...), in [0, π].
 
     With R_e = R_desiredᵀ R the angle is atan2(‖vee((R_e − R_eᵀ)/2)‖, (tr R_e − 1)/2). The usual
     arccos of the second argument alone cannot tell angles below 1e-8 rad from zero.
     """
-    relative = np.swapaxes(record.rotation_desired, 1, 2) @ record.rotation
-    skew = 0.5 * (relative - np.swapaxes(relative, 1, 2))
-    sine = np.linalg.norm(skew[:, [2, 0, 1], [1, 2, 0]], axis=1)
-    cosine = 0.5 * (np.trace(relative, axis1=1, axis2=2) - 1.0)
+    relative = np.swapaxes(desired, -1, -2) @ rotation
+    skew = 0.5 * (relative - np.swapaxes(relative, -1, -2))
+    sine = np.linalg.norm(skew[..., [2, 0, 1], [1, 2, 0]], axis=-1)
+    cosine = 0.5 * (np.trace(relative, axis1=-1, axis2=-2) - 1.0)
     angle: FloatArray = np.arctan2(sine, cosine)
     return angle
 
@@ -74,8 +79,9 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
-    (torques, settled error, recovery from a push), a run in which a bound, an inequality row, a
-    policy or clipping acted ``incidents``.
+    (torques, settled error, recovery from a push), one that tracks several frames ``frames``
+    (largest errors of those beside the first), a run in which a bound, an inequality row, a policy
+    or clipping acted ``incidents``.
 
     Args:
         record: The run.
@@ -106,11 +112,30 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "crosscheck": _crosscheck(record),
             **_physics(record, np.linalg.norm(error, axis=1)),
             **_incidents(record),
+            **_frames(record),
             "settings": {key: value for key, value in settings.items() if key != "versions"},
             "versions": settings.get("versions", {}),
         }
     )
     return metrics
+
+
+def _frames(record: Record) -> dict[str, Any]:
+    """Largest errors of the tracked frames beside the first."""
+    place, wanted = record.frame_position, record.frame_position_desired
+    turn, desired = record.frame_rotation, record.frame_rotation_desired
+    if place is None or wanted is None or turn is None or desired is None:
+        return {}
+    distances = np.linalg.norm(place - wanted, axis=2).max(axis=0)
+    angles = rotation_angle(turn, desired).max(axis=0)
+    return {
+        "frames": {
+            name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
+            for name, distance, angle in zip(
+                record.settings["frames"], distances, angles, strict=True
+            )
+        }
+    }
 
 
 def _max(values: FloatArray) -> float | None:

@@ -75,6 +75,11 @@ class Record:
         row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
             (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
         blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
+        frame_position: Positions of the f tracked frames that ``settings["frames"]`` names, beside
+            the one that ``settings["tip"]`` names [m], (N+1, f, 3).
+        frame_rotation: Their orientations, (N+1, f, 3, 3).
+        frame_position_desired: Their desired positions [m], (N+1, f, 3).
+        frame_rotation_desired: Their desired orientations, (N+1, f, 3, 3).
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
@@ -103,6 +108,10 @@ class Record:
     blocking: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
     row_multiplier: Annotated[FloatArray | None, ("N", "m"), np.float64] = None
     blocking_rows: Annotated[NDArray[np.int8] | None, ("N", "m"), np.int8] = None
+    frame_position: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
+    frame_rotation: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
+    frame_position_desired: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
+    frame_rotation_desired: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
@@ -112,8 +121,10 @@ class Record:
             array = _read_only(name, getattr(self, name), len(shape), kind)
             object.__setattr__(self, name, array)
         sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
-        for rows in (self.blocking_rows, self.row_multiplier):
-            sizes |= {} if rows is None else {"m": rows.shape[1]}
+        for size, columns in (
+            ("m", self.blocking_rows), ("m", self.row_multiplier), ("f", self.frame_position)
+        ):  # fmt: skip
+            sizes |= {} if columns is None else {size: columns.shape[1]}
         for name, (shape, _) in arrays.items():
             array = getattr(self, name)
             expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)

@@ -36,7 +36,7 @@ from iiwa_dnn.schemes.tasks import (
 )
 
 HEADER, BLOCK = 7, 7
-"""Entries of the codes' head (n, m, p, joints, blocks, tip, inertia) and of each block after it."""
+"""Entries of the codes' head (n, m, p, joints, blocks, frame, inertia) and of each block."""
 
 
 class Block(NamedTuple):
@@ -60,7 +60,8 @@ class Layout:
         robot: The robot.
         sizes: ``(n, m, p)`` of the program.
         blocks: The parts in the order costs, tasks, limits.
-        target_frames: Names of the frames that tasks track, in the order of the targets' array.
+        target_frames: Names of the frames that tasks track, in the order of the targets' array;
+            the tip's where none does.
         frames: Names of all frames that parts name.
         codes: What compiled code reads of the layout: head, joints that move each frame, blocks.
         numbers: Constants of the compiled parts, one after the other.
@@ -99,8 +100,11 @@ class Layout:
         self.needs_inertia = any(
             isinstance(cost, KineticEnergy) and cost.kinetic == "inertia" for cost in costs
         )
-        names = [task.frame_name(robot) for task in tasks]
-        self.target_frames = tuple(dict.fromkeys(names)) or (robot.tip,)
+        names = dict.fromkeys(task.frame_name(robot) for task in tasks if task.tracks)
+        # The tip first, where it is tracked: the record's first frame.
+        self.target_frames = tuple(sorted(names, key=lambda name: name != robot.tip)) or (
+            robot.tip,
+        )
         self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames]))
         self._encode()
 
@@ -113,8 +117,9 @@ class Layout:
         starts = [0, *accumulate(map(len, constants))]
         self.numbers: Vector = np.concatenate([np.zeros(0), *constants])
         dof, count = self.robot.dof, len(compiled)
-        head = [*self.sizes, dof, count, self.robot.tip_id, int(self.needs_inertia)]
         kinematics = Kinematics(self.robot, self.frames)
+        first = self.robot.frame_id(self.target_frames[0])
+        head = [*self.sizes, dof, count, first, int(self.needs_inertia)]
         blocks: list[int] = []
         for block, at in zip(compiled, starts, strict=False):
             name = block.part.frame_name(self.robot)

@@ -122,11 +122,13 @@ class Task(Part):
     r"""Equality rows A x = b, or with a `weight` w the cost :math:`\tfrac12 w\,\|A x - b\|^2`.
 
     Attributes:
+        tracks: Whether the task asks for a target of its frame.
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
             the task yield (`iiwa_dnn.control.policies`).
         weight: None for hard rows, else the weight of the soft task.
     """
 
+    tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.control.answers import FIGURES, Answers
-from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.controller import Controller, References
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled, larger
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.simulation.frames import TrackedFrames
 
 COMPLETED = "completed"
 
@@ -41,6 +43,7 @@ class History:
         self._rotation_desired = np.empty((steps + 1, 3, 3))
         self._kinetic_index, self._kkt_residual = np.zeros(steps), np.empty(steps)
         self._iterations = np.empty(steps, dtype=np.int64)
+        self._frames = TrackedFrames(steps, controller.robot, controller.plan.frames)
 
     def stay(self, k: int) -> None:
         """Let the robot stay where it is in step k."""
@@ -56,6 +59,7 @@ class History:
             self._position[rows], self._rotation[rows], self._position_desired[rows],
             self._rotation_desired[rows], self._kkt_residual[rows], self._iterations[rows],
         )  # fmt: skip
+        self._frames.add(first, self.q[rows], answers.targets[: steps * stages : stages])
         scheme = self._controller.scheme
         # A scheme of one's own may have an index of its own, or none.
         index = getattr(type(scheme), "kinetic_index", None)
@@ -68,11 +72,13 @@ class History:
                 conf = Configuration.from_checked(robot, self.q[k])
                 self._kinetic_index[k] = scheme.kinetic_index(conf, self.dq[k])
 
-    def end(self, steps: int, last: Configuration, target: Vector) -> None:
-        """Take in where the tip ended and where it should have."""
-        self._position[steps], self._rotation[steps] = last.position, last.rotation
+    def end(self, steps: int, targets: Matrix) -> None:
+        """Take in where the frames ended and where they should have, (1, 18 frames)."""
+        place, target = self._controller.place(self.q[steps]), targets[0]
+        self._position[steps], self._rotation[steps] = place[9:], place[:9].reshape(3, 3).T
         self._position_desired[steps] = target[:3]
         self._rotation_desired[steps] = target[3:12].reshape(3, 3)
+        self._frames.add(steps, self.q[steps : steps + 1], targets)
 
     def arrays(self, steps: int) -> dict[str, Any]:
         """Return the record's arrays by name, protected and cut to the steps that were taken."""
@@ -82,6 +88,7 @@ class History:
             "rotation": self._rotation,
             "position_desired": self._position_desired,
             "rotation_desired": self._rotation_desired,
+            **self._frames.arrays,
         }
         of_steps = {
             "dq": self.dq,
@@ -142,7 +149,8 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
     integrator = solver.settler if controller.mode == "converged" else solver.follower
     return {
         "robot": robot.name,
-        "tip": robot.tip,
+        "tip": controller.plan.frames[0],
+        "frames": list(controller.plan.frames[1:]),
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
@@ -152,4 +160,12 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
         "network": solver.network.settings(),
         "integrator": integrator.settings(),
         "scheme": controller.scheme.settings(),
+        "reference": _settings_of(controller.reference),
     }
+
+
+def _settings_of(reference: References | None) -> dict[str, Any]:
+    """Name and parameters of a reference, or of each frame's."""
+    if not isinstance(reference, Mapping):
+        return {} if reference is None else reference.settings()
+    return {"name": "frames"} | {name: path.settings() for name, path in reference.items()}

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.controller import Controller, Mode, warn_if_far
+from iiwa_dnn.control.controller import Controller, Mode, References
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.control.policies import Action, Policy
@@ -19,7 +19,7 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.checkpool import CheckPool
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
-from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -56,7 +56,7 @@ class Simulation:
         self,
         robot: Robot,
         scheme: Scheme,
-        reference: Reference,
+        reference: References,
         q0: ArrayLike,
         *,
         plant: Plant | None = None,
@@ -78,7 +78,8 @@ class Simulation:
     ) -> None:
         """Check the arguments and draw the noise; nothing runs yet. Arguments: see `simulate`."""
         checks.positive("dt", dt)
-        length = reference.duration if duration is None else duration
+        several = reference if isinstance(reference, Mapping) else {"": reference}
+        length = max(r.duration for r in several.values()) if duration is None else duration
         checks.positive("duration", length)
         checks.one_of("motion", motion, tuple(MOTIONS))
         self._ideal = plant is None or isinstance(plant, IdealPlant)
@@ -99,7 +100,9 @@ class Simulation:
         )
         self._controller.anchor(start)
         self._plant.start(robot, self._q0, dt, seed)
-        warn_if_far(start, Target.from_data(self._controller.sample(np.zeros(1))[0, :18]), 4)
+        self._controller.warn_if_far(start, 0.0, stacklevel=4)
+        if integral_gain and len(self._controller.plan.frames) > 1:
+            raise InvalidInputError("integral_gain", "is for one tracked frame", integral_gain)
         self._motion = MOTIONS[motion]
         self._integral = IntegralFeedback(integral_gain) if integral_gain else None
         self._chain = chain = SignalChain(
@@ -107,7 +110,6 @@ class Simulation:
         )
         self._misled = chain.misleads or not self._ideal
         self._altered = chain.alters or motion != "euler"
-        scheme = self._controller.scheme
         layout = self._controller.plan.layout
         self._rows = [] if layout is None else layout.row_names()
         shared = {
@@ -116,7 +118,7 @@ class Simulation:
             "integral_gain": integral_gain, "policy": policy, "seed": seed,
             "disturbance": None if disturbance is None else disturbance.settings(),
             "estimator": None if estimator is None else estimator.settings(),
-            "rows": self._rows, "reference": reference.settings(), "check": self._check.settings(),
+            "rows": self._rows, "check": self._check.settings(),
         }  # fmt: skip
         self._settings = shared | settings_of(self._controller, self._q0) | self._plant.settings()
         packages = (*_PACKAGES, *self._plant.packages)
@@ -154,7 +156,7 @@ class Simulation:
                     progress(taken)
             agreement = pool.finish().worst_of(stages)
         last = self._controller.sample(np.array([done * self._dt - self._controller.delay]))
-        history.end(done, Configuration(self._robot, history.q[done]), last[0])
+        history.end(done, last)
         return self._record(done, status, agreement, time.perf_counter() - began)
 
     def _restart(self) -> None:
@@ -272,7 +274,7 @@ _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osq
 def simulate(
     robot: Robot,
     scheme: Scheme,
-    reference: Reference,
+    reference: References,
     q0: ArrayLike,
     *,
     plant: Plant | None = None,
@@ -298,24 +300,22 @@ def simulate(
     Args:
         robot: The robot, n joints, with the limits that the scheme keeps.
         scheme: Builds the programs; where it has no home, `q0` becomes it.
-        reference: Path of the tip; anchored by the caller.
+        reference: Path of the tip, or paths by frame name; anchored by the caller.
         q0: Joint positions at the start [rad], (n,).
-        plant: The arm that moves; None takes the ideal one, which moves as it is told
-            (`MujocoPlant` has masses, motors and friction).
+        plant: The arm that moves; None: the ideal one (`MujocoPlant` has masses and motors).
         dt: Control period [s].
         duration: Length of the run [s], rounded to whole steps; None takes the reference's.
         mode: ``"converged"`` or ``"continuous"`` (`iiwa_dnn.Controller`).
         motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take ``euler``.
         noise: Standard deviation of white noise on each joint, in the unit of the quantity it is
             added to: [rad/s], or [rad] for ``measurement``.
-        noise_at: ``"velocity"``, the one commanded; ``"network"``, x of the network's state;
-            ``"measurement"``, the joint positions that the controller sees.
+        noise_at: ``"velocity"``, commanded; ``"network"``, its x; ``"measurement"``, read joints.
         disturbance: Added to every joint's velocity beside the noise.
-        filter_window: Samples of the moving average; 1 is no filter.
+        filter_window: Samples of the moving average; 1: no filter.
         integral_gain: Feedback of the error's integral [1/s^2] (`iiwa_dnn.control.feedback`).
-        estimator: Noise model of a Kalman filter through which the controller sees the joint
-            positions and whose bias it takes off its command; None: it sees what is measured.
-        policy: At a step without a solution: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
+        estimator: Noise model of a Kalman filter of the joint positions, whose bias the controller
+            takes off its command; None: it sees what is measured.
+        policy: At steps without solution: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
         seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the last
             digits of the gap to ProxQP, which does not repeat itself.
         tol: Absolute tolerance on the KKT residuals in ``converged`` mode.

@@ -1,0 +1,93 @@
+"""Runs that track several frames, each with its own reference."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+from helpers_simulation import paper_robot, paper_start
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.references import Circle, Line, Reference
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.schemes import CyclicMotion, JointLimits, PositionTask, Scheme
+from iiwa_dnn.simulation import simulate
+
+ELBOW = "iiwa7_link_4"
+
+
+def scheme(*frames: str | None) -> Scheme:
+    tasks = [PositionTask(frame=name) for name in frames]
+    return Scheme([CyclicMotion()], tasks, [JointLimits()])
+
+
+def references(*frames: str) -> dict[str, Reference]:
+    start = paper_start()
+    paths: list[Reference] = [Circle(radius=0.02, period=1.0), Line(np.array([0.0, 0.01, 0.0]), 1.0)]
+    return {
+        name: path.anchored(start.frame(name)) for name, path in zip(frames, paths, strict=False)
+    }
+
+
+def poses(record: Record, frame: str) -> np.ndarray:
+    # Pinocchio's own forward kinematics, not the views that the package reads.
+    model = paper_robot().model
+    data = model.createData()
+    found = []
+    for q in record.q:
+        pin.framesForwardKinematics(model, data, q)
+        found.append(data.oMf[model.getFrameId(frame, pin.FrameType.BODY)].copy())
+    return np.array([pose.homogeneous for pose in found])
+
+
+def test_every_tracked_frame_follows_its_reference_and_is_recorded(tmp_path: Path) -> None:
+    robot, start = paper_robot(), paper_start()
+    # The elbow has three coordinates but two joints to move it sideways; the tip takes the rest.
+    paths = references(robot.tip, ELBOW)
+    both = Scheme(
+        [CyclicMotion()],
+        [PositionTask(), PositionTask(frame=ELBOW, weight=0.5)],
+        [JointLimits()],
+    )
+    record = simulate(robot, both, paths, start.q, dt=1e-3, duration=1.0)
+    assert failures(record) == []
+    assert record.settings["tip"] == robot.tip and record.settings["frames"] == [ELBOW]
+    recorded = poses(record, ELBOW)
+    np.testing.assert_allclose(record.frame_position[:, 0], recorded[:, :3, 3], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(record.frame_rotation[:, 0], recorded[:, :3, :3], atol=1e-14)
+    wanted = paths[ELBOW].sample(record.t)
+    np.testing.assert_array_equal(record.frame_position_desired[:, 0], wanted.position)
+    np.testing.assert_array_equal(record.frame_rotation_desired[:, 0], wanted.rotation)
+    metrics = compute_metrics(record)
+    distance = np.linalg.norm(recorded[:, :3, 3] - wanted.position, axis=1).max()
+    assert metrics["frames"][ELBOW]["max_position_error_m"] == pytest.approx(distance)
+    assert metrics["max_position_error_m"] < 1e-4
+    json.dumps(metrics)
+    record.save(tmp_path / "record.npz")
+    again = Record.load(tmp_path / "record.npz")
+    np.testing.assert_array_equal(again.frame_position, record.frame_position)
+
+
+def test_a_run_without_a_task_of_the_tip_records_the_frame_that_it_tracks() -> None:
+    robot, start = paper_robot(), paper_start()
+    path = Circle(radius=0.01, period=0.5).anchored(start.frame(ELBOW))
+    soft = Scheme([CyclicMotion(weight=1e-3)], [PositionTask(frame=ELBOW, weight=1.0)])
+    record = simulate(robot, soft, {ELBOW: path}, start.q, dt=1e-3)
+    assert record.settings["tip"] == ELBOW
+    np.testing.assert_allclose(record.position, poses(record, ELBOW)[:, :3, 3], atol=1e-14)
+    np.testing.assert_array_equal(record.position_desired, path.sample(record.t).position)
+    assert record.frame_position is None
+
+
+def test_a_frame_without_a_reference_and_an_integral_over_two_frames_are_refused() -> None:
+    robot, start = paper_robot(), paper_start()
+    paths = references(robot.tip, ELBOW)
+    with pytest.raises(InvalidInputError, match=rf"^reference.*{ELBOW}"):
+        simulate(robot, scheme(None, ELBOW), {robot.tip: paths[robot.tip]}, start.q)
+    with pytest.raises(InvalidInputError, match=r"^integral_gain"):
+        simulate(robot, scheme(None, ELBOW), paths, start.q, integral_gain=1.0)
