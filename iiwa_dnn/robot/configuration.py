@@ -107,6 +107,14 @@ class Configuration(FrameState):
             self._inertia = pin.crba(model, data, self._q)  # a copy of data's
         return read_only(self._inertia)
 
+    @property
+    def centre_of_mass(self) -> tuple[_Array, _Array]:
+        """Position of the centre of mass [m], (3,), and its Jacobian, (3, n), along world axes."""
+        model = self._robot.model
+        data = model.createData()
+        jacobian = pin.jacobianCenterOfMass(model, data, self._q)
+        return data.com[0].copy(), jacobian.reshape(3, -1)
+
     def frame(self, name: str) -> FrameState:
         """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.
 

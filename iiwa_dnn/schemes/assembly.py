@@ -161,25 +161,28 @@ class Layout:
             InvalidInputError: A part answers with an array of a wrong shape; it is named.
         """
         qp = QP.from_data(data, self.sizes)
-        n = self.sizes[0]
+        n, dof = self.sizes[0], self.robot.dof
         for part, start, rows in self.custom:
             name, at = type(part).__name__, slice(start, start + rows)
             if isinstance(part, Cost):
                 P, q = part.quadratic(step)
-                qp.P[:] += _shaped(name, "P", P, (n, n))
-                qp.q[:] += _shaped(name, "q", q, (n,))
+                width = n if len(P) == n else dof  # the slack variables may be left out
+                qp.P[:width, :width] += _shaped(name, "P", P, (width, width))
+                qp.q[:width] += _shaped(name, "q", q, (width,))
             elif isinstance(part, Task):
                 A, b = part.equations(step)
-                A, b = _shaped(name, "A", A, (rows, n)), _shaped(name, "b", b, (rows,))
+                width = n if np.shape(A)[-1] == n else dof
+                A, b = _shaped(name, "A", A, (rows, width)), _shaped(name, "b", b, (rows,))
                 if part.weight is None:
-                    qp.A[at], qp.b[at] = A, b
+                    qp.A[at, :width], qp.b[at] = A, b
                 else:
-                    qp.P[:] += part.weight * A.T @ A
-                    qp.q[:] -= part.weight * A.T @ b
+                    qp.P[:width, :width] += part.weight * A.T @ A
+                    qp.q[:width] -= part.weight * A.T @ b
             elif isinstance(part, Limit):
                 if rows:
                     G, h = part.inequalities(step)
-                    qp.G[at] = _shaped(name, "G", G, (rows, n))
+                    width = n if np.shape(G)[-1] == n else dof
+                    qp.G[at, :width] = _shaped(name, "G", G, (rows, width))
                     qp.h[at] = _shaped(name, "h", h, (rows,))
                 if (bounds := part.bounds(step)) is not None:
                     lower, upper = (_shaped(name, "bounds", bound, (n,)) for bound in bounds)

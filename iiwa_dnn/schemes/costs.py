@@ -12,10 +12,10 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.parts import Cost
+from iiwa_dnn.schemes.parts import Cost, Step
 
 Kinetic = Literal["identity", "inertia"]
 KINETICS: tuple[Kinetic, ...] = ("identity", "inertia")
@@ -136,3 +136,52 @@ def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, 
     for i in range(dof):
         data[i * n + i] += weight
         data[n * n + i] += weight * gain * (q[i] - numbers[at + 2 + i])
+
+
+@dataclass(frozen=True)
+class Manipulability(Cost):
+    r"""Motion towards postures in which the tool moves with equal ease in all directions.
+
+    .. math::  -w\,\nabla \mu(q)^T \dot q, \qquad \mu = \sqrt{\det J J^T}, \qquad
+        \partial_i \mu = \mu\,\mathrm{tr}\bigl((J J^T)^{-1} \,\partial_i J\, J^T\bigr)
+
+    for the Jacobian J of a frame at the end of a serial chain, whose derivative has a closed form.
+    The term alone has no minimum: another cost has to bound the velocity.
+
+    Source: T. Yoshikawa, "Manipulability of robotic mechanisms", Int. J. Robotics Research 4
+    (1985).
+
+    Attributes:
+        weight: w, at least 0.
+        frame: Name of the frame; None stands for the robot's tip.
+    """
+
+    weight: float = 1.0
+    frame: str | None = None
+
+    def __post_init__(self) -> None:
+        """Check the weight; raises InvalidInputError."""
+        checks.not_negative("weight", self.weight)
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n), zero, and q (n,)."""
+        J = step.frame(self.frame).jacobian
+        n = J.shape[1]
+        return np.zeros((n, n)), -self.weight * manipulability_gradient(J)[1]
+
+
+def manipulability_gradient(J: Matrix) -> tuple[float, Vector]:
+    """Compute Yoshikawa's measure of a chain's Jacobian J (6, n), n >= 6, and its gradient (n,)."""
+    linear, angular = J[:3].T, J[3:].T
+    joints = np.arange(len(linear))
+    first, last = np.minimum.outer(joints, joints), np.maximum.outer(joints, joints)
+    # d column j / d q_i: the joint nearer to the base turns what the other one moves.
+    turned = np.cross(angular[first], linear[last])
+    spun = np.cross(angular[:, np.newaxis], angular[np.newaxis])
+    spun[np.tril_indices(len(linear))] = 0.0
+    change = np.concatenate([turned, spun], axis=2)  # (i, j, row)
+    gram = J @ J.T
+    measure = float(np.sqrt(max(np.linalg.det(gram), 0.0)))
+    if measure == 0.0:
+        return 0.0, np.zeros(len(linear))
+    return measure, measure * np.einsum("ijr,rj->i", change, np.linalg.solve(gram, J))

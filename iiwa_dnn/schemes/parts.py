@@ -113,7 +113,8 @@ class Cost(Part):
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n), symmetric positive semidefinite, and q (n,), to be added to the cost.
 
-        n counts the scheme's variables: the joints, then its slack variables.
+        n counts the scheme's variables, the joints and then its slack variables, or the joints
+        alone: slack variables may be left out of any part.
         """
         raise TypeError(f"{type(self).__name__} overrides neither quadratic nor kind")
 

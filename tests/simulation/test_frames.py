@@ -28,7 +28,10 @@ def scheme(*frames: str | None) -> Scheme:
 
 def references(*frames: str) -> dict[str, Reference]:
     start = paper_start()
-    paths: list[Reference] = [Circle(radius=0.02, period=1.0), Line(np.array([0.0, 0.01, 0.0]), 1.0)]
+    paths: list[Reference] = [
+        Circle(radius=0.02, period=1.0),
+        Line(np.array([0.0, 0.01, 0.0]), 1.0),
+    ]
     return {
         name: path.anchored(start.frame(name)) for name, path in zip(frames, paths, strict=False)
     }
@@ -56,7 +59,8 @@ def test_every_tracked_frame_follows_its_reference_and_is_recorded(tmp_path: Pat
     )
     record = simulate(robot, both, paths, start.q, dt=1e-3, duration=1.0)
     assert failures(record) == []
-    assert record.settings["tip"] == robot.tip and record.settings["frames"] == [ELBOW]
+    assert record.settings["tip"] == robot.tip
+    assert record.settings["frames"] == [ELBOW]
     recorded = poses(record, ELBOW)
     np.testing.assert_allclose(record.frame_position[:, 0], recorded[:, :3, 3], rtol=0, atol=1e-14)
     np.testing.assert_allclose(record.frame_rotation[:, 0], recorded[:, :3, :3], atol=1e-14)
