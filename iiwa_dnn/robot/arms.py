@@ -68,6 +68,7 @@ ARMS = {
 
 STARTS = {
     "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
+    "iiwa7_dual": (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
     **{name: arm.start for name, arm in ARMS.items()},
 }
 """Known start postures by the robot's name [rad], each (n,)."""

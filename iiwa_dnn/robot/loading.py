@@ -62,7 +62,7 @@ def load_robot(
     full = urdf.build_model(path, root)
     # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.
     if tip is None:
-        tip = _default_tip(full) if arm is None else arm.tip
+        tip = root.get("tip") or _default_tip(full) if arm is None else arm.tip
     model, q_locked = _lock(full, frozen)
     joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
     lower, upper, velocity = _limits(path, model, joints)

@@ -19,6 +19,12 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError
 
+# Attributes that name a link or a joint, by element.
+_NAMES = {
+    "link": ("name",), "joint": ("name",), "parent": ("link",), "child": ("link",),
+    "mimic": ("joint",),
+}  # fmt: skip
+
 
 class _NoDoctype(ET.TreeBuilder):
     """A tree builder that refuses a DOCTYPE: entities can read files or fill the memory."""
@@ -30,10 +36,30 @@ class _NoDoctype(ET.TreeBuilder):
 def read(path: Path) -> ET.Element:
     """Read a URDF file as XML; return the element ``<robot>``, which has joints.
 
+    ``<include file="other.urdf" prefix="left_"/>``, which is no URDF, stands for the links and
+    joints of another file, their names with the prefix.
+
     Raises:
         FileError: If the file cannot be read, is not XML, has a DOCTYPE or is not a robot with
-            joints.
+            joints, or a file that it includes includes others.
     """
+    root = _read(path)
+    for include in root.findall("include"):
+        root.remove(include)
+        other = path.parent / include.get("file", "")
+        part = _read(other)
+        if part.find("include") is not None:
+            raise FileError(other, "is included and includes others")
+        for element in part.iter():
+            for key in _NAMES.get(element.tag, ()):
+                if key in element.attrib:
+                    element.set(key, include.get("prefix", "") + element.get(key, ""))
+        root.extend([*part.findall("link"), *part.findall("joint")])
+    return root
+
+
+def _read(path: Path) -> ET.Element:
+    """Read one file; see `read`."""
     try:
         content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path

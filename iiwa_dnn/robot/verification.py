@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from itertools import chain
 from typing import Any
@@ -11,6 +12,7 @@ import pinocchio as pin
 import yourdfpy
 
 from iiwa_dnn.errors import FileError
+from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import Robot, file_of
 
 _TOLERANCE = 1e-9  # of positions [m] and of the rotation matrices' entries
@@ -29,7 +31,8 @@ def verify_robot(robot: Robot) -> None:
     """
     path = file_of(robot)
     try:
-        file = yourdfpy.URDF.load(str(path), build_scene_graph=False, load_meshes=False).robot
+        text = io.BytesIO(urdf.text_of(urdf.read(path)).encode())
+        file = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
         for joint in file.joints:
             joint.mimic = None  # every joint is given its position
         for link in file.links:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +10,7 @@ import yourdfpy
 
 from helpers_kinematics import IIWA7_INERTIALS, PAPER_Q0, Array, dh_pose, rotation_angle
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
+from iiwa_dnn.robot.urdf import read
 
 JOINTS = [f"iiwa7_joint_{i}" for i in range(1, 8)]
 LINKS = [f"iiwa7_link_{i}" for i in range(8)]
@@ -163,12 +163,13 @@ def test_end_cylinders(urdf: yourdfpy.URDF, i: int, radius: float, low: float, h
     assert centre[2] + cylinder.length / 2 == pytest.approx(high, abs=1e-12)
 
 
-def test_every_robot_of_the_package_is_one_plain_file() -> None:
+def test_every_robot_of_the_package_needs_no_file_of_another_package() -> None:
     for name in available_robots():
         path = load_robot(name).path
         assert path is not None
-        root = ET.parse(path).getroot()
+        root = read(path)
         assert root.get("name") == name
+        assert root.find("include") is None
         assert root.findall(".//visual")
         assert root.findall(".//collision")
         assert not root.findall(".//mesh")

@@ -1,0 +1,82 @@
+"""Two arms from one URDF, by <include>."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import dh_pose
+from iiwa_dnn.errors import FileError
+from iiwa_dnn.references import Heart
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
+from iiwa_dnn.robot import Configuration, load_robot
+from iiwa_dnn.robot.mujoco_model import compile_model
+from iiwa_dnn.schemes import (
+    CyclicMotion,
+    JointLimits,
+    KineticEnergy,
+    OrientationTask,
+    PositionTask,
+    RelativePoseTask,
+    Scheme,
+)
+from iiwa_dnn.simulation import simulate
+
+LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
+COSTS = [KineticEnergy(0.2), CyclicMotion(0.8)]
+
+
+def test_each_arm_is_the_single_one_moved_aside() -> None:
+    robot, single = load_robot("iiwa7_dual", verify=True), load_robot("iiwa7")
+    assert robot.dof == 14
+    np.testing.assert_array_equal(robot.q_upper, np.tile(single.q_upper, 2))
+    q = np.random.default_rng(5).uniform(-1.0, 1.0, 14)
+    conf = Configuration(robot, q)
+    for frame, part, side in ((LEFT, q[:7], 0.3), (RIGHT, q[7:], -0.3)):
+        position, rotation = dh_pose(part)
+        np.testing.assert_allclose(conf.frame(frame).position, position + [0, side, 0], atol=1e-12)
+        np.testing.assert_allclose(conf.frame(frame).rotation, rotation, atol=1e-12)
+    assert compile_model(robot, 1e-3).nq == 14
+
+
+def test_two_hearts_at_once() -> None:
+    robot = load_robot("iiwa7_dual")
+    start = Configuration(robot, robot.start_posture())
+    paths = {name: Heart(scale=3e-3).anchored(start.frame(name)) for name in (LEFT, RIGHT)}
+    tasks = [task(frame=name) for name in paths for task in (PositionTask, OrientationTask)]
+    scheme = Scheme(COSTS, tasks, [JointLimits()])
+    record = simulate(robot, scheme, paths, start.q, dt=1e-4, duration=0.2)
+    assert failures(record) == []
+    metrics = compute_metrics(record)
+    assert metrics["max_position_error_m"] < 1e-6
+    assert metrics["frames"][RIGHT]["max_position_error_m"] < 1e-6
+
+
+def test_an_object_carried_by_both_arms_keeps_its_grasp() -> None:
+    robot = load_robot("iiwa7_dual")
+    start = Configuration(robot, robot.start_posture())
+    tasks = [PositionTask(), OrientationTask(), RelativePoseTask(RIGHT, LEFT)]
+    record = simulate(
+        robot, Scheme(COSTS, tasks, [JointLimits()]), Heart(scale=3e-3).anchored(start), start.q,
+        dt=1e-3, duration=1.0,
+    )  # fmt: skip
+    assert failures(record) == []
+    grasp = np.linalg.inv(start.frame(LEFT).pose) @ start.frame(RIGHT).pose
+    for q in record.q[::50]:
+        conf = Configuration(robot, q)
+        now = np.linalg.inv(conf.frame(LEFT).pose) @ conf.frame(RIGHT).pose
+        np.testing.assert_allclose(now, grasp, rtol=0, atol=1e-6)
+
+
+def test_a_missing_and_a_nested_include_are_named(tmp_path: Path) -> None:
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    outer, inner = tmp_path / "outer.urdf", tmp_path / "inner.urdf"
+    outer.write_text(f'<robot name="r">{joint}<include file="inner.urdf"/></robot>')
+    with pytest.raises(FileError, match=r"inner\.urdf"):
+        load_robot(outer)
+    inner.write_text(f'<robot name="r">{joint}<include file="outer.urdf"/></robot>')
+    with pytest.raises(FileError, match="includes others"):
+        load_robot(outer)
