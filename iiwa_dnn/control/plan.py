@@ -8,10 +8,11 @@ import numpy as np
 from numba import typeof
 from numba.core.dispatcher import Dispatcher
 
+from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.control.step import NETWORK, control_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import Status, Vector
+from iiwa_dnn.qp import QP, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -38,6 +39,7 @@ class Plan:
         inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
         needs_more: Whether more kinematics than Jacobian and tip are asked for.
         asks: Whether Python code has to be asked for (a part of) the program.
+        cascade: Levels of the tasks with priorities.
         frames: Names of the frames that tasks track, in the order of the targets.
         place: Placement of the first of them, (12,), as `Kinematics.placements`.
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
@@ -74,7 +76,9 @@ class Plan:
             self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
             self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
             inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
-        self.asks = layout is None or bool(layout.custom)
+        priorities = np.zeros(0, dtype=np.int64) if layout is None else layout.priorities
+        self.cascade = Cascade(priorities, self.sizes, solver)
+        self.asks = layout is None or bool(layout.custom or self.cascade.levels)
         self.frames = (robot.tip,) if layout is None else layout.target_frames
         self.place: Vector = self.kinematics.placements[codes[5]]
         self.row_weights = None if layout is None else layout.row_weights
@@ -127,6 +131,8 @@ class Plan:
             by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(self.frames)}
             step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
             self.layout.fill(data, step)
+        if self.cascade.levels:
+            self.cascade.resolve(QP.from_data(data, self.sizes))
 
 
 def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:

@@ -19,7 +19,7 @@ _WORTH_A_PROCESS = 10_000
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
-Job = tuple[Matrix, Sizes, Matrix]
+Job = tuple[Matrix, Sizes, Matrix, bool]
 
 
 class CheckPool:
@@ -62,9 +62,9 @@ class CheckPool:
         if kind is not None and self._executor is not None:
             self._executor.shutdown(wait=False, kill_workers=True)
 
-    def submit(self, programs: Matrix, sizes: Sizes, x: Matrix) -> None:
+    def submit(self, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool = False) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged, (N, n)."""
-        number, job = self._count, (programs, sizes, x)
+        number, job = self._count, (programs, sizes, x, by_cost)
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:

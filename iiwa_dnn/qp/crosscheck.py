@@ -107,13 +107,16 @@ class CrossCheck:
         """
         return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(x)[np.newaxis])
 
-    def check_block(self, programs: Matrix, sizes: Sizes, x: Matrix) -> Agreement:
+    def check_block(
+        self, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool = False
+    ) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.
 
         Args:
             programs: One `QP.data` a row.
             sizes: Their `QP.sizes`.
             x: The answers to be judged, (N, n).
+            by_cost: Measure the gap in x in the norm of P, for programs whose x is not unique.
 
         Returns:
             Gaps and residuals, one row a program and one column a reference.
@@ -138,7 +141,10 @@ class CrossCheck:
         # As a difference of points: subtracting two objectives would cancel.
         curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
         objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
-        return Agreement(np.abs(step).max(axis=2), objective_gap, residuals)
+        gap = np.abs(step).max(axis=2)
+        if by_cost:
+            gap = np.sqrt(np.maximum(np.einsum("ijk,ikl,ijl->ij", step, cost, step), 0.0))
+        return Agreement(gap, objective_gap, residuals)
 
     def _answers(
         self, solvers: Sequence[str], programs: Matrix, sizes: Sizes

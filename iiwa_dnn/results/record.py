@@ -75,6 +75,8 @@ class Record:
         row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
             (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
         blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
+        level_residual: Largest residual of the task rows of each of the l levels of priority,
+            (N, l): what the levels above and the limits took from it.
         frame_position: Positions of the f tracked frames that ``settings["frames"]`` names, beside
             the one that ``settings["tip"]`` names [m], (N+1, f, 3).
         frame_rotation: Their orientations, (N+1, f, 3, 3).
@@ -108,6 +110,7 @@ class Record:
     blocking: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
     row_multiplier: Annotated[FloatArray | None, ("N", "m"), np.float64] = None
     blocking_rows: Annotated[NDArray[np.int8] | None, ("N", "m"), np.int8] = None
+    level_residual: Annotated[FloatArray | None, ("N", "l"), np.float64] = None
     frame_position: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
     frame_rotation: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
     frame_position_desired: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
@@ -122,7 +125,8 @@ class Record:
             object.__setattr__(self, name, array)
         sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
         for size, columns in (
-            ("m", self.blocking_rows), ("m", self.row_multiplier), ("f", self.frame_position)
+            ("m", self.blocking_rows), ("m", self.row_multiplier), ("f", self.frame_position),
+            ("l", self.level_residual),
         ):  # fmt: skip
             sizes |= {} if columns is None else {size: columns.shape[1]}
         for name, (shape, _) in arrays.items():

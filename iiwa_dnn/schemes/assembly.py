@@ -68,6 +68,7 @@ class Layout:
         custom: Blocks of parts without a compiled form.
         needs_inertia: Whether a part asks for the inertia matrix.
         row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
+        priorities: Level of each equality row, (p,); 0 for one that has to hold.
     """
 
     def __init__(
@@ -97,6 +98,7 @@ class Layout:
         self.sizes = (robot.dof + slack, m, p)
         self.custom = tuple(block for block in self.blocks if block.part.kind == CUSTOM)
         self.row_weights = np.repeat([t.row_weight for t in hard], [t.rows for t in hard])
+        self.priorities = np.repeat([t.priority or 0 for t in hard], [t.rows for t in hard])
         self.needs_inertia = any(
             isinstance(cost, KineticEnergy) and cost.kinetic == "inertia" for cost in costs
         )

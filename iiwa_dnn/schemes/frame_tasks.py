@@ -31,7 +31,7 @@ class FeedbackTask(Task):
     Attributes:
         gain: Rate at which the error decays [1/s], at least 0.
         weight: None for hard rows, else the weight of the soft task, at least 0.
-        priority: Level in a cascade, 1 the first; None: no cascade (`iiwa_dnn.schemes.cascade`).
+        priority: Level in a cascade, 1 the first; None: no cascade (`iiwa_dnn.control.cascade`).
     """
 
     gain: float = 10.2

@@ -127,11 +127,14 @@ class Task(Part):
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
             the task yield (`iiwa_dnn.control.policies`).
         weight: None for hard rows, else the weight of the soft task.
+        priority: Level of a hard task in a cascade, 1 the first; None: it has to hold
+            (`iiwa_dnn.control.cascade`).
     """
 
     tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
+    priority: int | None = None
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""

@@ -40,11 +40,13 @@ class PositionTask(Task):
         gain: The paper's delta [1/s], at least 0.
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
+        priority: Level in a cascade, 1 the first; None: no cascade.
     """
 
     gain: float = 10.2
     frame: str | None = None
     weight: float | None = None
+    priority: int | None = None
     kind: int = field(default=POSITION, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
 
@@ -119,12 +121,14 @@ class OrientationTask(Task):
         form: ``"so3"`` or ``"block"``.
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
+        priority: Level in a cascade, 1 the first; None: no cascade.
     """
 
     gain: float = 10.2
     form: Form = "so3"
     frame: str | None = None
     weight: float | None = None
+    priority: int | None = None
     kind: int = field(default=ORIENTATION_SO3, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
     row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.control.answers import FIGURES, Answers
 from iiwa_dnn.control.controller import Controller, References
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled, larger
 from iiwa_dnn.robot import Configuration
@@ -17,6 +18,9 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.frames import TrackedFrames
 
 COMPLETED = "completed"
+
+MAX_STEPS = 20_000_000
+"""More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
 
 
 class History:
@@ -169,3 +173,13 @@ def _settings_of(reference: References | None) -> dict[str, Any]:
     if not isinstance(reference, Mapping):
         return {} if reference is None else reference.settings()
     return {"name": "frames"} | {name: path.settings() for name, path in reference.items()}
+
+
+def step_count(duration: float, dt: float) -> int:
+    """Count the whole steps in a run; raise InvalidInputError where there are none or too many."""
+    steps = duration / dt
+    if not 0.5 < steps <= MAX_STEPS:
+        name, value = ("dt", dt) if steps > 1.0 and dt < 1e-6 else ("duration", duration)
+        problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"
+        raise InvalidInputError(name, problem, value)
+    return max(1, round(steps))

@@ -17,21 +17,18 @@ from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
-from iiwa_dnn.qp.checkpool import CheckPool
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.chain import SignalChain
-from iiwa_dnn.simulation.history import COMPLETED, History, settings_of
+from iiwa_dnn.simulation.history import COMPLETED, History, settings_of, step_count
 from iiwa_dnn.simulation.incidents import Incidents
+from iiwa_dnn.simulation.judgement import Judgement
 from iiwa_dnn.simulation.motion import MOTIONS, Motion
 from iiwa_dnn.simulation.noise import NoiseEntry, VelocityDisturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
-
-MAX_STEPS = 20_000_000
-"""More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
 
 BLOCK = 1000
 """Steps between two hand-overs to the record and to the check."""
@@ -88,7 +85,7 @@ class Simulation:
             raise InvalidInputError("motion", problem, motion)
         checks.not_negative("integral_gain", integral_gain)
         checks.integer("seed", seed, 0)
-        self.steps = steps = _step_count(length, dt)
+        self.steps = steps = step_count(length, dt)
         self._plant = IdealPlant() if plant is None else plant
         self._check = CrossCheck() if check is None else check
         self._robot, self._dt, self._seed = robot, dt, seed
@@ -130,7 +127,8 @@ class Simulation:
         self._restart()
         status, done, room = COMPLETED, 0, BLOCK
         stages, history = self._motion.stages, self._history
-        with CheckPool(self._check, self.steps * stages) as pool:
+        cascade = self._controller.plan.cascade
+        with Judgement(self._check, self.steps, stages, cascade) as self._judgement:
             while done < self.steps and status == COMPLETED:
                 count = min(room, self.steps - done)
                 # One target a stage, in the order in which the method of motion asks.
@@ -150,11 +148,11 @@ class Simulation:
                 answers = self._answers
                 history.add_block(done, taken, stages, answers)
                 self._incidents.multipliers(slice(done, done + taken), answers, stages)
-                pool.submit(answers.programs, answers.sizes, answers.all_x)
+                self._judgement.submit(answers)
                 done += taken
                 if progress is not None:
                     progress(taken)
-            agreement = pool.finish().worst_of(stages)
+            agreement = self._judgement.finish()
         last = self._controller.sample(np.array([done * self._dt - self._controller.delay]))
         history.end(done, last)
         return self._record(done, status, agreement, time.perf_counter() - began)
@@ -224,7 +222,9 @@ class Simulation:
             if index % self._motion.stages == 0 and not self._incidents.pending:
                 self._integral.observe(Configuration(self._robot, q), target, self._dt)
             answers.targets[index] = self._integral.apply(target).data
-        return self._controller.answer(q, answers, t)
+        velocity = self._controller.answer(q, answers, t)
+        self._judgement.note()
+        return velocity
 
     def _resolved(self, k: int, first: int, velocity: Vector) -> Vector:
         """Note what a policy decided in step k, if it did; returns the velocity of the step."""
@@ -264,6 +264,7 @@ class Simulation:
             reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": status},
             **self._incidents.arrays(steps),
+            **self._judgement.arrays(steps),
             wall_time_s=wall_time,
         )
 
@@ -338,13 +339,3 @@ def simulate(
         integral_gain=integral_gain, estimator=estimator, policy=policy, seed=seed, tol=tol,
         check=check, solver=solver,
     ).run(progress)  # fmt: skip
-
-
-def _step_count(duration: float, dt: float) -> int:
-    """Whole steps in a run, or an InvalidInputError."""
-    steps = duration / dt
-    if not 0.5 < steps <= MAX_STEPS:
-        name, value = ("dt", dt) if steps > 1.0 and dt < 1e-6 else ("duration", duration)
-        problem = f"{steps:.3g} steps of {dt:g} s; there must be from 1 to {MAX_STEPS:,}"
-        raise InvalidInputError(name, problem, value)
-    return max(1, round(steps))

@@ -1,0 +1,110 @@
+"""Strict priorities beside a lexicographic solution by another solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import qpsolvers
+import scipy.linalg
+import scipy.sparse
+
+from helpers_simulation import paper_robot
+from iiwa_dnn.control.cascade import Cascade
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.references import Heart, Target
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes import (
+    ElbowAngleTask,
+    JointLimits,
+    KineticEnergy,
+    OrientationTask,
+    PositionTask,
+    PostureTask,
+    Scheme,
+)
+from iiwa_dnn.simulation import simulate
+
+ROBOT = paper_robot()
+
+
+def scheme() -> Scheme:
+    tasks = [
+        PositionTask(priority=1),
+        OrientationTask(priority=2),
+        PostureTask({"iiwa7_joint_1": 0.5, "iiwa7_joint_3": -0.4}, priority=3),
+    ]
+    return Scheme([KineticEnergy(1.0)], tasks, [JointLimits()])
+
+
+def lexicographic(qp: QP, priorities: Vector) -> list[float] | None:
+    """Level by level with another solver; returns the residual of each, None where it fails."""
+    A, b, missing = np.zeros((0, 7)), np.zeros(0), []
+    for level in (1, 2, 3):
+        rows = priorities == level
+        P, q = scipy.sparse.csc_matrix(qp.A[rows].T @ qp.A[rows]), -qp.A[rows].T @ qp.b[rows]
+        equal = {"A": scipy.sparse.csc_matrix(A), "b": b} if len(A) else {}
+        x = qpsolvers.solve_qp(
+            P, q, **equal, lb=qp.lb, ub=qp.ub, solver="clarabel",
+            tol_gap_abs=1e-12, tol_gap_rel=0.0, tol_feas=1e-12,
+        )  # fmt: skip
+        if x is None:
+            return None
+        missing.append(float(np.linalg.norm(qp.A[rows] @ x - qp.b[rows])))
+        A = scipy.linalg.orth(qp.A[(priorities <= level)].T, rcond=1e-9).T
+        b = A @ x
+    return missing
+
+
+def test_levels_of_conflicting_tasks_are_those_of_another_solver() -> None:
+    rng, conflicts, compared = np.random.default_rng(11), 0, 0
+    chosen = scheme()
+    priorities = chosen.layout(ROBOT).priorities
+    for _ in range(60):
+        q = rng.uniform(0.8 * ROBOT.q_lower, 0.8 * ROBOT.q_upper)
+        conf = Configuration(ROBOT, q)
+        far = conf.position + rng.uniform(-0.03, 0.03, 3)
+        turned = Configuration(ROBOT, q + rng.uniform(-0.03, 0.03, 7)).rotation
+        qp = chosen.build_qp(conf, Target(far, turned))
+        expected = lexicographic(qp, priorities)
+        if expected is None:
+            continue
+        cascade = Cascade(priorities, qp.sizes, DNNSolver(tol=1e-10))
+        cascade.resolve(qp)
+        for level, residual in zip(cascade.levels, expected, strict=True):
+            assert np.linalg.norm(level.missing) == pytest.approx(residual, abs=1e-8)
+        compared += 1
+        conflicts += sum(residual > 1e-3 for residual in expected)
+        final = DNNSolver(tol=1e-9).solve(qp)
+        assert final.found
+        # A lower level disturbs no higher one.
+        given = chosen.build_qp(conf, Target(far, turned))
+        attained = [
+            np.linalg.norm((given.A @ final.x - given.b)[priorities == k]) for k in (1, 2, 3)
+        ]
+        np.testing.assert_allclose(attained, expected, rtol=0, atol=1e-8)
+    assert conflicts > 50
+    assert compared > 50
+
+
+def test_a_run_records_its_levels_and_checks_their_programs() -> None:
+    conf = Configuration(ROBOT, ROBOT.start_posture())
+    wanted = ElbowAngleTask().angle_of(conf) + 0.5
+    tasks = [
+        PositionTask(priority=1),
+        OrientationTask(priority=2),
+        ElbowAngleTask(wanted, gain=1.0, priority=3),
+        PostureTask({"iiwa7_joint_7": 1.0}, gain=1.0, priority=4),
+    ]
+    lexi = Scheme([KineticEnergy(1.0)], tasks, [JointLimits()])
+    record = simulate(ROBOT, lexi, Heart().anchored(conf), conf.q, dt=1e-3, duration=0.3)
+    assert failures(record) == []
+    assert record.level_residual is not None
+    assert record.level_residual.shape == (300, 4)
+    # Position and orientation fit, and leave one freedom for the elbow until its joints are at
+    # their limits; nothing is left below.
+    assert record.level_residual[:, :2].max() < 1e-8
+    assert record.level_residual[:20, 2].max() < 1e-8
+    assert record.level_residual[:, 3].min() > 0.05
+    assert record.crosscheck_gap.max() < 1e-6
