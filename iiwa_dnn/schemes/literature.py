@@ -1,0 +1,131 @@
+r"""Schemes of the literature beside the paper's, each composed of parts.
+
+All hold the tip's position and orientation and keep the joint limits; they differ in the cost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.base import Scheme
+from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy
+from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.parts import Cost, Limit, Step, Task
+from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
+
+SMALLEST = 1e-3
+"""Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
+
+
+@dataclass(frozen=True)
+class LargestSpeed(Cost):
+    r"""Square of the largest joint speed, the scheme's last (slack) variable s: w s^2 / 2.
+
+    Attributes:
+        weight: w, at least 0.
+    """
+
+    weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the weight; raises InvalidInputError."""
+        checks.not_negative("weight", self.weight)
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n + 1, n + 1) and q (n + 1,) of a scheme with one slack variable."""
+        P = np.zeros((step.q.size + 1, step.q.size + 1))
+        P[-1, -1] = self.weight
+        return P, np.zeros(len(P))
+
+
+class SpeedsBelowSlack(Limit):
+    r"""Rows :math:`\pm \dot q_i - s \le 0` for the last (slack) variable s of an arm's scheme."""
+
+    def __init__(self, robot: Robot) -> None:
+        """State the rows for a robot with n joints: 2 n."""
+        self.rows, eye = 2 * robot.dof, np.eye(robot.dof)
+        self._G = np.hstack([np.vstack([eye, -eye]), -np.ones((self.rows, 1))])
+
+    def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return G (2 n, n + 1) and h (2 n,)."""
+        return self._G, np.zeros(self.rows)
+
+
+@dataclass(frozen=True)
+class VelocityChange(Cost):
+    r"""Change from the last command: :math:`\tfrac12 w \|\dot q - \dot q_-\|^2`.
+
+    Attributes:
+        weight: w, at least 0.
+    """
+
+    weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the weight; raises InvalidInputError."""
+        checks.not_negative("weight", self.weight)
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n) and q (n,)."""
+        return self.weight * np.eye(step.q.size), -self.weight * step.dq
+
+
+def minimum_velocity_norm(gain: float = 10.2) -> Scheme:
+    """Compose the scheme of least joint velocity norm.
+
+    Source: D. E. Whitney, "Resolved motion rate control of manipulators and human prostheses", IEEE
+    Trans. Man-Machine Systems 10 (1969).
+    """
+    return Scheme([KineticEnergy()], _tasks(gain), [JointLimits()])
+
+
+def repetitive_motion(gain: float = 10.2, drift_gain: float = 10.2) -> Scheme:
+    """Compose the scheme that comes back to its first posture after each lap.
+
+    Source: Y. Zhang et al., "Repetitive motion planning of PA10 robot arm subject to joint physical
+    limits and using LVI-based primal-dual neural network", Mechatronics 18 (2008).
+    """
+    return Scheme([CyclicMotion(gain=drift_gain)], _tasks(gain), [JointLimits()])
+
+
+def infinity_norm(robot: Robot, gain: float = 10.2) -> Scheme:
+    """Compose the scheme of least largest joint speed, by a slack variable.
+
+    Source: Y. Zhang, J. Wang, Y. Xu, "A dual neural network for bi-criteria kinematic control of
+    redundant manipulators", IEEE Trans. Robotics and Automation 18 (2002).
+    """
+    return bi_criteria(robot, 0.0, gain)
+
+
+def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme:
+    """Compose the scheme between least velocity norm (weight 1) and least largest speed (0).
+
+    Source: as `infinity_norm`.
+
+    Raises:
+        InvalidInputError: The weight is not in [0, 1].
+    """
+    if checks.not_negative("weight", weight) > 1.0:
+        raise InvalidInputError("weight", f"must be in [0, 1], not {weight}", weight)
+    costs = [KineticEnergy(max(weight, SMALLEST)), LargestSpeed(1.0 - weight)]
+    return Scheme(costs, _tasks(gain), [JointLimits(), SpeedsBelowSlack(robot)], slack=1)
+
+
+def minimum_acceleration_norm(gain: float = 10.2, damping: float = 1e-3) -> Scheme:
+    """Compose the scheme of least change of velocity, damped so that no motion goes on for ever.
+
+    Source: J. M. Hollerbach, K. C. Suh, "Redundancy resolution of manipulators through torque
+    optimization", IEEE J. Robotics and Automation 3 (1987), for the norm of the acceleration, here
+    that of the difference of two commands.
+    """
+    return Scheme([VelocityChange(), KineticEnergy(damping)], _tasks(gain), [JointLimits()])
+
+
+def _tasks(gain: float) -> list[Task]:
+    return [PositionTask(gain), OrientationTask(gain)]
