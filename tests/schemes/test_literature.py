@@ -51,8 +51,9 @@ def test_each_scheme_is_the_best_at_what_it_minimises() -> None:
     norm = {name: np.linalg.norm(dq) for name, dq in first.items()}
     largest = {name: np.abs(dq).max() for name, dq in first.items()}
     assert norm["velocity"] <= min(norm.values()) + 1e-9
-    assert largest["infinity"] == min(largest.values())
-    assert largest["infinity"] < largest["both"] < largest["velocity"]
+    assert largest["infinity"] <= min(largest.values()) + 1e-9
+    assert largest["infinity"] <= largest["both"] + 1e-9 < largest["velocity"]
+    assert norm["velocity"] < norm["both"] <= norm["infinity"] + 1e-9
     drift = {name: np.abs(r.q[-1] - r.q[0]).max() for name, r in records.items()}
     assert drift["repetitive"] < 0.1 * drift["velocity"]
     change = {name: np.square(np.diff(r.dq, axis=0)).sum() for name, r in records.items()}
