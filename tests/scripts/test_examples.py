@@ -60,3 +60,23 @@ def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
     figure = tmp_path / "runs" / "sweep_weight" / "weight.png"
     assert figure.read_bytes().startswith(b"\x89PNG")
     assert figure.stat().st_size > 10_000
+
+
+def test_two_arms(tmp_path: Path) -> None:
+    text = example(tmp_path, "two_arms.py", "0.5")
+    assert number(r"left (\S+) m", text) < 5e-6
+    assert number(r"right (\S+) m", text) < 5e-6
+    assert number(r"changes by (\S+)", text) < 1e-6
+
+
+def test_a_shaft_through_a_point(tmp_path: Path) -> None:
+    text = example(tmp_path, "remote_centre.py", "5")
+    assert number(r"at most (\S+) m from the point", text) < 1e-6
+    assert number(r"tilted by (\S+) deg", text) > 10.0
+
+
+def test_priorities(tmp_path: Path) -> None:
+    text = example(tmp_path, "priorities.py", "4", "4e-3")
+    left = [float(value) for value in re.findall(r"residual at most (\S+)", text)]
+    assert max(left[:2]) < 1e-8
+    assert left[2] > 0.1
