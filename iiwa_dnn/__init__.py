@@ -40,6 +40,8 @@ from iiwa_dnn.schemes import (
     DoubleIndicator,
     ElbowAngleTask,
     JointCouplingTask,
+    AccelerationLimits,
+    JerkLimits,
     JointLimits,
     KineticEnergy,
     Limit,
@@ -61,6 +63,7 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP",
+    "AccelerationLimits",
     "AdaptiveRungeKutta",
     "Agreement",
     "AxisTask",
@@ -84,6 +87,7 @@ __all__ = [
     "ImplicitEuler",
     "InvalidInputError",
     "JointCouplingTask",
+    "JerkLimits",
     "JointLimits",
     "KineticEnergy",
     "Limit",

@@ -14,11 +14,18 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import POLICIES, Policy, resolve, stopped
+from iiwa_dnn.control.policies import (
+    POLICIES,
+    Policy,
+    Resolution,
+    gave_way,
+    resolve,
+    stopped,
+)
 from iiwa_dnn.control.room import SIZE, Room
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -47,6 +54,7 @@ class Controller:
         policy: What to do at a step that the network does not solve in ``converged`` mode
             (`iiwa_dnn.control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
+        halted: Decision to stop that stands until `reset`: every step brakes. None: go on.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
@@ -85,7 +93,8 @@ class Controller:
         self.solver = DNNSolver(tol=tol) if solver is None else solver
         self.delay = 0.0
         self._q = np.zeros(robot.dof)
-        self._begun = False
+        self._begun = self._yields = False
+        self.halted: Resolution | None = None
 
     def __setattr__(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
@@ -176,7 +185,7 @@ class Controller:
     def reset(self) -> None:
         """Forget the network's state, the last command and the delay; the home stays."""
         self.solver.reset()
-        self.delay = 0.0
+        self.delay, self.halted, self._yields = 0.0, None, False
         self._plan = self._room = None
 
     def warm_up(self) -> None:
@@ -264,6 +273,7 @@ class Controller:
         if (
             state is not None
             and plan.network is not None
+            and self.halted is None
             and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
         ):
             answers.count = index + 1
@@ -311,19 +321,45 @@ class Controller:
         if not plan.asks:
             plan.assemble(answers.program(index), answers.targets[index])
         qp = answers.qp(index)
-        if self.mode == "converged":
-            solution = self.solver.solve(qp)
-        else:
-            solution = self.solver.advance(qp, self.dt)
-        if solution.status is not plan.expected:
+        resolution, solution = self._decided(qp), None
+        if resolution is None:
             if self.mode == "converged":
-                resolution = resolve(qp, solution, self.policy, self.solver, plan.row_weights)
+                solution = self.solver.solve(qp)
             else:
-                resolution = stopped(qp, solution)  # it is no longer a number
+                solution = self.solver.advance(qp, self.dt)
+            if solution.status is not plan.expected:
+                resolution = self._resolve(qp, solution)
+        if resolution is not None:
+            self._yields = plan.yielding is not None and self.mode == "converged"
             qp, solution = resolution.qp, resolution.solution
             answers.resolved[index] = resolution
+        assert solution is not None
         answers.add(qp, solution, plan.place, plan.q)
-        plan.last[:] = answers.dq(index)
+        plan.tell(answers.dq(index))
+
+    def _decided(self, qp: QP) -> Resolution | None:
+        """Decide without the network: while the arm brakes, and while the task still yields."""
+        yielding = self.plan.yielding
+        if self.halted is not None:
+            return stopped(qp, self.halted.solution, yielding=yielding)._replace(
+                sides=self.halted.sides, rows=self.halted.rows
+            )
+        if not self._yields or yielding is None or self.policy not in ("slow", "relax"):
+            return None
+        if not np.isfinite(qp.b).all():
+            return None
+        reach, fits = yielding.answer(qp)
+        # Where the program may have a solution again, the network is asked first.
+        self._yields = not fits
+        return None if fits else gave_way(qp, self.policy, reach)
+
+    def _resolve(self, qp: QP, failed: Solution) -> Resolution:
+        """Ask the policy about a program that the network did not solve."""
+        plan = self.plan
+        if self.mode != "converged":
+            return stopped(qp, failed, yielding=plan.yielding)  # it is no longer a number
+        weights = plan.row_weights
+        return resolve(qp, failed, self.policy, self.solver, weights, plan.yielding)
 
     def place(self, q: Vector) -> Vector:
         """Return the first frame's placement at joint positions q (n,), (12,)."""

@@ -186,7 +186,8 @@ class Simulation:
     def _step(self, k: int) -> str:
         """Take step k and return the status that the run has after it."""
         history, answers = self._history, self._answers
-        q, t, first = history.q[k], k * self._dt, answers.count
+        q, t, first, plan = history.q[k], k * self._dt, answers.count, self._controller.plan
+        self._past = plan.past.copy() if plan.yielding is not None else None
         seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
             velocity = self._motion.step(self._velocity_at, seen, t, self._dt)
@@ -200,7 +201,11 @@ class Simulation:
         if k in history.stops:
             history.stay(k)
             return self._incidents.status(k, t)
+        if self._past is not None:
+            plan.past[:] = self._past
         command = self._command(k, first, velocity) if self._altered else velocity
+        if self._past is not None:
+            plan.tell(command)
         self._plant.move(command)
         torque = self._plant.torque
         if torque is not None and history.torque is not None:
@@ -222,6 +227,8 @@ class Simulation:
             if index % self._motion.stages == 0 and not self._incidents.pending:
                 self._integral.observe(Configuration(self._robot, q), target, self._dt)
             answers.targets[index] = self._integral.apply(target).data
+        if self._past is not None:  # the limits of all stages are those from the step's start
+            self._controller.plan.past[:] = self._past
         velocity = self._controller.answer(q, answers, t)
         self._judgement.note()
         return velocity
@@ -241,7 +248,9 @@ class Simulation:
             incidents.note(k, resolution)
             self._controller.delay += self._dt * (1.0 - resolution.fraction)
             if resolution.action is Action.STOP:
-                self._history.stops.add(k)
+                self._controller.halted = self._controller.halted or resolution
+                if not answers.dq(first).any():
+                    self._history.stops.add(k)
         return answers.dq(first)
 
     def _command(self, k: int, first: int, velocity: Vector) -> Vector:
