@@ -277,8 +277,10 @@ class Controller:
             and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
         ):
             answers.count = index + 1
-        else:
-            self._solve(answers)
+            return
+        # Where tasks yield to acceleration limits that is quicker found out than proven.
+        self._yields = plan.yielding is not None and self.mode == "converged"
+        self._solve(answers)
 
     def follow(self, q: Vector, answers: Answers, count: int) -> int:
         """Take up to `count` steps of which each answer moves `q` for one control period.

@@ -20,6 +20,8 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
 from iiwa_dnn.schemes.assembly import assemble
 
+_BUDGET = 60.0
+
 
 class Plan:
     """All that does not change from step to step, and the arrays that compiled code works in.
@@ -90,7 +92,10 @@ class Plan:
         # A subclass that solves in a way of its own is asked, not bypassed.
         compiled = type(solver) is DNNSolver
         self.network = solver.numbers(0.0 if converged else dt) if compiled else None
-        network = np.zeros(NETWORK) if self.network is None else self.network
+        network = np.zeros(NETWORK) if self.network is None else self.network.copy()
+        if layout is not None and layout.restrained:
+            # A program that a few systems do not solve most likely has no solution.
+            network[1] = min(network[1], _BUDGET)
         head = [1.0 / dt, *np.zeros(3 * dof)]
         work = np.concatenate([head, network, inertia, constants])
         self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]

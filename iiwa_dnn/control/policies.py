@@ -21,12 +21,14 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
 ``raise``
     A `NoSolutionError` with the program inside.
 
-The multipliers of the first two problems name the bounds and rows that stand in the way. With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity as
-`iiwa_dnn.control.yielding` says, the clock of ``slow`` by the share that is reached, and ``stop``
-brakes until the arm stands. Where the
+The multipliers of the first two problems name the bounds and rows that stand in the way. Where the
 limits contradict each other, so that no velocity is within all of them, the arm stops. A program
 that has a solution which the network missed is answered by the reference solver, whatever the
 policy.
+
+With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity as
+`iiwa_dnn.control.yielding` says, the clock of ``slow`` by the share of it that is reached, and
+``stop`` brakes until the arm stands.
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -134,9 +136,8 @@ def resolve(
     if yielding is not None and policy in ("slow", "relax"):
         missed = failed.status is Status.NOT_SETTLED
         if missed and (reference := ask_reference(qp, solver.tol)) is not None:
-            n, m, _ = qp.sizes
-            free = np.zeros(n, np.int8), np.zeros(m, np.int8)
-            return Resolution(Action.FALLBACK, qp, reference, 1.0, *free)
+            none = np.zeros(qp.sizes[0], np.int8), np.zeros(qp.sizes[1], np.int8)
+            return Resolution(Action.FALLBACK, qp, reference, 1.0, *none)
         return gave_way(qp, policy, yielding.answer(qp).reach)
     reach = largest_fraction(qp)
     if reach.fraction >= _FEASIBLE:

@@ -35,11 +35,11 @@ def control_step(
         index: Number of the row.
         codes: `Layout.codes`.
         work: ``[1 / dt | last command (dof) | the one before (dof) | joint positions (dof) |
-            network (7) | inertia matrix (dof dof, or none) | constants]``: the command is written; the network's numbers are
-            those of `DNNSolver.numbers` (tolerance, budget and first step of the implicit
-            integrator, time to advance (0: settle), whether x is projected, explicit sub-steps (0:
-            as many as stability needs), share of the stable step that is used); the constants are
-            `Layout.numbers`.
+            network (7) | inertia matrix (dof dof, or none) | constants]``: the commands are
+            written; the network's numbers are those of `DNNSolver.numbers` (tolerance, budget and
+            first step of the implicit integrator, time to advance (0: settle), whether x is
+            projected, explicit sub-steps (0: as many as stability needs), share of the stable step
+            that is used); the constants are `Layout.numbers`.
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         state: The network's state, (size,), advanced.

@@ -32,6 +32,8 @@ from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.reach import Reach
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp.dense import dot
+from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.schemes.motion_limits import braking
 
 DAMPING, NEAR = 0.05, 0.05
@@ -47,16 +49,15 @@ CREEP = 0.1
 """Share of a period by which a slowed clock always advances: an arm that rests in a singular or
 unreachable pose does not hold its target there."""
 
-_SHORT = 1e-3
+_REACHED = 1e-9
 
 
 class Yielded(NamedTuple):
     """A command where the task yields.
 
     Attributes:
-        reach: The command with the share of the task velocity that it gives.
-        fits: Whether the task's velocity is within the limits again, so that the program may have
-            a solution.
+        reach: The command, with the share of the task velocity that it gives.
+        fits: Whether the task has a velocity within the limits after all.
     """
 
     reach: Reach
@@ -78,44 +79,121 @@ class Yielding:
             weights: Weight of each task row, (p,).
             dt: Control period [s].
         """
-        self._lower, self._upper, self._fastest, _, self._jerk = numbers.reshape(5, -1)
-        self._last, self._q, self._weights, self._dt = past[: q.size], q, weights, dt
+        self._numbers, self._last, self._q, self._dt = numbers, past[: q.size], q, dt
+        self._weights, self._wanted = weights, np.zeros(q.size)
         self._solver, self._clipper = DNNSolver(tol=1e-8), DNNSolver()
 
-    def brake(self, qp: QP, wanted: Vector | None = None) -> Vector:
-        """Compute the command (n,) [rad/s] that approaches a velocity, by default rest, quickest.
+    def brake(self, qp: QP) -> Vector:
+        """Compute the command (n,) [rad/s] that comes to rest quickest.
 
         It is within the bounds of `qp`, and within its rows if any velocity is.
         """
-        aim = np.zeros(self._q.size) if wanted is None else wanted
-        lb, ub = qp.lb, qp.ub
-        dq = np.array([
-            aim[i] + braking(last - aim[i], lb[i] - aim[i], ub[i] - aim[i], self._jerk[i], self._dt)
-            for i, last in enumerate(self._last.tolist())
-        ])  # fmt: skip
-        return clip_command(qp, np.clip(dq, lb[: dq.size], ub[: dq.size]), self._clipper)[0]
+        self._wanted[:] = 0.0
+        return self._approach(qp, self._wanted)
+
+    def _approach(self, qp: QP, wanted: Vector) -> Vector:
+        """The command that approaches a velocity (n,) quickest, which may move as it last did."""
+        args = (self._numbers, self._last, self._wanted, wanted, qp.lb, qp.ub, self._dt)
+        dq = approach_velocity(*args)
+        self._wanted[:] = wanted
+        if qp.sizes[1]:
+            dq = clip_command(qp, dq, self._clipper)[0]
+        return dq
 
     def answer(self, qp: QP) -> Yielded:
         """Compute the command at a program of n variables whose rows may contradict its bounds."""
-        dof, n = self._q.size, qp.sizes[0]
-        rows, rhs = self._weights[:, np.newaxis] * qp.A, self._weights * qp.b
-        smallest = float(np.linalg.eigvalsh(rows @ rows.T)[0]) if rhs.size else 0.0
-        damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
-        lb, ub = qp.lb.copy(), qp.ub.copy()
-        lb[:dof] = np.clip(POSITION_GAIN * (self._lower - self._q), -self._fastest, self._fastest)
-        ub[:dof] = np.clip(POSITION_GAIN * (self._upper - self._q), -self._fastest, self._fastest)
-        P = rows.T @ rows + BLEND * qp.P + damping * np.eye(n)
-        program = QP(P, BLEND * qp.q - rows.T @ rhs, G=qp.G, h=qp.h, lb=lb, ub=ub)
-        solution = self._solver.solve(program)
-        wanted = solution.x if solution.found else np.zeros(n)
-        x = wanted.copy()
-        x[:dof] = self.brake(qp, wanted[:dof])
-        met = rows @ x
+        dof, (n, m, p) = self._q.size, qp.sizes
+        data = np.empty((n + m) * (n + 1) + 2 * n)
+        soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
+        solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
+        x: Vector = solution.x.copy() if solution.found else np.zeros(n)
+        exact = x - np.linalg.pinv(qp.A) @ (qp.A @ x - qp.b)
+        fits = (
+            np.abs(qp.A @ exact - qp.b).max(initial=0.0) <= _REACHED
+            and bool((qp.lb <= exact).all() and (exact <= qp.ub).all())
+            and bool((qp.G @ exact <= qp.h).all())
+        )
+        if fits:
+            self._wanted[:] = exact[:dof]
+        else:
+            wanted, x[:dof] = x[:dof].copy(), self._approach(qp, x[:dof])
+        rhs = self._weights * qp.b
         length = float(rhs @ rhs)
-        share = 1.0 if length == 0.0 else float(np.clip(rhs @ met / length, CREEP, 1.0))
-        near = np.linalg.norm(rows @ wanted - rhs) <= _SHORT * (1.0 + np.sqrt(length))
-        inside = (qp.lb[:dof] <= wanted[:dof]).all() and (wanted[:dof] <= qp.ub[:dof]).all()
+        share = 1.0 if length == 0.0 else float(rhs @ (self._weights * (qp.A @ x))) / length
         sides = np.zeros(n, np.int8)
-        sides[:dof] = np.sign(wanted - x)[:dof] * (np.abs(wanted - x)[:dof] > 1e-9)
-        reach = Reach(share, x, sides, np.zeros(qp.sizes[1], np.int8))
-        return Yielded(reach, bool(near and inside))
+        if not fits:
+            sides[:dof] = np.sign(wanted - x[:dof]) * (np.abs(wanted - x[:dof]) > _REACHED)
+        reach = Reach(min(max(share, CREEP), 1.0), x, sides, np.zeros(m, np.int8))
+        return Yielded(reach, fits)
+
+
+@compiled
+def approach_velocity(
+    numbers: Vector, last: Vector, before: Vector, wanted: Vector, lb: Vector, ub: Vector, dt: float
+) -> Vector:
+    """Compute the commands (n,) [rad/s] that approach wanted velocities in the shortest time.
+
+    Args:
+        numbers: `MotionLimits.numbers`, (5 n,).
+        last: Last commands [rad/s], (n,).
+        before: Velocities that were wanted at the last step [rad/s], (n,).
+        wanted: Velocities that are wanted [rad/s], (n,).
+        lb: Lower bounds [rad/s], (n,) or more.
+        ub: Upper bounds [rad/s], (n,) or more.
+        dt: Control period [s].
+    """
+    n = last.size
+    dq = np.empty(n)
+    for i in range(n):
+        most = numbers[3 * n + i] * dt
+        aim = wanted[i]
+        behind = last[i] - (aim - min(max(aim - before[i], -most), most))
+        dq[i] = aim + braking(behind, lb[i] - aim, ub[i] - aim, numbers[4 * n + i], dt)
+        dq[i] = min(max(dq[i], lb[i]), ub[i])
+    return dq
+
+
+@compiled
+def soften(
+    data: Vector, n: int, m: int, p: int, weights: Vector, numbers: Vector, q: Vector, out: Vector
+) -> None:
+    """Write the program of the first stage, without equality rows, into `out`.
+
+    Args:
+        data: The step's program, laid out as `QP.data`.
+        n: Number of variables.
+        m: Number of inequality rows.
+        p: Number of task rows.
+        weights: Weight of each task row, (p,).
+        numbers: `MotionLimits.numbers`, (5 dof,).
+        q: Joint positions [rad], (dof,).
+        out: The program, ((n + m) (n + 1) + 2 n,).
+    """
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    dof, damping = q.size, 0.0
+    if p > 0:
+        gram = np.empty((p, p))
+        for j in range(p):
+            for k in range(p):
+                gram[j, k] = (
+                    weights[j] * weights[k] * dot(data, at_A + j * n, data[at_A + k * n :], n)
+                )
+        smallest = np.linalg.eigvalsh(gram)[0]
+        damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
+    for i in range(at_A):
+        out[i] = BLEND * data[i] if i < at_G else data[i]
+    for j in range(p):
+        row, square = at_A + j * n, weights[j] * weights[j]
+        for i in range(n):
+            scaled = square * data[row + i]
+            out[at_q + i] -= scaled * data[at_lb - p + j]
+            for k in range(n):
+                out[i * n + k] += scaled * data[row + k]
+    for i in range(n):
+        out[i * n + i] += damping
+        lb, ub = data[at_lb + i], data[at_lb + n + i]
+        if i < dof:
+            most = numbers[2 * dof + i]
+            lb = min(max(POSITION_GAIN * (numbers[i] - q[i]), -most), most)
+            ub = min(max(POSITION_GAIN * (numbers[dof + i] - q[i]), -most), most)
+        out[at_A + i], out[at_A + n + i] = lb, ub

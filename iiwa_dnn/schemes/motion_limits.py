@@ -1,9 +1,9 @@
 r"""Acceleration and jerk limits: velocity bounds from the last commands and a way to stop.
 
-A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with the acceleration a_k = (v_k - v_{k-1})
-/ dt and the jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can
-still come to rest within all of its limits, one step after the other, so that a next command
-exists whenever one did: they are never empty.
+A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with acceleration a_k = (v_k - v_{k-1}) / dt
+and jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can still
+come to rest within all of its limits, one step after the other, so that a next command exists
+whenever one did: they are never empty.
 
 **Velocity.** After a_k > 0 the velocity grows on, by a_k - J dt, a_k - 2 J dt, ... times dt, until
 the acceleration is gone; v_k has to leave room for that sum (`approach`). With the acceleration
