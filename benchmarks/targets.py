@@ -118,10 +118,11 @@ def drive(
 ) -> Drive:
     """Drive an arm towards a stream of poses, with or without the filter of `MovingTarget`."""
     start = Configuration(robot, q0)
-    hand = iiwa_dnn.MovingTarget(start)
+    limits = {"acceleration": 1.0, "jerk": 10.0}
+    hand = iiwa_dnn.MovingTarget(start, **limits)
     controller = iiwa_dnn.Controller(robot, scheme, hand if filtered else None, dt=dt)
     controller.warm_up()
-    hand = iiwa_dnn.MovingTarget(start)
+    hand = iiwa_dnn.MovingTarget(start, **limits)
     if filtered:
         controller.reference = hand
     q = np.empty((steps + 1, robot.dof))

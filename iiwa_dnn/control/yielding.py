@@ -88,17 +88,9 @@ class Yielding:
 
         It is within the bounds of `qp`, and within its rows if any velocity is.
         """
-        self._wanted[:] = 0.0
-        return self._approach(qp, self._wanted)
-
-    def _approach(self, qp: QP, wanted: Vector) -> Vector:
-        """The command that approaches a velocity (n,) quickest, which may move as it last did."""
-        args = (self._numbers, self._last, self._wanted, wanted, qp.lb, qp.ub, self._dt)
-        dq = approach_velocity(*args)
-        self._wanted[:] = wanted
-        if qp.sizes[1]:
-            dq = clip_command(qp, dq, self._clipper)[0]
-        return dq
+        rest = np.zeros(self._q.size)
+        approach_velocity(self._numbers, self._last, self._wanted, rest, qp.lb, qp.ub, self._dt)
+        return clip_command(qp, rest, self._clipper)[0] if qp.sizes[1] else rest
 
     def answer(self, qp: QP) -> Yielded:
         """Compute the command at a program of n variables whose rows may contradict its bounds."""
@@ -107,50 +99,74 @@ class Yielding:
         soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
         solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
         x: Vector = solution.x.copy() if solution.found else np.zeros(n)
-        exact = x - np.linalg.pinv(qp.A) @ (qp.A @ x - qp.b)
-        fits = (
-            np.abs(qp.A @ exact - qp.b).max(initial=0.0) <= _REACHED
-            and bool((qp.lb <= exact).all() and (exact <= qp.ub).all())
-            and bool((qp.G @ exact <= qp.h).all())
-        )
-        if fits:
-            self._wanted[:] = exact[:dof]
-        else:
-            wanted, x[:dof] = x[:dof].copy(), self._approach(qp, x[:dof])
+        wanted = x[:dof].copy()
+        if within_limits(qp.data, n, m, p, x):
+            self._wanted[:] = wanted
+            none = np.zeros(n, np.int8), np.zeros(m, np.int8)
+            return Yielded(Reach(1.0, x, *none), True)
+        approach_velocity(self._numbers, self._last, self._wanted, x[:dof], qp.lb, qp.ub, self._dt)
+        if m:
+            x[:dof] = clip_command(qp, x[:dof], self._clipper)[0]
         rhs = self._weights * qp.b
         length = float(rhs @ rhs)
         share = 1.0 if length == 0.0 else float(rhs @ (self._weights * (qp.A @ x))) / length
         sides = np.zeros(n, np.int8)
-        if not fits:
-            sides[:dof] = np.sign(wanted - x[:dof]) * (np.abs(wanted - x[:dof]) > _REACHED)
+        sides[:dof] = np.sign(wanted - x[:dof]) * (np.abs(wanted - x[:dof]) > _REACHED)
         reach = Reach(min(max(share, CREEP), 1.0), x, sides, np.zeros(m, np.int8))
-        return Yielded(reach, fits)
+        return Yielded(reach, False)
 
 
 @compiled
 def approach_velocity(
     numbers: Vector, last: Vector, before: Vector, wanted: Vector, lb: Vector, ub: Vector, dt: float
-) -> Vector:
-    """Compute the commands (n,) [rad/s] that approach wanted velocities in the shortest time.
+) -> None:
+    """Overwrite wanted velocities by the commands that approach them in the shortest time.
 
     Args:
         numbers: `MotionLimits.numbers`, (5 n,).
         last: Last commands [rad/s], (n,).
-        before: Velocities that were wanted at the last step [rad/s], (n,).
-        wanted: Velocities that are wanted [rad/s], (n,).
+        before: Velocities that were wanted at the last step [rad/s], (n,); becomes `wanted`.
+        wanted: Velocities that are wanted [rad/s], (n,); becomes the commands.
         lb: Lower bounds [rad/s], (n,) or more.
         ub: Upper bounds [rad/s], (n,) or more.
         dt: Control period [s].
     """
     n = last.size
-    dq = np.empty(n)
     for i in range(n):
-        most = numbers[3 * n + i] * dt
-        aim = wanted[i]
+        aim, most = wanted[i], numbers[3 * n + i] * dt
         behind = last[i] - (aim - min(max(aim - before[i], -most), most))
-        dq[i] = aim + braking(behind, lb[i] - aim, ub[i] - aim, numbers[4 * n + i], dt)
-        dq[i] = min(max(dq[i], lb[i]), ub[i])
-    return dq
+        dq = aim + braking(behind, lb[i] - aim, ub[i] - aim, numbers[4 * n + i], dt)
+        before[i], wanted[i] = aim, min(max(dq, lb[i]), ub[i])
+
+
+@compiled
+def within_limits(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
+    """Return whether the point on the equality rows that is nearest to x (n,) is within all limits.
+
+    A program of which that is true has a solution.
+    """
+    _, at_G, at_A, at_lb = offsets(n, m, p)
+    nearest = x.copy()
+    if p > 0:
+        A, gram, missing = data[at_A : at_A + p * n].reshape(p, n), np.empty((p, p)), np.empty(p)
+        for j in range(p):
+            missing[j] = data[at_lb - p + j] - dot(A[j], 0, x, n)
+            for k in range(p):
+                gram[j, k] = dot(A[j], 0, A[k], n) + (1e-13 if j == k else 0.0)
+        multiplier = np.linalg.solve(gram, missing)
+        for j in range(p):
+            for i in range(n):
+                nearest[i] += A[j, i] * multiplier[j]
+        for j in range(p):
+            if not abs(dot(A[j], 0, nearest, n) - data[at_lb - p + j]) <= _REACHED:
+                return False
+    for i in range(n):
+        if not data[at_lb + i] <= nearest[i] <= data[at_lb + n + i]:
+            return False
+    most = 0.0
+    for j in range(m):
+        most = max(most, dot(data, at_G + j * n, nearest, n) - data[at_G + m * n + j])
+    return most == 0.0
 
 
 @compiled
