@@ -7,7 +7,7 @@ velocity that the joints should have, inside the velocity and position limits al
 .. math::
 
     \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v\|^2
-        + \varepsilon\,(\tfrac12 v^T P v + q^T v), \qquad
+        + \varepsilon\,(\tfrac12 v^T P v + [\lambda = 0]\, q^T v), \quad
     \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma / \sigma_0)^2\bigr)
 
 with :math:`\sigma` the smallest singular value of W A: away from singular poses it is the task's
@@ -96,11 +96,16 @@ class Yielding:
         """Compute the command at a program of n variables whose rows may contradict its bounds."""
         dof, (n, m, p) = self._q.size, qp.sizes
         data = np.empty((n + m) * (n + 1) + 2 * n)
-        soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
+        damping = soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
         solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
         x: Vector = solution.x.copy() if solution.found else np.zeros(n)
+        # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
+        exact = x.copy()
+        on = on_rows(qp.data, n, m, p, exact)
+        if on and damping == 0.0 and inside(data, n, m, 0, exact):
+            x = exact
         wanted = x[:dof].copy()
-        if within_limits(qp.data, n, m, p, x):
+        if on and inside(qp.data, n, m, p, exact):
             self._wanted[:] = wanted
             none = np.zeros(n, np.int8), np.zeros(m, np.int8)
             return Yielded(Reach(1.0, x, *none), True)
@@ -140,39 +145,42 @@ def approach_velocity(
 
 
 @compiled
-def within_limits(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
-    """Return whether the point on the equality rows that is nearest to x (n,) is within all limits.
+def on_rows(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
+    """Move x (n,) to the nearest point on the equality rows; return False where that fails."""
+    _, _, at_A, at_lb = offsets(n, m, p)
+    if p == 0:
+        return True
+    A, gram, missing = data[at_A : at_A + p * n].reshape(p, n), np.empty((p, p)), np.empty(p)
+    for j in range(p):
+        missing[j] = data[at_lb - p + j] - dot(A[j], 0, x, n)
+        for k in range(p):
+            gram[j, k] = dot(A[j], 0, A[k], n) + (1e-13 if j == k else 0.0)
+    multiplier = np.linalg.solve(gram, missing)
+    worst = 0.0
+    for j in range(p):
+        for i in range(n):
+            x[i] += A[j, i] * multiplier[j]
+    for j in range(p):
+        worst = max(worst, abs(dot(A[j], 0, x, n) - data[at_lb - p + j]))
+    return worst <= _REACHED
 
-    A program of which that is true has a solution.
-    """
-    _, at_G, at_A, at_lb = offsets(n, m, p)
-    nearest = x.copy()
-    if p > 0:
-        A, gram, missing = data[at_A : at_A + p * n].reshape(p, n), np.empty((p, p)), np.empty(p)
-        for j in range(p):
-            missing[j] = data[at_lb - p + j] - dot(A[j], 0, x, n)
-            for k in range(p):
-                gram[j, k] = dot(A[j], 0, A[k], n) + (1e-13 if j == k else 0.0)
-        multiplier = np.linalg.solve(gram, missing)
-        for j in range(p):
-            for i in range(n):
-                nearest[i] += A[j, i] * multiplier[j]
-        for j in range(p):
-            if not abs(dot(A[j], 0, nearest, n) - data[at_lb - p + j]) <= _REACHED:
-                return False
-    for i in range(n):
-        if not data[at_lb + i] <= nearest[i] <= data[at_lb + n + i]:
-            return False
+
+@compiled
+def inside(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
+    """Return whether x (n,) is within the bounds and inequality rows of a program."""
+    _, at_G, _, at_lb = offsets(n, m, p)
     most = 0.0
+    for i in range(n):
+        most = max(most, data[at_lb + i] - x[i], x[i] - data[at_lb + n + i])
     for j in range(m):
-        most = max(most, dot(data, at_G + j * n, nearest, n) - data[at_G + m * n + j])
+        most = max(most, dot(data, at_G + j * n, x, n) - data[at_G + m * n + j])
     return most == 0.0
 
 
 @compiled
 def soften(
     data: Vector, n: int, m: int, p: int, weights: Vector, numbers: Vector, q: Vector, out: Vector
-) -> None:
+) -> float:
     """Write the program of the first stage, without equality rows, into `out`.
 
     Args:
@@ -184,6 +192,9 @@ def soften(
         numbers: `MotionLimits.numbers`, (5 dof,).
         q: Joint positions [rad], (dof,).
         out: The program, ((n + m) (n + 1) + 2 n,).
+
+    Returns:
+        The square of the damping, lambda.
     """
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     dof, damping = q.size, 0.0
@@ -196,8 +207,10 @@ def soften(
                 )
         smallest = np.linalg.eigvalsh(gram)[0]
         damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
+    # Near a singular pose a wish for another posture would hold the tip away from its target.
+    wish = 0.0 if damping > 0.0 else BLEND
     for i in range(at_A):
-        out[i] = BLEND * data[i] if i < at_G else data[i]
+        out[i] = data[i] * (BLEND if i < at_q else wish if i < at_G else 1.0)
     for j in range(p):
         row, square = at_A + j * n, weights[j] * weights[j]
         for i in range(n):
@@ -213,3 +226,4 @@ def soften(
             lb = min(max(POSITION_GAIN * (numbers[i] - q[i]), -most), most)
             ub = min(max(POSITION_GAIN * (numbers[dof + i] - q[i]), -most), most)
         out[at_A + i], out[at_A + n + i] = lb, ub
+    return damping
