@@ -188,6 +188,10 @@ class Controller:
         self.delay, self.halted, self._yields = 0.0, None, False
         self._plan = self._room = None
 
+    def halt(self, decision: Resolution) -> None:
+        """Brake in every step from now on until `reset`, with the evidence of a decision."""
+        self.halted, self.plan.network = decision, None
+
     def warm_up(self) -> None:
         """Compile whatever a step needs, so that the first one is as quick as the others."""
         begun, scheme, home = self._begun, self.scheme, self.robot.start_posture()
@@ -273,7 +277,6 @@ class Controller:
         if (
             state is not None
             and plan.network is not None
-            and self.halted is None
             and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
         ):
             answers.count = index + 1

@@ -248,7 +248,8 @@ class Simulation:
             incidents.note(k, resolution)
             self._controller.delay += self._dt * (1.0 - resolution.fraction)
             if resolution.action is Action.STOP:
-                self._controller.halted = self._controller.halted or resolution
+                if self._controller.halted is None and self._past is not None:
+                    self._controller.halt(resolution)
                 if not answers.dq(first).any():
                     self._history.stops.add(k)
         return answers.dq(first)
