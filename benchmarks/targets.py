@@ -98,6 +98,7 @@ class Drive(NamedTuple):
         us: Time of each step [us], (N,).
         error: Distance of the tip from the raw target [m], (N,).
         filtered: Distance of the tip from the filtered target [m], (N,).
+        room: Least distance of a program's bounds [rad/s]; negative: one is infeasible by them.
     """
 
     q: Array
@@ -105,6 +106,7 @@ class Drive(NamedTuple):
     us: Array
     error: Array
     filtered: Array
+    room: float
 
 
 def drive(
@@ -128,7 +130,7 @@ def drive(
     q = np.empty((steps + 1, robot.dof))
     q[0] = q0
     actions, us = np.zeros(steps, np.int8), np.empty(steps)
-    error, behind = np.empty(steps), np.empty(steps)
+    error, behind, room = np.empty(steps), np.empty(steps), np.inf
     for k, (place, turn) in zip(range(steps), poses, strict=False):
         hand.set(place, turn)
         target = None if filtered else Target(place, turn)
@@ -137,12 +139,29 @@ def drive(
         us[k] = 1e-3 * (time.perf_counter_ns() - began)
         q[k + 1] = q[k] + dt * command.dq
         actions[k] = command.action
-        tip = controller.plan.kinematics.placements[robot.tip_id][9:]
+        tip, qp = controller.plan.place[9:], command.qp
+        room = min(room, float((qp.ub - qp.lb).min()))
         error[k] = np.linalg.norm(tip - place)
         row = controller._room  # its last target is the one that was tracked
         assert row is not None
         behind[k] = np.linalg.norm(tip - row.targets[row.count - 1, :3])
-    return Drive(q, actions, us, error, behind)
+    return Drive(q, actions, us, error, behind, room)
+
+
+def longest_freeze(driven: Drive, dt: float) -> float:
+    """Longest time [s] in which the arm stands though its target is 1 mm away or more."""
+    still = np.abs(np.diff(driven.q, axis=0)).max(axis=1) < 1e-4 * dt
+    frozen = np.concatenate([[0], still & (driven.filtered > 1e-3), [0]])
+    edges = np.flatnonzero(np.diff(frozen))
+    return dt * float(np.diff(edges)[::2].max(initial=0))
+
+
+def scheme(jerk: float | None, acceleration: float | None = None) -> iiwa_dnn.Scheme:
+    """Return the paper's scheme with limits: the robot's accelerations and a jerk [rad/s^3]."""
+    limits = [iiwa_dnn.AccelerationLimits(acceleration)]
+    if jerk is not None:
+        limits.append(iiwa_dnn.JerkLimits(jerk))
+    return iiwa_dnn.DoubleIndicator(extra_limits=tuple(limits))
 
 
 def _posture(robot: Robot, rng: np.random.Generator) -> Array:
