@@ -53,8 +53,8 @@ class MovingTarget(Reference):
         self._filter = None
         if acceleration is not None:
             limits = (positive("speed", speed), positive("rate", rate))
-            rates = (positive("acceleration", acceleration), positive("jerk", jerk or math.inf))
-            self._filter = _Filter(limits, *rates)
+            hardest = math.inf if jerk is None else positive("jerk", jerk)
+            self._filter = _Filter(limits, positive("acceleration", acceleration), hardest)
         elif jerk is not None:
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
         self._time: float | None = None

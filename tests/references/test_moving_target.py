@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -32,7 +33,7 @@ def test_a_filtered_target_keeps_its_limits_and_arrives() -> None:
     for order, limit in enumerate((0.3, 1.0, 8.0), start=1):
         rate = np.linalg.norm(np.diff(path, order, axis=0), axis=1).max() / DT**order
         assert 0.3 * limit < rate <= limit * (1.0 + 1e-6)
-    spin = np.array([pin.log3(b @ a.T) for a, b in zip(turns, turns[1:], strict=False)]) / DT
+    spin = np.array([pin.log3(b @ a.T) for a, b in itertools.pairwise(turns)]) / DT
     assert np.linalg.norm(spin, axis=1).max() <= 1.2 * (1.0 + 1e-6)
     assert np.linalg.norm(np.diff(spin, axis=0), axis=1).max() / DT <= 4.0 * 1.01
     # The velocities that are handed out are the derivatives of the poses.
