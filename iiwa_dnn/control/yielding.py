@@ -184,14 +184,14 @@ def soften(
     """Write the program of the first stage, without equality rows, into `out`.
 
     Args:
-        data: The step's program, laid out as `QP.data`.
+        data: The step's program, laid out as `QP.data`, (size,).
         n: Number of variables.
         m: Number of inequality rows.
         p: Number of task rows.
         weights: Weight of each task row, (p,).
         numbers: `MotionLimits.numbers`, (5 dof,).
         q: Joint positions [rad], (dof,).
-        out: The program, ((n + m) (n + 1) + 2 n,).
+        out: The program, (size,), in the same way.
 
     Returns:
         The square of the damping, lambda.

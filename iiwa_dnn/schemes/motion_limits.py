@@ -179,11 +179,11 @@ def motion_limits(
     kept by these bounds too.
 
     Args:
-        data: The program, laid out as `QP.data`.
+        data: The program, laid out as `QP.data`, (size,).
         at_lb: Place of its bounds.
         n: Number of its variables.
         dof: Number of joints.
-        numbers: Constants of all parts.
+        numbers: Constants of all parts, (c,).
         at: Place of `MotionLimits.numbers` among them.
         q: Joint positions [rad], (dof,).
         past: The last command and the one before [rad/s], (2 dof,).
