@@ -52,7 +52,7 @@ class BenchTargetsSettings(RunOptions):
     out: Folder = Path("runs/bench_targets")  # folder that the results are written to
     steps: Count = 10_000  # number of steps of each loop towards each kind of target
     period: Time = 1e-3  # control period [s]
-    mink_python: Path | None = None  # Python interpreter with mink; by default this one
+    mink_python: str | None = None  # Python interpreter with mink; by default this one
 
 
 def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
@@ -85,7 +85,8 @@ def _targets(options: BenchTargetsSettings) -> int:
     from benchmarks.target_table import STREAMS, measure_targets, save
 
     with tqdm(total=options.steps * len(STREAMS), unit="step", disable=options.quiet) as bar:
-        rows = measure_targets(options.steps, options.period, options.mink_python, bar.update)
+        python = None if options.mink_python is None else Path(options.mink_python)
+        rows = measure_targets(options.steps, options.period, python, bar.update)
     print(save(rows, options.period, folder))
     save_settings(options, folder)
     return 0

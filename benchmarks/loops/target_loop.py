@@ -17,7 +17,8 @@ def make(task: Task, variant: str) -> Loop:
     limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(float(task["jerk"])))
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
     q, dt = np.array(task["q0"]), float(task["dt"])
-    hand = iiwa_dnn.MovingTarget(iiwa_dnn.Configuration(robot, q), acceleration=1.0, jerk=10.0)
+    start = iiwa_dnn.Configuration(robot, q)
+    hand = iiwa_dnn.MovingTarget(start, 0.8, 2.5, acceleration=3.0, jerk=30.0)
     filtered = variant == "filtered"
     controller = iiwa_dnn.Controller(robot, scheme, hand if filtered else None, dt=dt)
     poses = task["poses"]
