@@ -33,15 +33,15 @@ from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.schemes import (
+    AccelerationLimits,
     AxisTask,
     CentreOfMassTask,
     Cost,
     CyclicMotion,
     DoubleIndicator,
     ElbowAngleTask,
-    JointCouplingTask,
-    AccelerationLimits,
     JerkLimits,
+    JointCouplingTask,
     JointLimits,
     KineticEnergy,
     Limit,
@@ -86,8 +86,8 @@ __all__ = [
     "IiwaDnnError",
     "ImplicitEuler",
     "InvalidInputError",
-    "JointCouplingTask",
     "JerkLimits",
+    "JointCouplingTask",
     "JointLimits",
     "KineticEnergy",
     "Limit",

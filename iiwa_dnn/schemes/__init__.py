@@ -17,15 +17,15 @@ from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
 __all__ = [
+    "AccelerationLimits",
     "AxisTask",
     "CentreOfMassTask",
     "Cost",
     "CyclicMotion",
     "DoubleIndicator",
     "ElbowAngleTask",
-    "JointCouplingTask",
-    "AccelerationLimits",
     "JerkLimits",
+    "JointCouplingTask",
     "JointLimits",
     "KineticEnergy",
     "Limit",

@@ -28,7 +28,10 @@ def scheme(*frames: str | None) -> Scheme:
 
 def references(*frames: str) -> dict[str, Reference]:
     start = paper_start()
-    paths: list[Reference] = [Circle(radius=0.02, period=1.0), Line(np.array([0.0, 0.01, 0.0]), 1.0)]
+    paths: list[Reference] = [
+        Circle(radius=0.02, period=1.0),
+        Line(np.array([0.0, 0.01, 0.0]), 1.0),
+    ]
     return {
         name: path.anchored(start.frame(name)) for name, path in zip(frames, paths, strict=False)
     }
