@@ -14,18 +14,12 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import (
-    POLICIES,
-    Policy,
-    Resolution,
-    gave_way,
-    resolve,
-    stopped,
-)
+from iiwa_dnn.control.policies import POLICIES, Policy
+from iiwa_dnn.control.recourse import answer
 from iiwa_dnn.control.room import SIZE, Room
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -54,7 +48,6 @@ class Controller:
         policy: What to do at a step that the network does not solve in ``converged`` mode
             (`iiwa_dnn.control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
-        halted: Decision to stop that stands until `reset`: every step brakes. None: go on.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
@@ -93,8 +86,7 @@ class Controller:
         self.solver = DNNSolver(tol=tol) if solver is None else solver
         self.delay = 0.0
         self._q = np.zeros(robot.dof)
-        self._begun = self._yields = False
-        self.halted: Resolution | None = None
+        self._begun = False
 
     def __setattr__(self, name: str, value: Any) -> None:
         object.__setattr__(self, name, value)
@@ -185,12 +177,8 @@ class Controller:
     def reset(self) -> None:
         """Forget the network's state, the last command and the delay; the home stays."""
         self.solver.reset()
-        self.delay, self.halted, self._yields = 0.0, None, False
+        self.delay = 0.0
         self._plan = self._room = None
-
-    def halt(self, decision: Resolution) -> None:
-        """Brake in every step from now on until `reset`, with the evidence of a decision."""
-        self.halted, self.plan.network = decision, None
 
     def warm_up(self) -> None:
         """Compile whatever a step needs, so that the first one is as quick as the others."""
@@ -282,7 +270,7 @@ class Controller:
             answers.count = index + 1
             return
         # Where tasks yield to acceleration limits that is quicker found out than proven.
-        self._yields = plan.yielding is not None and self.mode == "converged"
+        plan.stick(self.mode == "converged")
         self._solve(answers)
 
     def follow(self, q: Vector, answers: Answers, count: int) -> int:
@@ -326,45 +314,12 @@ class Controller:
         if not plan.asks:
             plan.assemble(answers.program(index), answers.targets[index])
         qp = answers.qp(index)
-        resolution, solution = self._decided(qp), None
-        if resolution is None:
-            if self.mode == "converged":
-                solution = self.solver.solve(qp)
-            else:
-                solution = self.solver.advance(qp, self.dt)
-            if solution.status is not plan.expected:
-                resolution = self._resolve(qp, solution)
+        duration = 0.0 if self.mode == "converged" else self.dt
+        solution, resolution = answer(plan, qp, self.solver, self.policy, duration)
         if resolution is not None:
-            self._yields = plan.yielding is not None and self.mode == "converged"
-            qp, solution = resolution.qp, resolution.solution
-            answers.resolved[index] = resolution
-        assert solution is not None
+            qp, answers.resolved[index] = resolution.qp, resolution
         answers.add(qp, solution, plan.place, plan.q)
         plan.tell(answers.dq(index))
-
-    def _decided(self, qp: QP) -> Resolution | None:
-        """Decide without the network: while the arm brakes, and while the task still yields."""
-        yielding = self.plan.yielding
-        if self.halted is not None:
-            return stopped(qp, self.halted.solution, yielding=yielding)._replace(
-                sides=self.halted.sides, rows=self.halted.rows
-            )
-        if not self._yields or yielding is None or self.policy not in ("slow", "relax"):
-            return None
-        if not np.isfinite(qp.b).all():
-            return None
-        reach, fits = yielding.answer(qp)
-        # Where the program may have a solution again, the network is asked first.
-        self._yields = not fits
-        return None if fits else gave_way(qp, self.policy, reach)
-
-    def _resolve(self, qp: QP, failed: Solution) -> Resolution:
-        """Ask the policy about a program that the network did not solve."""
-        plan = self.plan
-        if self.mode != "converged":
-            return stopped(qp, failed, yielding=plan.yielding)  # it is no longer a number
-        weights = plan.row_weights
-        return resolve(qp, failed, self.policy, self.solver, weights, plan.yielding)
 
     def place(self, q: Vector) -> Vector:
         """Return the first frame's placement at joint positions q (n,), (12,)."""

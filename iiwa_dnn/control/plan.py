@@ -9,6 +9,7 @@ from numba import typeof
 from numba.core.dispatcher import Dispatcher
 
 from iiwa_dnn.control.cascade import Cascade
+from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.control.step import NETWORK, control_step
 from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
@@ -47,6 +48,8 @@ class Plan:
         frames: Names of the frames that tasks track, in the order of the targets.
         place: Placement of the first of them, (12,), as `Kinematics.placements`.
         yielding: Answers where tasks yield to acceleration and jerk limits; None without those.
+        stuck: Whether the task yielded at the last step.
+        halted: Decision to stop, by which every step brakes; None: goes on.
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
     """
 
@@ -92,6 +95,7 @@ class Plan:
         # A subclass that solves in a way of its own is asked, not bypassed.
         compiled = type(solver) is DNNSolver
         self.network = solver.numbers(0.0 if converged else dt) if compiled else None
+        self._numbers = self.network
         network = np.zeros(NETWORK) if self.network is None else self.network.copy()
         if layout is not None and layout.restrained:
             # A program that a few systems do not solve most likely has no solution.
@@ -100,6 +104,8 @@ class Plan:
         work = np.concatenate([head, network, inertia, constants])
         self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]
         self.last = self.past[:dof]
+        self.stuck = False
+        self.halted: Resolution | None = None
         self.yielding: Yielding | None = None
         if layout is not None and layout.restrained:
             limits = layout.blocks[-1].part.numbers(robot)
@@ -113,6 +119,26 @@ class Plan:
         if isinstance(control_step, Dispatcher):
             given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)
             self.step = control_step.compile(tuple(map(typeof, given)))
+
+    def halt(self, decision: Resolution) -> None:
+        """Brake at every step from now on, where acceleration or jerk is limited."""
+        if self.yielding is not None and self.halted is None:
+            self.halted, self.network = decision, None
+
+    def stick(self, stuck: bool) -> None:
+        """Note whether the task yields: as long as it does, the compiled step is not tried."""
+        self.stuck = stuck and self.yielding is not None
+        self.network = None if self.stuck else self._numbers
+
+    def begin(self) -> None:
+        """Begin a step of several stages, or one whose command may be altered."""
+        if self.yielding is not None:
+            self._before = self.past.copy()
+
+    def rewind(self) -> None:
+        """Let limits of the change of commands count from the last step, not the last stage."""
+        if self.yielding is not None:
+            self.past[:] = self._before
 
     def tell(self, dq: Vector) -> None:
         """Take note of a command dq (n,) [rad/s]."""

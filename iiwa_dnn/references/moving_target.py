@@ -78,7 +78,8 @@ class MovingTarget(Reference):
         turn = self._wanted[1] if rotation is None else finite_array("rotation", rotation, (3, 3))
         if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
             raise InvalidInputError("rotation", "is not a rotation matrix", rotation)
-        self._wanted = place, turn
+        if not (np.array_equal(place, self._wanted[0]) and np.array_equal(turn, self._wanted[1])):
+            self._wanted = place, turn
 
     @property
     def period(self) -> float:

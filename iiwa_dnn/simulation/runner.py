@@ -40,13 +40,11 @@ class Simulation:
     """One run, its arguments checked; `run` carries it out.
 
     Step k: the joints are read, the scheme builds the program at that reading and ``t[k]`` (and at
-    the stages between, for midpoint and RK4), the network answers, every reference solver is asked
-    the same, noise and filter act on the velocity, and the plant follows the result for dt.
-
-    A command that was altered on its way is clipped to the limits at the robot's true joint
-    positions, as by a drive that watches its own limits. At a step that the network cannot solve a
-    policy decides, and the record says so; such a step is an Euler step, whatever the motion. Where
-    a policy slows down, the record's desired positions are those of the slowed clock.
+    the stages between), the network answers, every reference solver is asked the same, noise and
+    filter act on the velocity, and the plant follows the result for dt. An altered command is
+    clipped to the limits at the true joint positions, as by a drive that watches its own limits. At
+    a step that the network cannot solve a policy decides; it is an Euler step, whatever the motion.
+    Where a policy slows down, the record's desired positions are those of the slowed clock.
     """
 
     def __init__(
@@ -187,7 +185,7 @@ class Simulation:
         """Take step k and return the status that the run has after it."""
         history, answers = self._history, self._answers
         q, t, first, plan = history.q[k], k * self._dt, answers.count, self._controller.plan
-        self._past = plan.past.copy() if plan.yielding is not None else None
+        plan.begin()
         seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
             velocity = self._motion.step(self._velocity_at, seen, t, self._dt)
@@ -201,10 +199,9 @@ class Simulation:
         if k in history.stops:
             history.stay(k)
             return self._incidents.status(k, t)
-        if self._past is not None:
-            plan.past[:] = self._past
+        plan.rewind()
         command = self._command(k, first, velocity) if self._altered else velocity
-        if self._past is not None:
+        if plan.yielding is not None:
             plan.tell(command)
         self._plant.move(command)
         torque = self._plant.torque
@@ -227,8 +224,7 @@ class Simulation:
             if index % self._motion.stages == 0 and not self._incidents.pending:
                 self._integral.observe(Configuration(self._robot, q), target, self._dt)
             answers.targets[index] = self._integral.apply(target).data
-        if self._past is not None:  # the limits of all stages are those from the step's start
-            self._controller.plan.past[:] = self._past
+        self._controller.plan.rewind()
         velocity = self._controller.answer(q, answers, t)
         self._judgement.note()
         return velocity
@@ -248,8 +244,7 @@ class Simulation:
             incidents.note(k, resolution)
             self._controller.delay += self._dt * (1.0 - resolution.fraction)
             if resolution.action is Action.STOP:
-                if self._controller.halted is None and self._past is not None:
-                    self._controller.halt(resolution)
+                self._controller.plan.halt(resolution)
                 if not answers.dq(first).any():
                     self._history.stops.add(k)
         return answers.dq(first)
