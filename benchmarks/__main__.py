@@ -1,10 +1,10 @@
-"""``python -m benchmarks solvers`` and ``python -m benchmarks loop``: measure, beside peers."""
+"""``python -m benchmarks solvers``, ``loop`` and ``targets``: measure, beside peers."""
 
 import sys
 
-from benchmarks.cli import bench_loop, bench_solvers
+from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 
-COMMANDS = {"solvers": bench_solvers, "loop": bench_loop}
+COMMANDS = {"solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets}
 
 if __name__ == "__main__":
     name = sys.argv[1] if len(sys.argv) > 1 else ""

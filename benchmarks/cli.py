@@ -44,6 +44,17 @@ class BenchLoopSettings(RunOptions):
     rounds: Count = 3  # number of repetitions of all that is not a step
 
 
+@dataclass(frozen=True)
+class BenchTargetsSettings(RunOptions):
+    """Measure six kinds of targets beside Pink and mink: error, jerk, frozen steps and times."""
+
+    command: ClassVar[str] = "targets"
+    out: Folder = Path("runs/bench_targets")  # folder that the results are written to
+    steps: Count = 10_000  # number of steps of each loop towards each kind of target
+    period: Time = 1e-3  # control period [s]
+    mink_python: str | None = None  # Python interpreter with mink; by default this one
+
+
 def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
     """Measure all solvers on all streams and write the report.
 
@@ -60,6 +71,25 @@ def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_sol
 def bench_loop(arguments: Sequence[str] | None = None, prog: str = "bench_loop") -> int:
     """Measure steps, runs, start-up and memory and write the report; as `bench_solvers`."""
     return run_command(BenchLoopSettings, prog, _loop, arguments)
+
+
+def bench_targets(arguments: Sequence[str] | None = None, prog: str = "bench_targets") -> int:
+    """Measure loops towards six kinds of targets and write the report; as `bench_solvers`."""
+    return run_command(BenchTargetsSettings, prog, _targets, arguments)
+
+
+def _targets(options: BenchTargetsSettings) -> int:
+    checks.integer("--steps", options.steps, 50)
+    checks.positive("--period", options.period)
+    folder = claim_folder(options)
+    from benchmarks.target_table import STREAMS, measure_targets, save
+
+    with tqdm(total=options.steps * len(STREAMS), unit="step", disable=options.quiet) as bar:
+        python = None if options.mink_python is None else Path(options.mink_python)
+        rows = measure_targets(options.steps, options.period, python, bar.update)
+    print(save(rows, options.period, folder))
+    save_settings(options, folder)
+    return 0
 
 
 def _solvers(options: BenchSettings) -> int:

@@ -33,12 +33,14 @@ from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.schemes import (
+    AccelerationLimits,
     AxisTask,
     CentreOfMassTask,
     Cost,
     CyclicMotion,
     DoubleIndicator,
     ElbowAngleTask,
+    JerkLimits,
     JointCouplingTask,
     JointLimits,
     KineticEnergy,
@@ -61,6 +63,7 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP",
+    "AccelerationLimits",
     "AdaptiveRungeKutta",
     "Agreement",
     "AxisTask",
@@ -83,6 +86,7 @@ __all__ = [
     "IiwaDnnError",
     "ImplicitEuler",
     "InvalidInputError",
+    "JerkLimits",
     "JointCouplingTask",
     "JointLimits",
     "KineticEnergy",

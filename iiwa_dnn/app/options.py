@@ -33,6 +33,7 @@ _Push = Annotated[_Numbers | None, arg(metavar="FX FY FZ", help_behavior_hint=""
 _Angles = Annotated[_Numbers, arg(metavar="RAD", help_behavior_hint="")]
 _Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
 _Limit = Annotated[str | None, arg(metavar="RAD", help_behavior_hint="")]
+_AnyLimit = Annotated[str | None, arg(metavar="X|robot", help_behavior_hint="")]
 _Robot = Annotated[str, arg(metavar="NAME|URDF")]
 _AnyRobot = Annotated[str | None, arg(metavar="NAME|URDF", help_behavior_hint="")]
 _Frame = Annotated[str | None, arg(metavar="FRAME", help_behavior_hint="")]
@@ -95,6 +96,8 @@ class TrackOptions(RunOptions):
     check: _Solver = "proxqp"  # solvers that check every step: proxqp, osqp, both or none
     tolerance: _Speed = 1e-6  # largest gap between the network and a checking solver [rad/s]
     speed: _Number = 1.0  # velocity limits, as a share of the data sheet's
+    acceleration_limit: _AnyLimit = None  # acceleration limit of all joints [rad/s^2], or robot
+    jerk_limit: _AnyLimit = None  # jerk limit of all joints [rad/s^3], or robot (its own)
     mode: _Mode = "converged"  # converged: network settled at every step; continuous: one time step
     kinetic: _Matrix = "identity"  # matrix G of the kinetic index: identity (the paper's), inertia
     gain: _Number = 10.2  # feedback gain of the position and the orientation error [1/s]

@@ -21,7 +21,7 @@ from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
 from iiwa_dnn.simulation import Plant, Simulation
 from iiwa_dnn.studies import paper
 
@@ -67,11 +67,32 @@ def simulation(
         orientation_gain=options.gain,
         orientation=options.orientation,
         kinetic=options.kinetic,
+        extra_limits=motion_limits(options),
     )
     reference = path(options).anchored(Configuration(robot, q0))
     check = CrossCheck(CHECKS[options.check], options.tolerance)
     asked = {name: getattr(options, name) for name in _HANDED_ON}
     return Simulation(robot, scheme, reference, q0, plant=plant, check=check, **asked)
+
+
+def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
+    """Return the limits on acceleration and jerk that the options name.
+
+    Raises:
+        InvalidInputError: A limit is neither a positive number nor ``robot``.
+    """
+    limits: list[Limit] = []
+    for kind in (AccelerationLimits, JerkLimits):
+        value = getattr(options, kind.quantity)
+        if value is None:
+            continue
+        try:
+            limits.append(kind(None if value == "robot" else float(value)))
+        except (ValueError, InvalidInputError) as error:
+            option = f"--{kind.quantity.replace('_', '-')}"
+            problem = f"must be a number above 0 or 'robot', not {value!r}"
+            raise InvalidInputError(option, problem, value) from error
+    return tuple(limits)
 
 
 def draw(

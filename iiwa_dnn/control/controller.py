@@ -14,7 +14,8 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import POLICIES, Policy, resolve, stopped
+from iiwa_dnn.control.policies import POLICIES, Policy
+from iiwa_dnn.control.recourse import answer
 from iiwa_dnn.control.room import SIZE, Room
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -267,8 +268,10 @@ class Controller:
             and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
         ):
             answers.count = index + 1
-        else:
-            self._solve(answers)
+            return
+        # Where tasks yield to acceleration limits that is quicker found out than proven.
+        plan.stick(self.mode == "converged")
+        self._solve(answers)
 
     def follow(self, q: Vector, answers: Answers, count: int) -> int:
         """Take up to `count` steps of which each answer moves `q` for one control period.
@@ -311,19 +314,12 @@ class Controller:
         if not plan.asks:
             plan.assemble(answers.program(index), answers.targets[index])
         qp = answers.qp(index)
-        if self.mode == "converged":
-            solution = self.solver.solve(qp)
-        else:
-            solution = self.solver.advance(qp, self.dt)
-        if solution.status is not plan.expected:
-            if self.mode == "converged":
-                resolution = resolve(qp, solution, self.policy, self.solver, plan.row_weights)
-            else:
-                resolution = stopped(qp, solution)  # it is no longer a number
-            qp, solution = resolution.qp, resolution.solution
-            answers.resolved[index] = resolution
+        duration = 0.0 if self.mode == "converged" else self.dt
+        solution, resolution = answer(plan, qp, self.solver, self.policy, duration)
+        if resolution is not None:
+            qp, answers.resolved[index] = resolution.qp, resolution
         answers.add(qp, solution, plan.place, plan.q)
-        plan.last[:] = answers.dq(index)
+        plan.tell(answers.dq(index))
 
     def place(self, q: Vector) -> Vector:
         """Return the first frame's placement at joint positions q (n,), (12,)."""

@@ -9,7 +9,9 @@ from numba import typeof
 from numba.core.dispatcher import Dispatcher
 
 from iiwa_dnn.control.cascade import Cascade
+from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.control.step import NETWORK, control_step
+from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Status, Vector
@@ -18,6 +20,8 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
 from iiwa_dnn.schemes.assembly import assemble
+
+_BUDGET = 60.0
 
 
 class Plan:
@@ -33,7 +37,8 @@ class Plan:
         pinocchio: `Kinematics.pinocchio`.
         compiled: Arguments of `control_step`: codes, work, jacobian, placements.
         step: `control_step`, entered without looking at the types of its arguments again.
-        last: Last command [rad/s], (n,), a view into the work array.
+        past: The last command and the one before [rad/s], (2 n,), a view into the work array.
+        last: The last command, (n,), likewise.
         q: Joint positions [rad], (n,), likewise.
         shape: Shape of q.
         inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
@@ -42,6 +47,9 @@ class Plan:
         cascade: Levels of the tasks with priorities.
         frames: Names of the frames that tasks track, in the order of the targets.
         place: Placement of the first of them, (12,), as `Kinematics.placements`.
+        yielding: Answers where tasks yield to acceleration and jerk limits; None without those.
+        stuck: Whether the task yielded at the last step.
+        halted: Decision to stop, by which every step brakes; None: goes on.
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
     """
 
@@ -87,12 +95,23 @@ class Plan:
         # A subclass that solves in a way of its own is asked, not bypassed.
         compiled = type(solver) is DNNSolver
         self.network = solver.numbers(0.0 if converged else dt) if compiled else None
-        network = np.zeros(NETWORK) if self.network is None else self.network
-        head = [1.0 / dt, *np.zeros(2 * dof)]
+        self._numbers = self.network
+        network = np.zeros(NETWORK) if self.network is None else self.network.copy()
+        if layout is not None and layout.restrained:
+            # A program that a few systems do not solve most likely has no solution.
+            network[1] = min(network[1], _BUDGET)
+        head = [1.0 / dt, *np.zeros(3 * dof)]
         work = np.concatenate([head, network, inertia, constants])
-        self.last, self.q = work[1 : 1 + dof], work[1 + dof : 1 + 2 * dof]
-        self.inertia = work[1 + 2 * dof + NETWORK :][: inertia.size]
-        self._constants = work[1 + 2 * dof + NETWORK + inertia.size :]
+        self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]
+        self.last = self.past[:dof]
+        self.stuck = False
+        self.halted: Resolution | None = None
+        self.yielding: Yielding | None = None
+        if layout is not None and layout.restrained:
+            limits = layout.blocks[-1].part.numbers(robot)
+            self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
+        self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
+        self._constants = work[1 + 3 * dof + NETWORK + inertia.size :]
         self.pinocchio = self.kinematics.pinocchio
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
@@ -100,6 +119,31 @@ class Plan:
         if isinstance(control_step, Dispatcher):
             given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)
             self.step = control_step.compile(tuple(map(typeof, given)))
+
+    def halt(self, decision: Resolution) -> None:
+        """Brake at every step from now on, where acceleration or jerk is limited."""
+        if self.yielding is not None and self.halted is None:
+            self.halted, self.network = decision, None
+
+    def stick(self, stuck: bool) -> None:
+        """Note whether the task yields: as long as it does, the compiled step is not tried."""
+        self.stuck = stuck and self.yielding is not None
+        self.network = None if self.stuck else self._numbers
+
+    def begin(self) -> None:
+        """Begin a step of several stages, or one whose command may be altered."""
+        if self.yielding is not None:
+            self._before = self.past.copy()
+
+    def rewind(self) -> None:
+        """Let limits of the change of commands count from the last step, not the last stage."""
+        if self.yielding is not None:
+            self.past[:] = self._before
+
+    def tell(self, dq: Vector) -> None:
+        """Take note of a command dq (n,) [rad/s]."""
+        self.past[dq.size :] = self.last
+        self.last[:] = dq
 
     def update(self, q: Vector) -> None:
         """Bring the kinematics to joint positions q (n,) [rad]."""
@@ -113,7 +157,7 @@ class Plan:
         codes, work, jacobian, placements = self.compiled
         assemble(
             data, codes, self._constants, self.q, jacobian, placements, self.inertia, targets,
-            work[0],
+            work[0], self.past,
         )  # fmt: skip
 
     def build(self, data: Vector, targets: Vector, t: float) -> None:

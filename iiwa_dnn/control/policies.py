@@ -26,6 +26,10 @@ limits contradict each other, so that no velocity is within all of them, the arm
 that has a solution which the network missed is answered by the reference solver, whatever the
 policy.
 
+With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity as
+`iiwa_dnn.control.yielding` says, the clock of ``slow`` by the share of it that is reached, and
+``stop`` brakes until the arm stands.
+
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
 "Control of redundant robots under hard joint constraints", IEEE Trans. Robotics 31 (2015).
@@ -39,6 +43,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from iiwa_dnn.control.reach import Reach, Sides, ask_reference, largest_fraction, least_violation
+from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status, Vector
@@ -99,7 +104,12 @@ class Resolution(NamedTuple):
 
 
 def resolve(
-    qp: QP, failed: Solution, policy: Policy, solver: DNNSolver, weights: Vector | None = None
+    qp: QP,
+    failed: Solution,
+    policy: Policy,
+    solver: DNNSolver,
+    weights: Vector | None = None,
+    yielding: Yielding | None = None,
 ) -> Resolution:
     """Decide what to do at a step that the network did not solve.
 
@@ -110,16 +120,25 @@ def resolve(
         solver: The network, for the program with another b; its tolerance holds for all answers.
         weights: Weight of each task row where the task yields, (p,) (`Layout.row_weights`); None
             weighs all alike.
+        yielding: Answers where there are limits on acceleration or jerk; then ``slow`` and
+            ``relax`` take its command, and differ in the clock alone.
 
     Returns:
-        The decision. Its joint velocity is inside the bounds of `qp`, but for ``stop``'s zero.
+        The decision. Its joint velocity is inside the bounds of `qp`, but for ``stop``'s zero
+        where no acceleration or jerk is limited.
 
     Raises:
         NoSolutionError: The policy is ``raise`` and the program has no solution; it carries the
             program.
     """
     if np.isnan(qp.data).any() or not np.isfinite(qp.b).all():
-        return stopped(qp, failed)
+        return stopped(qp, failed, yielding=yielding)
+    if yielding is not None and policy in ("slow", "relax"):
+        missed = failed.status is Status.NOT_SETTLED
+        if missed and (reference := ask_reference(qp, solver.tol)) is not None:
+            none = np.zeros(qp.sizes[0], np.int8), np.zeros(qp.sizes[1], np.int8)
+            return Resolution(Action.FALLBACK, qp, reference, 1.0, *none)
+        return gave_way(qp, policy, yielding.answer(qp).reach)
     reach = largest_fraction(qp)
     if reach.fraction >= _FEASIBLE:
         reference = ask_reference(qp, solver.tol)
@@ -131,7 +150,7 @@ def resolve(
         problem = qp.to_qpsolvers()
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
     if policy == "stop":
-        return stopped(qp, failed, reach)
+        return stopped(qp, failed, reach, yielding)
     if policy == "slow" and not np.isnan(reach.fraction):
         reach = _braked(qp, reach)
         if not reach.dq.any() and _rest_is_allowed(qp):
@@ -141,6 +160,13 @@ def resolve(
     if relaxed is None:
         return stopped(qp, failed, reach)
     return _settled(Action.RELAX, qp, relaxed)
+
+
+def gave_way(qp: QP, policy: Policy, reach: Reach) -> Resolution:
+    """Decide for the command of a `Yielding`; with ``relax`` the clock runs on."""
+    if policy == "slow":
+        return _settled(Action.SLOW, qp, reach)
+    return _settled(Action.RELAX, qp, reach._replace(fraction=1.0))
 
 
 def _slowed(qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
@@ -192,15 +218,21 @@ def _settled(action: Action, qp: QP, reach: Reach) -> Resolution:
     return Resolution(action, decided, answer, reach.fraction, reach.sides, reach.rows)
 
 
-def stopped(qp: QP, failed: Solution, reach: Reach | None = None) -> Resolution:
+def stopped(
+    qp: QP, failed: Solution, reach: Reach | None = None, yielding: Yielding | None = None
+) -> Resolution:
     """Decide for no velocity, with the residuals of the answer that was not to be had.
 
     Args:
         qp: The step's program, n variables.
         failed: The network's last word on it.
         reach: What stood in the way, where that is known.
+        yielding: Brakes as quickly as the limits on acceleration and jerk allow, where there are.
     """
     still = failed._replace(point=np.zeros_like(failed.point))
+    if yielding is not None:
+        braked = yielding.brake(qp)
+        still.point[: braked.size] = braked
     n, m, _ = qp.sizes
     none = np.zeros(n, np.int8), np.zeros(m, np.int8)
     sides, rows = none if reach is None else (reach.sides, reach.rows)

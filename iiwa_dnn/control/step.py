@@ -34,12 +34,12 @@ def control_step(
         rows: `Answers.rows`; the row ends with the step's targets.
         index: Number of the row.
         codes: `Layout.codes`.
-        work: ``[1 / dt | last command (dof) | joint positions (dof) | network (7) | inertia matrix
-            (dof dof, or none) | constants]``: the command is written; the network's numbers are
-            those of `DNNSolver.numbers` (tolerance, budget and first step of the implicit
-            integrator, time to advance (0: settle), whether x is projected, explicit sub-steps (0:
-            as many as stability needs), share of the stable step that is used); the constants are
-            `Layout.numbers`.
+        work: ``[1 / dt | last command (dof) | the one before (dof) | joint positions (dof) |
+            network (7) | inertia matrix (dof dof, or none) | constants]``: the commands are
+            written; the network's numbers are those of `DNNSolver.numbers` (tolerance, budget and
+            first step of the implicit integrator, time to advance (0: settle), whether x is
+            projected, explicit sub-steps (0: as many as stability needs), share of the stable step
+            that is used); the constants are `Layout.numbers`.
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         state: The network's state, (size,), advanced.
@@ -55,12 +55,23 @@ def control_step(
     at_point = (n + m + p) * (n + 1) + 2 * n
     at_figures = at_point + 2 * n + m + p
     data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
-    at_network = 1 + 2 * dof
-    q, network = work[1 + dof : at_network], work[at_network : at_network + NETWORK]
+    at_network = 1 + 3 * dof
+    q, network = work[1 + 2 * dof : at_network], work[at_network : at_network + NETWORK]
     if not built:
         inertia, targets = work[at_network + NETWORK :], figures[FIGURES + PLACE + dof :]
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
-        assemble(data, codes, constants, q, jacobian, placements, inertia, targets, work[0])
+        assemble(
+            data,
+            codes,
+            constants,
+            q,
+            jacobian,
+            placements,
+            inertia,
+            targets,
+            work[0],
+            work[1 : 1 + 2 * dof],
+        )
     before = state.copy()
     if network[3] > 0.0:
         count = int(network[5])
@@ -89,7 +100,7 @@ def control_step(
         figures[FIGURES + i] = placements[codes[5], i]
     for i in range(dof):
         figures[FIGURES + PLACE + i] = q[i]
-        work[1 + i] = point[i]
+        work[1 + dof + i], work[1 + i] = work[1 + i], point[i]
         if motion > 0.0:
             # Rounded as numpy would: the record's q[k + 1] is q[k] + dt dq[k] to the last bit.
             q[i] = move(q[i], motion, point[i])

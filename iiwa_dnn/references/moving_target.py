@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite_array, not_negative
+from iiwa_dnn.checks import finite_array, not_negative, positive
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Pose, Reference
 
@@ -20,20 +20,43 @@ class MovingTarget(Reference):
     The target moves to the pose given by `set` in a straight line and about a fixed axis, as time
     goes on in `at`: a controller never sees a jump, and a policy's slowed clock slows the target.
 
+    With an acceleration, the target also starts and brakes smoothly: by the time-optimal trajectory
+    from its present motion to rest at the pose (L. Berscheid, T. Kroeger, "Jerk-limited real-time
+    trajectory generation with arbitrary target states", RSS 2021; the library ruckig). The angular
+    limits are in the same proportion to `rate` as the linear ones are to `speed`.
+
     Attributes:
         speed: Largest linear speed of the target [m/s].
         rate: Largest angular speed of the target [rad/s].
+        acceleration: Largest linear acceleration [m/s^2]; None: the speed may jump.
+        jerk: Largest linear jerk [m/s^3]; None: the acceleration may jump.
     """
 
     name: ClassVar[str] = "moving target"
 
-    def __init__(self, pose: Pose, speed: float = 0.25, rate: float = 1.0) -> None:
+    def __init__(
+        self,
+        pose: Pose,
+        speed: float = 0.25,
+        rate: float = 1.0,
+        acceleration: float | None = None,
+        jerk: float | None = None,
+    ) -> None:
         """Begin at rest at a pose, for example an ``iiwa_dnn.Configuration``.
 
         Raises:
-            InvalidInputError: The pose is not finite, or a speed is not a number above zero.
+            InvalidInputError: The pose is not finite, or a limit is not a number above zero; or a
+                jerk is given without an acceleration.
         """
         self.speed, self.rate = not_negative("speed", speed), not_negative("rate", rate)
+        self.acceleration, self.jerk = acceleration, jerk
+        self._filter = None
+        if acceleration is not None:
+            limits = (positive("speed", speed), positive("rate", rate))
+            hardest = math.inf if jerk is None else positive("jerk", jerk)
+            self._filter = _Filter(limits, positive("acceleration", acceleration), hardest)
+        elif jerk is not None:
+            raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
         self._time: float | None = None
         self._velocity: NDArray[np.float64] = np.zeros(6)
         self._wanted = pose.position.copy(), pose.rotation.copy()
@@ -55,7 +78,8 @@ class MovingTarget(Reference):
         turn = self._wanted[1] if rotation is None else finite_array("rotation", rotation, (3, 3))
         if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
             raise InvalidInputError("rotation", "is not a rotation matrix", rotation)
-        self._wanted = place, turn
+        if not (np.array_equal(place, self._wanted[0]) and np.array_equal(turn, self._wanted[1])):
+            self._wanted = place, turn
 
     @property
     def period(self) -> float:
@@ -70,6 +94,11 @@ class MovingTarget(Reference):
         elapsed = 0.0 if self._time is None else t - self._time
         if elapsed > 0.0:
             (position, rotation), (place, turn) = self._now, self._wanted
+            if self._filter is not None:
+                self._time = t
+                moved = self._filter.move(self._now, self._wanted, elapsed)
+                self._now, self._velocity = moved[:2], moved[2]
+                return np.concatenate([self._now[0], self._now[1].ravel(), self._velocity])
             shift, axis = place - position, np.asarray(pin.log3(turn @ rotation.T))
             shift = shift * _share(float(np.linalg.norm(shift)), self.speed * elapsed)
             axis = axis * _share(float(np.linalg.norm(axis)), self.rate * elapsed)
@@ -82,7 +111,64 @@ class MovingTarget(Reference):
 
     def settings(self) -> dict[str, Any]:
         """Return name and speeds, in values that JSON knows."""
-        return {"name": self.name, "speed": self.speed, "rate": self.rate}
+        limits = {"acceleration": self.acceleration, "jerk": self.jerk}
+        given = {name: value for name, value in limits.items() if value is not None}
+        return {"name": self.name, "speed": self.speed, "rate": self.rate, **given}
+
+
+class _Filter:
+    """Time-optimal motion of a pose: six axes, the last three a rotation vector from `_anchor`."""
+
+    def __init__(self, limits: tuple[float, float], acceleration: float, jerk: float) -> None:
+        # Here, since only filters of accelerations need it.
+        from ruckig import InputParameter, Ruckig, Trajectory
+
+        self._ruckig, self._ask, self._way = Ruckig(6), InputParameter(6), Trajectory(6)
+        # The limits of ruckig are those of each axis, these are of the whole vector.
+        most = np.repeat(limits, 3) / math.sqrt(3.0)
+        self._ask.max_velocity = most.tolist()
+        self._ask.max_acceleration = (acceleration / limits[0] * most).tolist()
+        self._ask.max_jerk = (jerk / limits[0] * most).tolist()
+        self._goal: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+        self._spent = 0.0
+        self._motion: NDArray[np.float64] = np.zeros((2, 6))
+        self._start: NDArray[np.float64] = np.zeros(3)
+        self._anchor: NDArray[np.float64] = np.eye(3)
+
+    def move(
+        self,
+        now: tuple[NDArray[np.float64], NDArray[np.float64]],
+        goal: tuple[NDArray[np.float64], NDArray[np.float64]],
+        elapsed: float,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return position (3,), rotation (3, 3) and velocities (6,) after a time [s]."""
+        if self._goal is not goal:
+            axis = np.asarray(pin.log3(goal[1] @ now[1].T))
+            ask = self._ask
+            ask.current_position = [0.0] * 6
+            ask.current_velocity, ask.current_acceleration = self._motion.tolist()
+            ask.target_position = [*(goal[0] - now[0]), *axis]
+            if self._ruckig.calculate(ask, self._way).value >= 0:
+                self._goal, self._spent = goal, 0.0
+                self._start, self._anchor = now
+        self._spent += elapsed
+        shift, velocity = self._at(self._spent)
+        later = self._at(self._spent + _STEP)[1]
+        self._motion = np.stack([velocity, (later - velocity) / _STEP])
+        return self._start + shift[:3], pin.exp3(shift[3:]) @ self._anchor, velocity
+
+    def _at(self, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Displacement and velocities (6,), the latter's last three of the world's frame."""
+        place, speed, _ = map(np.array, self._way.at_time(min(t, self._way.duration)))
+        if t >= self._way.duration:
+            speed[:] = 0.0
+        # The left Jacobian of the rotation vector gives the angular velocity in the world's axes.
+        speed[3:] = pin.Jexp3(-place[3:]) @ speed[3:]
+        return place, speed
+
+
+_STEP = 1e-6
+"""Difference of time for the acceleration [s]."""
 
 
 def _share(size: float, most: float) -> float:

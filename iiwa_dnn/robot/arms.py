@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
+import numpy as np
+
 from iiwa_dnn.errors import MissingDependencyError
 
 _PACKAGE = "example-robot-data"
@@ -72,3 +74,16 @@ STARTS = {
     **{name: arm.start for name, arm in ARMS.items()},
 }
 """Known start postures by the robot's name [rad], each (n,)."""
+
+RATES: dict[str, tuple[tuple[float, ...], float | tuple[float, ...]]] = {
+    "iiwa7": ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), np.inf),
+    "panda": (
+        (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
+        (7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0),
+    ),
+}
+"""Acceleration [rad/s^2] and jerk [rad/s^3] limits by the robot's name.
+
+iiwa7: KUKA publishes none; Drake's model of the arm derives these accelerations from its torque
+limits. panda: the limits for Panda in the documentation of libfranka.
+"""

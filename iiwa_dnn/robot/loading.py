@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.arms import ARMS, RATES
 from iiwa_dnn.robot.robot import Robot
 
 _Joints = dict[str, ET.Element]
@@ -69,6 +69,8 @@ def load_robot(
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = model.name if arm is None else str(name_or_path)
     robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked)
+    if name in RATES and len(RATES[name][0]) == robot.dof:
+        robot = robot.with_limits(acceleration=RATES[name][0], jerk=RATES[name][1])
     _check_no_mimic(robot, joints)
     if verify:
         from iiwa_dnn.robot.verification import verify_robot  # slow to import

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -34,6 +35,8 @@ class Robot:
         locked: Names of the URDF's joints that were frozen on loading.
         path: The URDF file, where the robot came from one.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
+        ddq_max: Joint acceleration limits [rad/s^2], (n,); inf where there is none.
+        dddq_max: Joint jerk limits [rad/s^3], (n,); inf where there is none.
         tip_id: Pinocchio's index of the tip frame.
         limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
@@ -51,6 +54,8 @@ class Robot:
     locked: tuple[str, ...] = ()
     path: Path | None = None
     q_locked: tuple[float, ...] = ()
+    ddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
+    dddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
     tip_id: int = field(init=False)
     limits: _Array = field(init=False)
 
@@ -62,10 +67,12 @@ class Robot:
             problem = f"must have one position for each of {len(self.locked)} locked joints"
             raise InvalidInputError("q_locked", problem, self.q_locked)
         object.__setattr__(self, "tip_id", tip_id)
-        for name in ("q_lower", "q_upper", "dq_max"):
+        for name in ("q_lower", "q_upper", "dq_max", "ddq_max", "dddq_max"):
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
         object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
         _check_limits(("q_lower", "dq_max"), *self.limits)
+        _check_above_zero("ddq_max", self.ddq_max)
+        _check_above_zero("dddq_max", self.dddq_max)
 
     @property
     def dof(self) -> int:
@@ -101,6 +108,8 @@ class Robot:
         lower: ArrayLike | None = None,
         upper: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        jerk: ArrayLike | None = None,
     ) -> Robot:
         """Return the same robot with other limits; those not given stay as they are.
 
@@ -108,17 +117,27 @@ class Robot:
             lower: Lower joint position limits [rad], one number or (n,); -inf for none.
             upper: Upper joint position limits [rad], one number or (n,); inf for none.
             velocity: Joint velocity limits [rad/s], one number or (n,), above 0; inf for none.
+            acceleration: Joint acceleration limits [rad/s^2], likewise.
+            jerk: Joint jerk limits [rad/s^3], likewise.
 
         Raises:
             InvalidInputError: If a limit is not a number, has a wrong length, is not below its
-                upper counterpart or, for ``velocity``, is not above zero.
+                upper counterpart or, for a rate, is not above zero.
         """
         q_lower = self.q_lower if lower is None else _limit("lower", lower, self.dof)
         q_upper = self.q_upper if upper is None else _limit("upper", upper, self.dof)
         dq_max = self.dq_max if velocity is None else _limit("velocity", velocity, self.dof)
         name = "upper" if lower is None else "lower"
         _check_limits((name, "velocity"), q_lower, q_upper, dq_max)
-        return replace(self, q_lower=q_lower, q_upper=q_upper, dq_max=dq_max)
+        changed: dict[str, Any] = {"q_lower": q_lower, "q_upper": q_upper, "dq_max": dq_max}
+        for key, name, value in (
+            ("ddq_max", "acceleration", acceleration),
+            ("dddq_max", "jerk", jerk),
+        ):
+            if value is not None:
+                changed[key] = _limit(name, value, self.dof)
+                _check_above_zero(name, changed[key])
+        return replace(self, **changed)
 
     def start_posture(self) -> _Array:
         """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.
@@ -186,5 +205,10 @@ def _check_limits(arguments: tuple[str, str], lower: _Array, upper: _Array, dq: 
     for i in np.flatnonzero(lower >= upper):
         problem = f"joint {i + 1}: lower limit {lower[i]:g} is not below upper limit {upper[i]:g}"
         raise InvalidInputError(arguments[0], problem, (lower, upper))
-    for i in np.flatnonzero(dq <= 0.0):
-        raise InvalidInputError(arguments[1], f"joint {i + 1}: {dq[i]:g} is not above 0", dq)
+    _check_above_zero(arguments[1], dq)
+
+
+def _check_above_zero(argument: str, limits: _Array) -> None:
+    for i in np.flatnonzero(limits <= 0.0):
+        problem = f"joint {i + 1}: {limits[i]:g} is not above 0"
+        raise InvalidInputError(argument, problem, limits)

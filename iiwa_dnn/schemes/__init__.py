@@ -11,17 +11,20 @@ from iiwa_dnn.schemes.joint_tasks import (
     PostureTask,
 )
 from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.motion_limits import AccelerationLimits, JerkLimits
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
 __all__ = [
+    "AccelerationLimits",
     "AxisTask",
     "CentreOfMassTask",
     "Cost",
     "CyclicMotion",
     "DoubleIndicator",
     "ElbowAngleTask",
+    "JerkLimits",
     "JointCouplingTask",
     "JointLimits",
     "KineticEnergy",

@@ -25,6 +25,7 @@ from iiwa_dnn.schemes.costs import (
     add_kinetic_energy,
 )
 from iiwa_dnn.schemes.limits import JOINT_LIMITS, joint_limits
+from iiwa_dnn.schemes.motion_limits import MOTION_LIMITS, MotionLimits, merged, motion_limits
 from iiwa_dnn.schemes.parts import CUSTOM, TARGET_SIZE, Codes, Cost, Limit, Part, Step, Task
 from iiwa_dnn.schemes.tasks import (
     ORIENTATION_BLOCK,
@@ -67,6 +68,7 @@ class Layout:
         numbers: Constants of the compiled parts, one after the other.
         custom: Blocks of parts without a compiled form.
         needs_inertia: Whether a part asks for the inertia matrix.
+        restrained: Whether a limit asks for the last commands.
         row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
         priorities: Level of each equality row, (p,); 0 for one that has to hold.
     """
@@ -86,6 +88,7 @@ class Layout:
             InvalidInputError: A parameter of a part does not fit the robot.
         """
         self.robot = robot
+        limits = merged(limits)
         hard = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
         self.blocks = (
@@ -99,6 +102,7 @@ class Layout:
         self.custom = tuple(block for block in self.blocks if block.part.kind == CUSTOM)
         self.row_weights = np.repeat([t.row_weight for t in hard], [t.rows for t in hard])
         self.priorities = np.repeat([t.priority or 0 for t in hard], [t.rows for t in hard])
+        self.restrained = any(isinstance(limit, MotionLimits) for limit in limits)
         self.needs_inertia = any(
             isinstance(cost, KineticEnergy) and cost.kinetic == "inertia" for cost in costs
         )
@@ -188,6 +192,8 @@ class Layout:
                     qp.h[at] = _shaped(name, "h", h, (rows,))
                 if (bounds := part.bounds(step)) is not None:
                     lower, upper = (_shaped(name, "bounds", bound, (n,)) for bound in bounds)
+                    if self.restrained:  # acceleration and jerk limits never give way
+                        lower, upper = (np.clip(b, qp.lb, qp.ub) for b in (lower, upper))
                     np.maximum(qp.lb, lower, out=qp.lb)
                     np.minimum(qp.ub, upper, out=qp.ub)
 
@@ -209,7 +215,7 @@ def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matr
 @compiled
 def assemble(
     data: Vector, codes: Codes, numbers: Vector, q: Vector, jacobian: Matrix, placements: Matrix,
-    inertia: Vector, targets: Vector, rate: float,
+    inertia: Vector, targets: Vector, rate: float, past: Vector,
 ) -> None:  # fmt: skip
     """Write a program into `data`, without the rows of parts that have no compiled form.
 
@@ -223,6 +229,7 @@ def assemble(
         inertia: Joint-space inertia matrix row by row, (dof dof), where a cost takes it.
         targets: One `Target.data` after the other, (18 frames,).
         rate: 1 / dt [1/s]; inf where there is no control period.
+        past: The last command and the one before [rad/s], (2 dof,).
     """
     n, m, p, dof, blocks = codes[0], codes[1], codes[2], codes[3], codes[4]
     _, _, at_A, at_lb = offsets(n, m, p)
@@ -242,6 +249,8 @@ def assemble(
             add_cyclic_motion(data, n, dof, numbers, at, q)
         elif kind == JOINT_LIMITS:
             joint_limits(data, at_lb, n, dof, numbers, at, q, rate)
+        elif kind == MOTION_LIMITS:
+            motion_limits(data, at_lb, n, dof, numbers, at, q, past, rate)
         else:
             count = abs(rows)
             if rows > 0:

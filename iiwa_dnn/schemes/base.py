@@ -117,6 +117,7 @@ class Scheme:
         assemble(
             data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
             kinematics.inertia.ravel(), np.concatenate(list(targets.values())), np.inf,
+            np.zeros(2 * q.size),
         )  # fmt: skip
         if layout.custom:
             layout.fill(data, Step(kinematics, targets, 0.0, np.inf, q, np.zeros_like(q)))

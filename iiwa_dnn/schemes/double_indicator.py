@@ -27,6 +27,7 @@ from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import KINETICS, CyclicMotion, Kinetic, KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
 
 
@@ -45,6 +46,8 @@ class DoubleIndicator(Scheme):
             matrix, which makes the index twice the true kinetic energy [J].
         home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is;
             `simulate` and `Controller` anchor it where they begin.
+        extra_limits: Limits beside the joints' positions and velocities, for example
+            `AccelerationLimits` and `JerkLimits`.
     """
 
     weight: float = 0.2
@@ -55,6 +58,7 @@ class DoubleIndicator(Scheme):
     orientation: Orientation = "so3"
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
+    extra_limits: tuple[Limit, ...] = ()
 
     def __post_init__(self) -> None:
         """Compose the parts; raises InvalidInputError naming a parameter that is wrong."""
@@ -66,7 +70,7 @@ class DoubleIndicator(Scheme):
         object.__setattr__(self, "home", cyclic.home)
         tasks = tracking(self.position_gain, self.orientation_gain, self.orientation)
         costs = [KineticEnergy(self.weight, self.kinetic), cyclic]
-        self._compose(costs, tasks, [JointLimits(self.limit_gain)])
+        self._compose(costs, tasks, [JointLimits(self.limit_gain), *self.extra_limits])
 
     def anchored(self, conf: Configuration) -> DoubleIndicator:
         """Return the scheme with `conf` as home, unless it has a home already."""
@@ -75,6 +79,8 @@ class DoubleIndicator(Scheme):
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         parameters = {field.name: getattr(self, field.name) for field in fields(self)}
+        extra = [limit.settings() for limit in parameters.pop("extra_limits")]
+        parameters |= {"extra_limits": extra} if extra else {}
         return {"name": "double-indicator", **parameters}
 
 

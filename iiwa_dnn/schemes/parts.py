@@ -8,6 +8,7 @@ compiled form instead (`Part.kind`, `Part.numbers`), which stands beside the equ
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any, TypeVar
 
 import numpy as np
@@ -102,8 +103,8 @@ class Part:
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
-        fields = getattr(type(self), "__dataclass_fields__", {})
-        names = [name for name, field in fields.items() if field.init]
+        parts = fields(self) if "__dataclass_fields__" in dir(self) else ()  # type: ignore[arg-type]
+        names = [field.name for field in parts if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
 

@@ -40,13 +40,11 @@ class Simulation:
     """One run, its arguments checked; `run` carries it out.
 
     Step k: the joints are read, the scheme builds the program at that reading and ``t[k]`` (and at
-    the stages between, for midpoint and RK4), the network answers, every reference solver is asked
-    the same, noise and filter act on the velocity, and the plant follows the result for dt.
-
-    A command that was altered on its way is clipped to the limits at the robot's true joint
-    positions, as by a drive that watches its own limits. At a step that the network cannot solve a
-    policy decides, and the record says so; such a step is an Euler step, whatever the motion. Where
-    a policy slows down, the record's desired positions are those of the slowed clock.
+    the stages between), the network answers, every reference solver is asked the same, noise and
+    filter act on the velocity, and the plant follows the result for dt. An altered command is
+    clipped to the limits at the true joint positions, as by a drive that watches its own limits. At
+    a step that the network cannot solve a policy decides; it is an Euler step, whatever the motion.
+    Where a policy slows down, the record's desired positions are those of the slowed clock.
     """
 
     def __init__(
@@ -73,7 +71,7 @@ class Simulation:
         check: CrossCheck | None = None,
         solver: DNNSolver | None = None,
     ) -> None:
-        """Check the arguments and draw the noise; nothing runs yet. Arguments: see `simulate`."""
+        """Check the arguments, those of `simulate`, and draw the noise; q0 has the shape (n,)."""
         checks.positive("dt", dt)
         several = reference if isinstance(reference, Mapping) else {"": reference}
         length = max(r.duration for r in several.values()) if duration is None else duration
@@ -186,7 +184,8 @@ class Simulation:
     def _step(self, k: int) -> str:
         """Take step k and return the status that the run has after it."""
         history, answers = self._history, self._answers
-        q, t, first = history.q[k], k * self._dt, answers.count
+        q, t, first, plan = history.q[k], k * self._dt, answers.count, self._controller.plan
+        plan.begin()
         seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
             velocity = self._motion.step(self._velocity_at, seen, t, self._dt)
@@ -200,7 +199,10 @@ class Simulation:
         if k in history.stops:
             history.stay(k)
             return self._incidents.status(k, t)
+        plan.rewind()
         command = self._command(k, first, velocity) if self._altered else velocity
+        if plan.yielding is not None:
+            plan.tell(command)
         self._plant.move(command)
         torque = self._plant.torque
         if torque is not None and history.torque is not None:
@@ -222,6 +224,7 @@ class Simulation:
             if index % self._motion.stages == 0 and not self._incidents.pending:
                 self._integral.observe(Configuration(self._robot, q), target, self._dt)
             answers.targets[index] = self._integral.apply(target).data
+        self._controller.plan.rewind()
         velocity = self._controller.answer(q, answers, t)
         self._judgement.note()
         return velocity
@@ -241,7 +244,9 @@ class Simulation:
             incidents.note(k, resolution)
             self._controller.delay += self._dt * (1.0 - resolution.fraction)
             if resolution.action is Action.STOP:
-                self._history.stops.add(k)
+                self._controller.plan.halt(resolution)
+                if not answers.dq(first).any():
+                    self._history.stops.add(k)
         return answers.dq(first)
 
     def _command(self, k: int, first: int, velocity: Vector) -> Vector:

@@ -230,6 +230,22 @@ def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.Mo
     assert (asked["check"].solvers, asked["check"].tolerance) == (("proxqp",), 1e-6)
 
 
+def test_limits_on_acceleration_and_jerk(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arrays, metrics = run(tmp_path, "--acceleration-limit", "robot", "--jerk-limit", "300")
+    limits = metrics["settings"]["scheme"]["extra_limits"]
+    assert [limit["limit"] for limit in limits] == [None, 300.0]
+    assert np.abs(np.diff(arrays["q"], 3, axis=0)).max() < 300.0 * 1e-9
+    for option, value, said in (
+        ("--acceleration-limit", "fast", "above 0 or 'robot'"),
+        ("--jerk-limit", "-1", "above 0 or 'robot'"),
+        ("--jerk-limit", "robot", "no dddq_max"),
+    ):
+        assert call([*QUICK, f"{option}={value}", "--out", str(tmp_path / "bad")]) == 2
+        assert said in capsys.readouterr().err
+
+
 def test_datasheet_limits(tmp_path: Path) -> None:
     _, metrics = run(tmp_path, "--joint-limit", "datasheet", "--check", "none")
     degrees = np.rad2deg(metrics["settings"]["q_upper"])

@@ -11,7 +11,7 @@ from iiwa_dnn import Controller, CyclicMotion, KineticEnergy, PositionTask, Sche
 from iiwa_dnn.control.step import control_step
 from iiwa_dnn.networks.solver import DNNSolver
 
-BUDGET = 1 + 2 * 7 + 1
+BUDGET = 1 + 3 * 7 + 1
 """Index in the work array of the most linear systems."""
 
 

@@ -1,0 +1,174 @@
+"""Streams of targets that no arm can simply follow, and a loop that drives an arm towards them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import iiwa_dnn
+from iiwa_dnn import Configuration, Robot, Target
+
+Array = NDArray[np.float64]
+Pose = tuple[Array, Array]
+Stream = Callable[[Robot, np.random.Generator, int, float], Iterator[Pose]]
+
+
+def jumps(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """Poses of random postures, each held for 0.3 to 3 s."""
+    left, pose = 0, _pose(robot, _posture(robot, rng))
+    for _ in range(steps):
+        if left == 0:
+            left, pose = int(rng.uniform(0.3, 3.0) / dt), _pose(robot, _posture(robot, rng))
+        left -= 1
+        yield pose
+
+
+def teleoperation(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """A hand's motion of up to 0.3 m/s, known every 33 ms only."""
+    place, turn = _pose(robot, robot.start_posture())
+    w = rng.uniform(0.5, 4.0, (3, 3))
+    phase = rng.uniform(0.0, 2.0 * np.pi, (3, 3))
+    period = max(1, round(1.0 / (30.0 * dt)))
+    for k in range(steps):
+        t = dt * (k - k % period)
+        yield place + (0.02 * (np.sin(w * t + phase) - np.sin(phase))).sum(axis=1), turn
+
+
+def sinusoids(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """The tip of joints that swing at their velocity limits."""
+    q0 = robot.start_posture()
+    amplitude = 0.3 * np.minimum(robot.q_upper - q0, q0 - robot.q_lower)
+    w = rng.uniform(0.5, 1.2, robot.dof) * robot.dq_max / amplitude
+    for k in range(steps):
+        yield _pose(robot, q0 + amplitude * np.sin(w * dt * k))
+
+
+def out_of_reach(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """In turn a pose beyond the arm's reach and its start, each held for 1 to 4 s."""
+    home = _pose(robot, robot.start_posture())
+    left, away, pose = 0, False, home
+    for _ in range(steps):
+        if left == 0:
+            left, away = int(rng.uniform(1.0, 4.0) / dt), not away
+            direction = rng.normal(size=3)
+            far = 2.0 * direction / np.linalg.norm(direction)
+            pose = (far, home[1]) if away else home
+        left -= 1
+        yield pose
+
+
+def singular(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """In turn the pose of a stretched arm and its start, approached in 2 s each."""
+    q0 = robot.start_posture()
+    stretched = np.clip(np.where(np.arange(robot.dof) % 2, 0.02, q0), robot.q_lower, robot.q_upper)
+    for k in range(steps):
+        share = 0.5 - 0.5 * np.cos(0.5 * np.pi * k * dt)
+        yield _pose(robot, q0 + share * (stretched - q0))
+
+
+def reversals(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
+    """A line at 0.4 m/s that turns round within one step."""
+    place, turn = _pose(robot, robot.start_posture())
+    direction = rng.normal(size=3)
+    direction /= np.linalg.norm(direction)
+    for k in range(steps):
+        yield place + direction * (0.1 - abs((0.4 * k * dt + 0.1) % 0.4 - 0.2)), turn
+
+
+STREAMS: dict[str, Stream] = {
+    "jumps": jumps,
+    "teleoperation": teleoperation,
+    "sinusoids": sinusoids,
+    "out of reach": out_of_reach,
+    "singular": singular,
+    "reversals": reversals,
+}
+
+
+class Drive(NamedTuple):
+    """A driven stream.
+
+    Attributes:
+        q: Joint positions [rad], (N+1, n).
+        actions: `Action` of each step, (N,).
+        us: Time of each step [us], (N,).
+        error: Distance of the tip from the raw target [m], (N,).
+        filtered: Distance of the tip from the filtered target [m], (N,).
+        room: Least distance of a program's bounds [rad/s]; negative: one is infeasible by them.
+    """
+
+    q: Array
+    actions: NDArray[np.int8]
+    us: Array
+    error: Array
+    filtered: Array
+    room: float
+
+
+def drive(
+    robot: Robot,
+    scheme: iiwa_dnn.Scheme,
+    poses: Iterator[Pose],
+    steps: int,
+    dt: float,
+    q0: Array,
+    filtered: bool,
+) -> Drive:
+    """Drive an arm towards a stream of poses, with or without the filter of `MovingTarget`."""
+    start = Configuration(robot, q0)
+    limits = {"acceleration": 1.0, "jerk": 10.0}
+    hand = iiwa_dnn.MovingTarget(start, **limits)
+    controller = iiwa_dnn.Controller(robot, scheme, hand if filtered else None, dt=dt)
+    controller.warm_up()
+    hand = iiwa_dnn.MovingTarget(start, **limits)
+    if filtered:
+        controller.reference = hand
+    q = np.empty((steps + 1, robot.dof))
+    q[0] = q0
+    actions, us = np.zeros(steps, np.int8), np.empty(steps)
+    error, behind, room = np.empty(steps), np.empty(steps), np.inf
+    for k, (place, turn) in zip(range(steps), poses, strict=False):
+        hand.set(place, turn)
+        target = None if filtered else Target(place, turn)
+        began = time.perf_counter_ns()
+        command = controller.step(q[k], k * dt, target)
+        us[k] = 1e-3 * (time.perf_counter_ns() - began)
+        q[k + 1] = q[k] + dt * command.dq
+        actions[k] = command.action
+        tip, qp = controller.plan.place[9:], command.qp
+        room = min(room, float((qp.ub - qp.lb).min()))
+        error[k] = np.linalg.norm(tip - place)
+        row = controller._room  # its last target is the one that was tracked
+        assert row is not None
+        behind[k] = np.linalg.norm(tip - row.targets[row.count - 1, :3])
+    return Drive(q, actions, us, error, behind, room)
+
+
+def longest_freeze(driven: Drive, dt: float) -> float:
+    """Longest time [s] in which the arm stands though its target is 1 mm away or more."""
+    still = np.abs(np.diff(driven.q, axis=0)).max(axis=1) < 1e-4 * dt
+    frozen = np.concatenate([[0], still & (driven.filtered > 1e-3), [0]])
+    edges = np.flatnonzero(np.diff(frozen))
+    return dt * float(np.diff(edges)[::2].max(initial=0))
+
+
+def scheme(jerk: float | None, acceleration: float | None = None) -> iiwa_dnn.Scheme:
+    """Return the paper's scheme with limits: the robot's accelerations and a jerk [rad/s^3]."""
+    limits = [iiwa_dnn.AccelerationLimits(acceleration)]
+    if jerk is not None:
+        limits.append(iiwa_dnn.JerkLimits(jerk))
+    return iiwa_dnn.DoubleIndicator(extra_limits=tuple(limits))
+
+
+def _posture(robot: Robot, rng: np.random.Generator) -> Array:
+    lower, upper = np.maximum(robot.q_lower, -3.0), np.minimum(robot.q_upper, 3.0)
+    return rng.uniform(0.9 * lower + 0.1 * upper, 0.1 * lower + 0.9 * upper)
+
+
+def _pose(robot: Robot, q: Array) -> Pose:
+    conf = Configuration(robot, q)
+    return conf.position.copy(), conf.rotation.copy()

@@ -1,0 +1,229 @@
+r"""Steps at which the task has to yield to acceleration and jerk limits.
+
+Such limits leave a command little choice, so a program whose rows contradict them is common: at a
+jump of the target, at every start. Two stages answer it within microseconds. The first finds the
+velocity that the joints should have, inside the velocity and position limits alone,
+
+.. math::
+
+    \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v\|^2
+        + \varepsilon\,(\tfrac12 v^T P v + [\lambda = 0]\, q^T v), \quad
+    \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma / \sigma_0)^2\bigr)
+
+with :math:`\sigma` the smallest singular value of W A: away from singular poses it is the task's
+velocity, near them it is damped. A direction of singular value s is short of its velocity by the
+share :math:`\lambda^2 / (\lambda^2 + s^2)` at most, so that the tip lags a target of speed u by
+:math:`u \lambda^2 / (\delta s^2)`, :math:`\delta` the task's gain; the joints' speed is at most
+:math:`\|W b\| / (2 \lambda)`. The second stage lets each joint approach that velocity as quickly as
+its limits allow without passing it (`iiwa_dnn.schemes.motion_limits.braking`): looking one step
+ahead only, a limited jerk would make it swing about it for ever.
+
+Source of the damping: Y. Nakamura, H. Hanafusa, "Inverse kinematic solutions with singularity
+robustness for robot manipulator control", J. Dynamic Systems, Measurement, and Control 108 (1986).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.control.clipping import clip_command
+from iiwa_dnn.control.reach import Reach
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp.dense import dot
+from iiwa_dnn.qp.layout import compiled, offsets
+from iiwa_dnn.schemes.motion_limits import braking
+
+DAMPING, NEAR = 0.05, 0.05
+"""Lambda [m/rad] and sigma_0 [m/rad] of the damping near singular poses."""
+
+BLEND = 1e-4
+"""Epsilon: weight of the scheme's own cost beside the task."""
+
+POSITION_GAIN = 20.0
+"""Rate at which the wanted velocity falls towards a position limit [1/s]."""
+
+CREEP = 0.1
+"""Share of a period by which a slowed clock always advances: an arm that rests in a singular or
+unreachable pose does not hold its target there."""
+
+_REACHED = 1e-9
+
+
+class Yielded(NamedTuple):
+    """A command where the task yields.
+
+    Attributes:
+        reach: The command, with the share of the task velocity that it gives.
+        fits: Whether the task has a velocity within the limits after all.
+    """
+
+    reach: Reach
+    fits: bool
+
+
+class Yielding:
+    """Answers of the steps at which a task yields to acceleration and jerk limits."""
+
+    def __init__(
+        self, numbers: Vector, past: Vector, q: Vector, weights: Vector, dt: float
+    ) -> None:
+        """Prepare for a robot's loop.
+
+        Args:
+            numbers: `MotionLimits.numbers`, (5 n,).
+            past: The last two commands [rad/s], (2 n,), kept current by the caller.
+            q: Joint positions [rad], (n,), likewise.
+            weights: Weight of each task row, (p,).
+            dt: Control period [s].
+        """
+        self._numbers, self._last, self._q, self._dt = numbers, past[: q.size], q, dt
+        self._weights, self._wanted = weights, np.zeros(q.size)
+        self._solver, self._clipper = DNNSolver(tol=1e-8), DNNSolver()
+
+    def brake(self, qp: QP) -> Vector:
+        """Compute the command (n,) [rad/s] that comes to rest quickest.
+
+        It is within the bounds of `qp`, and within its rows if any velocity is.
+        """
+        rest = np.zeros(self._q.size)
+        approach_velocity(self._numbers, self._last, self._wanted, rest, qp.lb, qp.ub, self._dt)
+        return clip_command(qp, rest, self._clipper)[0] if qp.sizes[1] else rest
+
+    def answer(self, qp: QP) -> Yielded:
+        """Compute the command at a program of n variables whose rows may contradict its bounds."""
+        dof, (n, m, p) = self._q.size, qp.sizes
+        data = np.empty((n + m) * (n + 1) + 2 * n)
+        damping = soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
+        solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
+        x: Vector = solution.x.copy() if solution.found else np.zeros(n)
+        # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
+        exact = x.copy()
+        on = on_rows(qp.data, n, m, p, exact)
+        if on and damping == 0.0 and inside(data, n, m, 0, exact):
+            x = exact
+        wanted = x[:dof].copy()
+        if on and inside(qp.data, n, m, p, exact):
+            self._wanted[:] = wanted
+            none = np.zeros(n, np.int8), np.zeros(m, np.int8)
+            return Yielded(Reach(1.0, x, *none), True)
+        approach_velocity(self._numbers, self._last, self._wanted, x[:dof], qp.lb, qp.ub, self._dt)
+        if m:
+            x[:dof] = clip_command(qp, x[:dof], self._clipper)[0]
+        rhs = self._weights * qp.b
+        length = float(rhs @ rhs)
+        share = 1.0 if length == 0.0 else float(rhs @ (self._weights * (qp.A @ x))) / length
+        sides = np.zeros(n, np.int8)
+        sides[:dof] = np.sign(wanted - x[:dof]) * (np.abs(wanted - x[:dof]) > _REACHED)
+        reach = Reach(min(max(share, CREEP), 1.0), x, sides, np.zeros(m, np.int8))
+        return Yielded(reach, False)
+
+
+@compiled
+def approach_velocity(
+    numbers: Vector, last: Vector, before: Vector, wanted: Vector, lb: Vector, ub: Vector, dt: float
+) -> None:
+    """Overwrite wanted velocities by the commands that approach them in the shortest time.
+
+    Args:
+        numbers: `MotionLimits.numbers`, (5 n,).
+        last: Last commands [rad/s], (n,).
+        before: Velocities that were wanted at the last step [rad/s], (n,); becomes `wanted`.
+        wanted: Velocities that are wanted [rad/s], (n,); becomes the commands.
+        lb: Lower bounds [rad/s], (n,) or more.
+        ub: Upper bounds [rad/s], (n,) or more.
+        dt: Control period [s].
+    """
+    n = last.size
+    for i in range(n):
+        aim, most = wanted[i], numbers[3 * n + i] * dt
+        behind = last[i] - (aim - min(max(aim - before[i], -most), most))
+        dq = aim + braking(behind, lb[i] - aim, ub[i] - aim, numbers[4 * n + i], dt)
+        before[i], wanted[i] = aim, min(max(dq, lb[i]), ub[i])
+
+
+@compiled
+def on_rows(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
+    """Move x (n,) to the nearest point on the equality rows; return False where that fails."""
+    _, _, at_A, at_lb = offsets(n, m, p)
+    if p == 0:
+        return True
+    A, gram, missing = data[at_A : at_A + p * n].reshape(p, n), np.empty((p, p)), np.empty(p)
+    for j in range(p):
+        missing[j] = data[at_lb - p + j] - dot(A[j], 0, x, n)
+        for k in range(p):
+            gram[j, k] = dot(A[j], 0, A[k], n) + (1e-13 if j == k else 0.0)
+    multiplier = np.linalg.solve(gram, missing)
+    worst = 0.0
+    for j in range(p):
+        for i in range(n):
+            x[i] += A[j, i] * multiplier[j]
+    for j in range(p):
+        worst = max(worst, abs(dot(A[j], 0, x, n) - data[at_lb - p + j]))
+    return worst <= _REACHED
+
+
+@compiled
+def inside(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
+    """Return whether x (n,) is within the bounds and inequality rows of a program."""
+    _, at_G, _, at_lb = offsets(n, m, p)
+    most = 0.0
+    for i in range(n):
+        most = max(most, data[at_lb + i] - x[i], x[i] - data[at_lb + n + i])
+    for j in range(m):
+        most = max(most, dot(data, at_G + j * n, x, n) - data[at_G + m * n + j])
+    return most == 0.0
+
+
+@compiled
+def soften(
+    data: Vector, n: int, m: int, p: int, weights: Vector, numbers: Vector, q: Vector, out: Vector
+) -> float:
+    """Write the program of the first stage, without equality rows, into `out`.
+
+    Args:
+        data: The step's program, laid out as `QP.data`, (size,).
+        n: Number of variables.
+        m: Number of inequality rows.
+        p: Number of task rows.
+        weights: Weight of each task row, (p,).
+        numbers: `MotionLimits.numbers`, (5 dof,).
+        q: Joint positions [rad], (dof,).
+        out: The program, (size,), in the same way.
+
+    Returns:
+        The square of the damping, lambda.
+    """
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    dof, damping = q.size, 0.0
+    if p > 0:
+        gram = np.empty((p, p))
+        for j in range(p):
+            for k in range(p):
+                gram[j, k] = (
+                    weights[j] * weights[k] * dot(data, at_A + j * n, data[at_A + k * n :], n)
+                )
+        smallest = np.linalg.eigvalsh(gram)[0]
+        damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
+    # Near a singular pose a wish for another posture would hold the tip away from its target.
+    wish = 0.0 if damping > 0.0 else BLEND
+    for i in range(at_A):
+        out[i] = data[i] * (BLEND if i < at_q else wish if i < at_G else 1.0)
+    for j in range(p):
+        row, square = at_A + j * n, weights[j] * weights[j]
+        for i in range(n):
+            scaled = square * data[row + i]
+            out[at_q + i] -= scaled * data[at_lb - p + j]
+            for k in range(n):
+                out[i * n + k] += scaled * data[row + k]
+    for i in range(n):
+        out[i * n + i] += damping
+        lb, ub = data[at_lb + i], data[at_lb + n + i]
+        if i < dof:
+            most = numbers[2 * dof + i]
+            lb = min(max(POSITION_GAIN * (numbers[i] - q[i]), -most), most)
+            ub = min(max(POSITION_GAIN * (numbers[dof + i] - q[i]), -most), most)
+        out[at_A + i], out[at_A + n + i] = lb, ub
+    return damping

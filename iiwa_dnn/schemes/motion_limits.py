@@ -1,0 +1,325 @@
+r"""Acceleration and jerk limits: velocity bounds from the last commands and a way to stop.
+
+A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with acceleration a_k = (v_k - v_{k-1}) / dt
+and jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can still
+come to rest within all of its limits, one step after the other, so that a next command exists
+whenever one did: they are never empty.
+
+**Velocity.** After a_k > 0 the velocity grows on, by a_k - J dt, a_k - 2 J dt, ... times dt, until
+the acceleration is gone; v_k has to leave room for that sum (`approach`). With the acceleration
+limit alone, the same sum is the way that a braking joint still goes, and leaves room to the
+position limit: the exact discrete viability kernel.
+
+**Position, with a jerk limit.** The positions are the control points of a cubic B-spline whose
+third derivative is the jerk, constant in each step:
+
+.. math::
+
+    \tilde q_k = q_k + \tfrac16 dt^2 a_k, \qquad \tilde v_k = \tfrac12 (v_k + v_{k-1})
+
+It comes to rest at :math:`\tilde q_k + \Delta(\tilde v_k, a_k)` where the jerk is -J, the
+acceleration held at -A', and the jerk J (`stopping_distance`; mirrored where the joint is about to
+turn round), and its highest point on the way there, `highest`, grows with v_k: the upper bound is
+its root. In one step of the true limits that point can always be kept, since -J over a whole step
+brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J' is at most
+A / (8 dt) and dq_max / (8 dt^2). Samples are above the spline by 0.2 J' dt^3 at most, which is kept
+free at either end.
+
+Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
+control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
+third order is derived in docs/limits.md.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.parts import Limit
+
+MOTION_LIMITS = 21
+
+MARGIN = 0.2
+"""Room that is kept free at a position limit, in units of J dt^3."""
+
+SHARE = 8.0
+"""Steps of jerk at least that braking takes to its full deceleration."""
+
+
+@dataclass(frozen=True)
+class _RateLimits(Limit):
+    """A limit of each joint on a derivative of its velocity.
+
+    Attributes:
+        limit: The limit, one number or one a joint, above 0; None takes the robot's.
+    """
+
+    limit: ArrayLike | None = None
+    quantity: ClassVar[str]
+    default: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        """Check the limit; raises InvalidInputError."""
+        if self.limit is None:
+            return
+        try:
+            values = np.asarray(self.limit, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise InvalidInputError(
+                self.quantity, "must be a number or (n,)", self.limit
+            ) from error
+        if values.ndim > 1 or not (values > 0.0).all():
+            raise InvalidInputError(self.quantity, "must be above 0, a number or (n,)", self.limit)
+        object.__setattr__(
+            self, "limit", float(values) if values.ndim == 0 else tuple(values.tolist())
+        )
+
+    def of(self, robot: Robot) -> Vector:
+        """Return the limit of each joint, (n,).
+
+        Raises:
+            InvalidInputError: It is not one number or n, or None and the robot has none.
+        """
+        if self.limit is not None:
+            values = np.asarray(self.limit)
+            if values.ndim and values.size != robot.dof:
+                problem = f"has {values.size} numbers for {robot.dof} joints"
+                raise InvalidInputError(self.quantity, problem, self.limit)
+            return np.array(np.broadcast_to(values, robot.dof))
+        limits: Vector = getattr(robot, self.default)
+        if np.isinf(limits).all():
+            problem = f"is needed: robot {robot.name} has no {self.default} of its own"
+            raise InvalidInputError(self.quantity, problem)
+        return limits
+
+
+@dataclass(frozen=True)
+class AccelerationLimits(_RateLimits):
+    """Bounds on the change of the joint velocities from one command to the next.
+
+    A joint can always stop before its position limit. Where a row of a task or another limit
+    conflicts with the bounds, the task yields (`iiwa_dnn.control.policies`), the bounds never do.
+
+    Attributes:
+        limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`.
+    """
+
+    quantity: ClassVar[str] = "acceleration_limit"
+    default: ClassVar[str] = "ddq_max"
+
+
+@dataclass(frozen=True)
+class JerkLimits(_RateLimits):
+    """Bounds on the change of the joint accelerations from one command to the next.
+
+    Attributes:
+        limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`.
+    """
+
+    quantity: ClassVar[str] = "jerk_limit"
+    default: ClassVar[str] = "dddq_max"
+
+
+@dataclass(frozen=True)
+class MotionLimits(Limit):
+    """All acceleration and jerk limits of a scheme, as the one block that is compiled.
+
+    Attributes:
+        limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
+    """
+
+    limits: tuple[_RateLimits, ...] = ()
+    kind: int = field(default=MOTION_LIMITS, init=False, repr=False)
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return position, velocity, acceleration and jerk limits, (5 n,).
+
+        Raises:
+            InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
+                turn round in.
+        """
+        rates = np.full((2, robot.dof), np.inf)
+        for limit in self.limits:
+            row = rates[int(isinstance(limit, JerkLimits))]
+            np.minimum(row, limit.of(robot), out=row)
+        acceleration, jerk = rates
+        turn = 2.0 * np.minimum(acceleration, np.sqrt(2.0 * jerk * robot.dq_max)) ** 3
+        short = turn > jerk**2 * (robot.q_upper - robot.q_lower)
+        if short.any():
+            i = int(np.flatnonzero(short)[0])
+            problem = f"joint {i + 1}: {jerk[i]:g} rad/s^3 is too little to stop in its range"
+            raise InvalidInputError("jerk_limit", problem, jerk)
+        return np.concatenate([robot.limits.ravel(), rates.ravel()])
+
+
+def merged(limits: Sequence[Limit]) -> list[Limit]:
+    """Return the limits with those on acceleration and jerk as one block, the last."""
+    rates = tuple(limit for limit in limits if isinstance(limit, _RateLimits))
+    others = [limit for limit in limits if not isinstance(limit, _RateLimits)]
+    return [*others, MotionLimits(rates)] if rates else others
+
+
+@compiled
+def motion_limits(
+    data: Vector, at_lb: int, n: int, dof: int, numbers: Vector, at: int, q: Vector, past: Vector,
+    rate: float,
+) -> None:  # fmt: skip
+    """Put the bounds of the joints inside those of acceleration and jerk.
+
+    Bounds of other limits give way where they contradict: the position and velocity limits are
+    kept by these bounds too.
+
+    Args:
+        data: The program, laid out as `QP.data`, (size,).
+        at_lb: Place of its bounds.
+        n: Number of its variables.
+        dof: Number of joints.
+        numbers: Constants of all parts, (c,).
+        at: Place of `MotionLimits.numbers` among them.
+        q: Joint positions [rad], (dof,).
+        past: The last command and the one before [rad/s], (2 dof,).
+        rate: 1 / dt [1/s]; inf where there is no control period, and so no such bounds.
+    """
+    if not rate < np.inf:
+        return
+    for i in range(dof):
+        k = at + i
+        lower, upper = joint_bounds(
+            past[i], past[dof + i], numbers[k + dof] - q[i], q[i] - numbers[k],
+            numbers[k + 2 * dof], numbers[k + 3 * dof], numbers[k + 4 * dof], 1.0 / rate,
+        )  # fmt: skip
+        lb, ub = at_lb + i, at_lb + n + i
+        data[lb] = min(max(data[lb], lower), upper)
+        data[ub] = min(max(data[ub], lower), upper)
+
+
+@compiled
+def joint_bounds(
+    last: float, before: float, above: float, below: float, fastest: float, accel: float,
+    jerk: float, dt: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Compute the bounds of one joint's next command [rad/s].
+
+    Args:
+        last: Last command [rad/s].
+        before: The command before it [rad/s].
+        above: Way to the upper position limit [rad].
+        below: Way to the lower position limit [rad].
+        fastest: Velocity limit [rad/s]; inf for none, as with the next two.
+        accel: Acceleration limit [rad/s^2].
+        jerk: Jerk limit [rad/s^3].
+        dt: Control period [s].
+
+    Returns:
+        Lower and upper bound, the former never above the latter; jerk and acceleration are within
+        their limits at both, whatever the state is.
+    """
+    first, final = last - accel * dt, last + accel * dt
+    if jerk < np.inf:
+        # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
+        middle, reach = 2.0 * last - before, jerk * dt * dt
+        first = min(max(first, middle - reach), middle + reach)
+        final = min(max(final, middle - reach), middle + reach)
+        jerk = min(jerk, min(accel / dt, fastest / (dt * dt)) / SHARE)
+        unit = jerk * dt * dt
+        lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
+        ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
+        if lb > ub:
+            lb = ub = 0.5 * (lb + ub)
+        limit, margin = accel - jerk * dt, MARGIN * unit * dt
+        upper = _ceiling(lb, ub, above - margin, last, dt, jerk, limit)
+        lower = -_ceiling(-ub, -lb, below - margin, -last, dt, jerk, limit)
+    elif accel < np.inf:
+        unit = accel * dt
+        upper = min(fastest, unit * approach(above / (unit * dt)))
+        lower = max(-fastest, -unit * approach(below / (unit * dt)))
+        upper, lower = min(max(upper, first), final), min(max(lower, first), final)
+    else:
+        return -np.inf, np.inf
+    if lower > upper:  # by rounding, or at a position that no command led to
+        lower = upper = 0.5 * (lower + upper)
+    return lower, upper
+
+
+@compiled
+def braking(last: float, lb: float, ub: float, jerk: float, dt: float) -> float:
+    """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
+    wanted, unit = 0.0, jerk * dt * dt
+    if jerk < np.inf and last != 0.0:
+        wanted = last - math.copysign(unit * approach(abs(last) / unit), last)
+    return min(max(wanted, lb), ub)
+
+
+@compiled
+def approach(room: float) -> float:
+    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `room`."""
+    if not room > 0.0 or room == np.inf:
+        return room
+    m = math.floor(0.5 * (math.sqrt(1.0 + 8.0 * room) - 1.0))
+    return room / (m + 1.0) + 0.5 * m
+
+
+@compiled
+def stopping_distance(v: float, a: float, J: float, A: float) -> float:
+    """Compute the way of a spline from velocity v and acceleration a to rest.
+
+    The joint does not turn round: v >= -a |a| / (2 J). It brakes at A, or at -a where that is more.
+    """
+    deepest = max(A, -a)
+    square = max(J * v + 0.5 * a * a, 0.0)
+    d = min(math.sqrt(square), deepest)
+    T = (a + d) / J
+    way = T * (v + T * (0.5 * a - J * T / 6.0)) + d * d * d / (6.0 * J * J)
+    if square > d * d:
+        v, h = v + 0.5 * (a * a - d * d) / J, 0.5 * d * d / J
+        way += (v - h) * (v + h) / (2.0 * d)
+    return way
+
+
+@compiled
+def highest(v: float, last: float, dt: float, J: float, A: float) -> float:
+    """Compute the highest position of the way to rest after command v, from that before it."""
+    a, mean = (v - last) / dt, 0.5 * (v + last)
+    start = dt * dt * a / 6.0
+    if mean + 0.5 * a * abs(a) / J >= 0.0:
+        return start + max(0.0, stopping_distance(mean, a, J, A))
+    if mean <= 0.0:
+        return start
+    T = -(a + math.sqrt(max(a * a - 2.0 * J * mean, 0.0))) / J
+    return start + T * (mean + T * (0.5 * a + J * T / 6.0))
+
+
+@compiled
+def _ceiling(
+    lb: float, ub: float, room: float, last: float, dt: float, J: float, A: float
+) -> float:
+    """Compute the largest command in [lb, ub] whose highest position is within `room`, else lb."""
+    over = highest(ub, last, dt, J, A) - room
+    if not over > 0.0:
+        return ub
+    under = highest(lb, last, dt, J, A) - room
+    if under > 0.0:
+        return lb
+    bottom, top, narrow = lb, ub, 1e-6 * (ub - lb)
+    for k in range(50):
+        if top - bottom <= narrow:
+            break
+        width = top - bottom
+        # Every third step halves: regula falsi alone may keep one end for long.
+        share = 0.5 if k % 3 == 2 else min(max(under / (under - over), 0.01), 0.99)
+        middle = bottom + share * width
+        value = highest(middle, last, dt, J, A) - room
+        if value > 0.0:
+            top, over = middle, value
+        else:
+            bottom, under = middle, value
+    return bottom

@@ -1,0 +1,156 @@
+"""Every command keeps acceleration and jerk limits, whatever asked for it; the path yields."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
+from iiwa_dnn import (
+    AccelerationLimits,
+    Controller,
+    DoubleIndicator,
+    Heart,
+    JerkLimits,
+    JointLimits,
+    Limit,
+    PositionTask,
+    Record,
+    Scheme,
+    Step,
+    Target,
+    failures,
+    simulate,
+)
+from iiwa_dnn.control.policies import Action, Policy
+from iiwa_dnn.simulation.noise import VelocityDisturbance
+from judge_limits import Breach, breaches
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from benchmarks.targets import STREAMS, drive, longest_freeze, scheme
+
+JERK = 500.0
+LIMITS = (AccelerationLimits(), JerkLimits(JERK))
+LIMITED = DoubleIndicator(extra_limits=LIMITS)
+
+
+def judged(q: np.ndarray, dt: float = 1e-3, jerk: float = JERK) -> list[Breach]:
+    """What the judge says of joint positions of the paper's robot."""
+    robot = paper_robot()
+    return breaches(q, dt, robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
+
+
+@pytest.mark.parametrize("kind", STREAMS)
+@pytest.mark.parametrize("filtered", [False, True])
+def test_hostile_targets_break_no_limit(kind: str, filtered: bool) -> None:
+    robot, steps, dt = paper_robot(), 600, 4e-3
+    poses = STREAMS[kind](robot, np.random.default_rng(5), steps, dt)
+    driven = drive(robot, scheme(JERK), poses, steps, dt, paper_start().q, filtered)
+    assert judged(driven.q, dt) == []
+    assert driven.room >= 0.0
+    if kind not in ("jumps", "out of reach"):
+        assert longest_freeze(driven, dt) <= 0.5
+
+
+def test_a_path_that_fits_the_limits_is_drawn_as_without() -> None:
+    free, limited = run(duration=0.2), run(LIMITED, duration=0.2)
+    np.testing.assert_array_equal(limited.q, free.q)
+    assert limited.action is None
+    assert limited.settings["scheme"]["extra_limits"][1] == {"name": "JerkLimits", "limit": JERK}
+    assert "extra_limits" not in free.settings["scheme"]
+
+
+@pytest.mark.parametrize("limits", [LIMITS, LIMITS[:1]])
+def test_a_jump_is_made_good_without_swinging(limits: tuple[Limit, ...]) -> None:
+    start = paper_start()
+    controller = Controller(paper_robot(), DoubleIndicator(extra_limits=limits))
+    target = Target(start.position + [0.0, -0.05, 0.0], start.rotation)
+    q, path = start.q, [start.q]
+    distance = []
+    for k in range(1500):
+        q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
+        path.append(q)
+        distance.append(np.linalg.norm(controller.plan.place[9:] - target.position))
+    assert judged(np.array(path), jerk=JERK if len(limits) == 2 else np.inf) == []
+    assert distance[-1] < 1e-6
+    assert np.diff(distance).max() < 1e-6  # it never moves away
+    assert controller.step(q, 1.5, target).action is Action.NONE
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
+def test_a_path_that_is_too_quick(policy: Policy) -> None:
+    robot, start = paper_robot(), paper_start()
+    limited = DoubleIndicator(extra_limits=LIMITS[:1])
+    fast = Heart(scale=0.02, period=6.0).anchored(start)
+    record = simulate(
+        robot, limited, fast, start.q, dt=1e-3, duration=2.0, policy=policy, check=UNCHECKED
+    )
+    assert judged(record.q, jerk=np.inf) == []
+    assert record.action is not None
+    if policy == "stop":
+        assert record.settings["status"].startswith("stopped")
+        assert (record.dq[-1] == 0.0).all()
+        assert np.abs(record.dq).max() > 0.01  # it was moving, and braked
+        assert failures(record)
+    else:
+        assert record.settings["status"] == "completed"
+        expected = Action.SLOW if policy == "slow" else Action.RELAX
+        assert set(np.unique(record.action)) <= {Action.NONE, expected}
+    if policy == "slow":
+        assert record.fraction is not None
+        assert 0.1 <= record.fraction.min() < 1.0
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"motion": "rk4"},
+        {"motion": "midpoint"},
+        {"noise": 0.3},
+        {"noise": 0.3, "filter_window": 5},
+        {"noise": 1e-3, "noise_at": "measurement"},
+        {"noise": 0.1, "noise_at": "network"},
+        {"disturbance": VelocityDisturbance(0.1, 0.1, 0.5, 3.0)},
+        {"mode": "continuous"},
+    ],
+)
+def test_commands_that_something_alters_keep_the_limits(options: dict[str, object]) -> None:
+    record: Record = run(LIMITED, heart(1.0), duration=0.3, **options)
+    assert judged(record.q) == []
+    assert np.abs(record.dq).max() > 0.0
+
+
+def test_runge_kutta_gains_what_it_gains_without_limits() -> None:
+    free = run(duration=0.2, motion="rk4")
+    limited = run(LIMITED, duration=0.2, motion="rk4")
+    np.testing.assert_allclose(limited.q, free.q, rtol=0, atol=1e-13)
+
+
+class Slowly(Limit):
+    """A limit of one's own that contradicts the others: no joint may move."""
+
+    def bounds(self, step: Step) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros(7), np.zeros(7)
+
+
+def test_a_limit_of_ones_own_gives_way_to_acceleration() -> None:
+    robot, start = paper_robot(), paper_start()
+    controller = Controller(robot, Scheme((), [PositionTask()], [JointLimits(), LIMITS[0]]))
+    target = Target(start.position + [0.0, 0.0, 0.1], start.rotation)
+    q, path = start.q, [start.q]
+    for k in range(100):
+        q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
+        path.append(q)
+    past = controller.plan.past.copy()
+    controller.scheme = Scheme((), [PositionTask()], [Slowly(), LIMITS[0]])
+    controller.plan.past[:] = past
+    for k in range(400):
+        command = controller.step(q, 1e-3 * k, target)
+        assert (command.qp.lb <= command.qp.ub).all()
+        q = q + 1e-3 * command.dq
+        path.append(q)
+    assert judged(np.array(path), jerk=np.inf) == []
+    assert (command.dq == 0.0).all()

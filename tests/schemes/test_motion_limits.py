@@ -1,0 +1,197 @@
+"""Acceleration and jerk limits: exact, never empty, viable, and kept by every command."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+
+from helpers_simulation import paper_robot
+from iiwa_dnn import AccelerationLimits, InvalidInputError, JerkLimits, Scheme, load_robot
+from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.schemes.motion_limits import approach, braking, joint_bounds
+from judge_limits import breaches
+
+INF = math.inf
+
+
+@compiled
+def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: Any) -> float:
+    """Drive a joint in [-upper, upper] by hostile choices; returns the least room of its bounds."""
+    V, A, J = limits
+    last = before = room = wish = 0.0
+    mode, left = 0, 0
+    for k in range(len(out)):
+        lb, ub = joint_bounds(last, before, upper - q, q + upper, V, A, J, dt)
+        room = min(room, ub - lb)
+        if left == 0:
+            mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
+            wish = (2.0 * draws[k, 2] - 1.0) * min(V, 10.0)
+        left -= 1
+        v = ub
+        if mode == 1:
+            v = lb
+        elif mode == 2:
+            v = lb + (ub - lb) * draws[k, 3]
+        elif mode == 3:
+            v = min(max(wish, lb), ub)
+        q += dt * v
+        before, last = last, v
+        out[k] = q
+    return room
+
+
+@settings(max_examples=60)
+@given(
+    speed=st.floats(0.1, 10.0),
+    acceleration=st.floats(0.5, 30.0),
+    jerk=st.one_of(st.just(INF), st.floats(1.0, 1e4)),
+    dt=st.sampled_from([1e-3, 4e-3, 1e-2]),
+    seed=st.integers(0, 1000),
+)
+def test_hostile_choices_break_no_limit(
+    speed: float, acceleration: float, jerk: float, dt: float, seed: int
+) -> None:
+    upper = 0.2 + 2.0 * acceleration**3 / min(jerk, 1e9) ** 2
+    out = np.empty(3000)
+    limits = (speed, acceleration, jerk)
+    draws = np.random.default_rng(seed).random((3000, 4))
+    assert adversary(0.0, upper, limits, dt, draws, out) >= 0.0
+    q = np.concatenate([[0.0], out])[:, np.newaxis]
+    assert breaches(q, dt, -upper, upper, *limits) == []
+
+
+def stopping_room(v: float, step: float) -> float:
+    """Way of v and all later velocities under full braking, in units of dt."""
+    way = 0.0
+    while v > 0.0:
+        way, v = way + v, v - step
+    return way
+
+
+@given(room=st.floats(1e-6, 1e4))
+def test_approach_is_the_inverse_of_braking_step_by_step(room: float) -> None:
+    assert stopping_room(approach(room), 1.0) == pytest.approx(room, rel=1e-12)
+    assert approach(-room) == -room
+    assert approach(INF) == INF
+
+
+@given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
+def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
+    dt, A, V = 1e-2, 5.0, 2.0
+    lb, ub = joint_bounds(last, 0.0, above, INF, V, A, INF, dt)
+    at_most = min(V, last + A * dt)
+    assert lb == pytest.approx(max(-V, last - A * dt))
+    if stopping_room(last - A * dt, A * dt) * dt > above:
+        assert ub == lb  # too fast already: brake
+        return
+    assert stopping_room(ub, A * dt) * dt <= above + 1e-12
+    if ub < at_most - 1e-12:
+        assert stopping_room(ub + 1e-9, A * dt) * dt > above
+
+
+def plan_to_rest(q: float, last: float, before: float, dt: float, limits: Any) -> bool:
+    """Whether some commands bring a joint to rest below 0 within its limits: a linear program."""
+    V, A, J = limits
+    steps = 120
+    first, second = np.eye(steps) - np.eye(steps, k=-1), np.zeros(steps)
+    second[0] = last
+    third = first @ first
+    jerk0 = np.zeros(steps)
+    jerk0[0], jerk0[1] = 2.0 * last - before, -last
+    rows = np.vstack([first, -first, third, -third, np.tril(np.ones((steps, steps))) * dt])
+    slack = 1e-9
+    rhs = np.concatenate(
+        [
+            A * dt + second + slack, A * dt - second + slack,
+            J * dt**2 + jerk0 + slack * dt, J * dt**2 - jerk0 + slack * dt,
+            np.full(steps, -q + slack),
+        ]
+    )  # fmt: skip
+    rest = np.zeros((3, steps))
+    rest[[0, 1, 2], [-1, -2, -3]] = 1.0
+    found = linprog(np.zeros(steps), rows, rhs, rest, np.zeros(3), bounds=(-V, V), method="highs")
+    return found.status == 0
+
+
+def test_after_every_bound_some_commands_lead_to_rest() -> None:
+    dt, limits = 2e-2, (1.5, 5.0, 40.0)
+    rng = np.random.default_rng(3)
+    binding = 0
+    for _ in range(25):
+        q, last, before = -rng.uniform(0.3, 1.2), 0.0, 0.0
+        for _ in range(int(rng.integers(10, 80))):
+            lb, ub = joint_bounds(last, before, -q, INF, *limits, dt)
+            v = ub if rng.random() < 0.9 else lb
+            q, last, before = q + dt * v, v, last
+        lb, ub = joint_bounds(last, before, -q, INF, *limits, dt)
+        assert plan_to_rest(q + dt * ub, ub, last, dt, limits)
+        reach = limits[2] * dt**2
+        if lb < ub < min(2.0 * last - before + reach, last + limits[1] * dt) - 1e-9:
+            binding += 1
+    assert binding >= 5
+
+
+@pytest.mark.parametrize("jerk", [INF, 200.0])
+def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
+    dt, A = 1e-3, 8.0
+    for start in (-1.3, 0.004, 1.7):
+        last, before, q, spent = start, start, 0.0, 0.0
+        for _ in range(2000):
+            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, 2.0, A, jerk, dt)
+            last, before = braking(last, lb, ub, jerk, dt), last
+            assert last * start >= -1e-15  # it does not turn round
+            q, spent = q + dt * last, spent + dt
+            if last == 0.0 == before:
+                break
+        quickest = abs(start) / A + (0.0 if jerk == INF else A / jerk)
+        if abs(start) > 1.0:
+            assert spent <= quickest + 3 * dt
+
+
+def test_the_judge_finds_each_kind_of_breach() -> None:
+    dt, t = 1e-3, 1e-3 * np.arange(2000)
+    q = (0.5 * (1.0 - np.cos(2.0 * t)))[:, np.newaxis]
+    true = {"upper": 1.0, "velocity": 1.0, "acceleration": 2.0}
+    generous = {"lower": -1.0, "upper": 1.1, "velocity": 1.1, "acceleration": 2.1, "jerk": 4.2}
+    assert breaches(q, dt, **generous, at_rest=False) == []
+    for name, value in true.items():
+        (found,) = breaches(q, dt, **{**generous, name: 0.99 * value}, at_rest=False)
+        assert found.excess == pytest.approx(0.01 * value, rel=1e-2)
+    # From rest the acceleration of 2 rad/s^2 begins at once.
+    assert [b.quantity for b in breaches(q, dt, **generous)] == ["jerk"]
+
+
+def test_limits_of_robots_and_of_ones_own() -> None:
+    iiwa, panda = load_robot("iiwa7"), load_robot("panda")
+    assert iiwa.ddq_max.tolist() == [8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17]
+    assert np.isinf(iiwa.dddq_max).all()
+    assert panda.dddq_max[1] == 3750.0
+    changed = iiwa.with_limits(acceleration=5.0, jerk=np.full(7, 100.0))
+    assert AccelerationLimits().of(changed).tolist() == [5.0] * 7
+    assert JerkLimits().of(changed).tolist() == [100.0] * 7
+    assert JerkLimits(50.0).of(changed).tolist() == [50.0] * 7
+    assert changed.with_limits(velocity=1.0).ddq_max.tolist() == [5.0] * 7
+
+
+@pytest.mark.parametrize("limit", [0.0, -1.0, math.nan, "fast", [[1.0]], [1.0, -2.0]])
+def test_bad_limits_are_refused_by_name(limit: Any) -> None:
+    with pytest.raises(InvalidInputError, match="acceleration_limit"):
+        AccelerationLimits(limit)
+
+
+def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
+    robot = paper_robot()
+    with pytest.raises(InvalidInputError, match="3 numbers for 7 joints"):
+        Scheme(limits=[AccelerationLimits([1.0, 2.0, 3.0])]).layout(robot)
+    with pytest.raises(InvalidInputError, match="no dddq_max of its own"):
+        Scheme(limits=[JerkLimits()]).layout(robot)
+    with pytest.raises(InvalidInputError, match="too little to stop"):
+        Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).layout(robot)
+    with pytest.raises(InvalidInputError, match="jerk: joint 1: 0 is not above 0"):
+        robot.with_limits(jerk=0.0)
