@@ -43,7 +43,7 @@ def main() -> None:
     for (name, calm), hurried in zip(paths(10.0).items(), paths(HURRY).values(), strict=True):
         unchecked = {"check": iiwa_dnn.CrossCheck(()), "dt": DT}
         record = iiwa_dnn.simulate(robot, scheme, calm.anchored(start), q0, **unchecked)
-        timed = iiwa_dnn.retime(record, ACCELERATION)
+        timed = iiwa_dnn.retime(record, ACCELERATION, points=500)
         best = iiwa_dnn.retime(record, ACCELERATION, points=2000, dt=1e-4)
         bare = iiwa_dnn.retime(record, UNLIMITED, points=2000, dt=1e-4)
         slow = iiwa_dnn.simulate(
