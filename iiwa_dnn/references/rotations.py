@@ -98,7 +98,7 @@ def turn_target(target: Array, vector: Array, rate: Array) -> None:
     target[15:18] = left_jacobian(vector, rate) + rotated(vector, target[15:18])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract"})  # as the task rows around it
 def rotation_log(R: Array, out: Array) -> None:
     """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 
