@@ -20,12 +20,15 @@ from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.references import (
     Circle,
+    Cone,
     Heart,
     Line,
     Lissajous,
     MovingTarget,
+    OnSurface,
     Reference,
     Target,
+    Tilting,
     Waypoints,
 )
 from iiwa_dnn.results.failures import failures
@@ -57,7 +60,7 @@ from iiwa_dnn.schemes import (
     Step,
     Task,
 )
-from iiwa_dnn.simulation import MujocoPlant, Simulation, simulate
+from iiwa_dnn.simulation import MujocoPlant, Simulation, Trajectory, retime, simulate
 
 __version__ = version("iiwa-dnn")
 
@@ -71,6 +74,7 @@ __all__ = [
     "CentreOfMassTask",
     "Circle",
     "Command",
+    "Cone",
     "Configuration",
     "Controller",
     "Cost",
@@ -100,6 +104,7 @@ __all__ = [
     "Network",
     "NoSolutionError",
     "NotFoundError",
+    "OnSurface",
     "OrientationTask",
     "PoseTask",
     "PositionTask",
@@ -120,11 +125,14 @@ __all__ = [
     "Step",
     "Target",
     "Task",
+    "Tilting",
+    "Trajectory",
     "Waypoints",
     "available_robots",
     "compute_metrics",
     "failures",
     "load_robot",
+    "retime",
     "simulate",
     "solve_batch",
     "solve_problem",

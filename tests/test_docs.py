@@ -25,7 +25,8 @@ DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("do
 
 WITH_CODE = (
     "README.md", "commands.md", "control_loop.md", "index.md", "networks.md", "noise.md",
-    "own_network.md", "own_reference.md", "own_scheme.md", "robots.md", "theory.md",
+    "own_network.md", "own_reference.md", "own_scheme.md", "real_arm.md",
+    "robots.md", "theory.md",
 )  # fmt: skip
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -15,7 +15,10 @@ from tyro.conf import FlagCreatePairsOff, Positional, arg
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.references import Heart
+from iiwa_dnn.references.turning import TILT
+from iiwa_dnn.references.waypoints import SPEED
 from iiwa_dnn.schemes.costs import Kinetic
+from iiwa_dnn.schemes.parts import Tracking
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
@@ -29,6 +32,9 @@ _Quiet = Annotated[bool, arg(aliases=["-q"], help_behavior_hint=""), FlagCreateP
 _Verbose = Annotated[bool, arg(aliases=["-v"], help_behavior_hint=""), FlagCreatePairsOff]
 _Numbers = tuple[float, ...]
 _Vector = Annotated[_Numbers, arg(metavar="X Y Z")]
+_Normal = Annotated[_Numbers, arg(metavar="X Y Z", help_behavior_hint="")]
+_Angle = Annotated[float, arg(metavar="RAD")]
+_TipSpeed = Annotated[float, arg(metavar="M/S")]
 _Push = Annotated[_Numbers | None, arg(metavar="FX FY FZ", help_behavior_hint="")]
 _Angles = Annotated[_Numbers, arg(metavar="RAD", help_behavior_hint="")]
 _Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
@@ -42,6 +48,8 @@ _File = Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")]
 _Form = Annotated[Orientation, arg(metavar="FORM")]
 _Mode = Annotated[Mode, arg(metavar="MODE")]
 _Matrix = Annotated[Kinetic, arg(metavar="G")]
+_Tracking = Annotated[Tracking, arg(metavar="TARGET")]
+_AnyGain = Annotated[float | None, arg(metavar="X", help_behavior_hint="")]
 _Policy = Annotated[Policy, arg(metavar="POLICY")]
 _Motion = Annotated[Motion, arg(metavar="METHOD")]
 _Where = Annotated[NoiseEntry, arg(metavar="WHERE")]
@@ -82,9 +90,15 @@ class TrackOptions(RunOptions):
     lock: _Names = ()  # names of the joints that are held still
     q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
-    reference: _Path = "heart"  # path: heart, circle, line, lissajous or a CSV file in [s] and [m]
-    scale: _Length = Heart.scale  # factor a of the heart, whose width is 32 a [m]
-    radius: _Length = 0.05  # radius of the circle [m]
+    reference: _Path = "heart"
+    """path: heart, circle, line, lissajous, cone, tilting-circle, plane-heart, sphere-heart, or a
+    CSV file of points or poses in [s] and [m]"""
+    scale: _Length = Heart.scale  # factor a of the hearts, whose width is 32 a [m]
+    radius: _Length = 0.05  # radius of the circles [m]
+    angle: _Angle = TILT  # tilt of the tool on the cone and the tilting circle [rad]
+    sphere: _Length = 0.2  # radius of the sphere under the sphere-heart [m]
+    normal: _Normal = ()  # outward normal at the start, of plane and sphere (none: the tool's axis)
+    tool_speed: _TipSpeed = SPEED  # speed of the tip along a CSV file without times [m/s]
     offset: _Vector = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
     amplitudes: _Vector = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
     period: Time = Heart.period  # time of one round on the path [s]; a CSV file has its own
@@ -101,6 +115,8 @@ class TrackOptions(RunOptions):
     mode: _Mode = "converged"  # converged: network settled at every step; continuous: one time step
     kinetic: _Matrix = "identity"  # matrix G of the kinetic index: identity (the paper's), inertia
     gain: _Number = 10.2  # feedback gain of the position and the orientation error [1/s]
+    tracking: _Tracking = "paper"  # target of a step: paper (at its time) or next (at its end)
+    next_gain: _AnyGain = None  # feedback gain of --tracking next [1/s] (none: one over the period)
     integral_gain: _Number = 0.0  # feedback gain of the error's integral [1/s^2]
     policy: _Policy = "slow"  # action at a step without a solution: slow, relax, stop or raise
     motion: _Motion = "euler"  # integration of the joint velocity: euler, midpoint or rk4

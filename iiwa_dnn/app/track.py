@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +16,19 @@ from iiwa_dnn.app.options import Check, TrackOptions
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
+from iiwa_dnn.references import (
+    Circle,
+    Cone,
+    Heart,
+    Line,
+    Lissajous,
+    OnSurface,
+    Reference,
+    Tilting,
+    Waypoints,
+)
 from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import rotation_angle
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
@@ -32,8 +43,30 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "none": (),
 }
 
-_PATHS = {path.name: path for path in (Heart, Circle, Line, Lissajous)}
-_PATH_OPTIONS = ("scale", "radius", "offset", "amplitudes", "period")
+# Of each path its own options, and the way from the options to it.
+_PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
+    "heart": (("scale", "period"), lambda o: Heart(o.scale, o.period)),
+    "circle": (("radius", "period"), lambda o: Circle(o.radius, o.period)),
+    "line": (("offset", "period"), lambda o: Line(o.offset, o.period)),
+    "lissajous": (("amplitudes", "period"), lambda o: Lissajous(o.amplitudes, period=o.period)),
+    "cone": (("angle", "period"), lambda o: Cone(o.angle, o.period)),
+    "tilting-circle": (
+        ("radius", "angle", "period"),
+        lambda o: Tilting(Circle(o.radius, o.period), o.angle),
+    ),
+    "plane-heart": (
+        ("scale", "normal", "period"),
+        lambda o: OnSurface(Heart(o.scale, o.period), None, o.normal or None),
+    ),
+    "sphere-heart": (
+        ("scale", "sphere", "normal", "period"),
+        lambda o: OnSurface(Heart(o.scale, o.period), o.sphere, o.normal or None),
+    ),
+}
+_CSV = (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed))
+
+_HERE = 1e-3, 1e-2
+"""Distance [m] and angle [rad] up to which a path of poses begins where the tip is."""
 
 # Options that are arguments of a simulation under the same name.
 _HANDED_ON = (
@@ -68,8 +101,14 @@ def simulation(
         orientation=options.orientation,
         kinetic=options.kinetic,
         extra_limits=motion_limits(options),
+        tracking=options.tracking,
+        next_gain=options.next_gain,
     )
-    reference = path(options).anchored(Configuration(robot, q0))
+    reference, start = path(options), Configuration(robot, q0)
+    if getattr(reference, "quaternions", None) is None:
+        reference = reference.anchored(start)
+    else:
+        tell_if_elsewhere(reference, start)
     check = CrossCheck(CHECKS[options.check], options.tolerance)
     asked = {name: getattr(options, name) for name in _HANDED_ON}
     return Simulation(robot, scheme, reference, q0, plant=plant, check=check, **asked)
@@ -93,6 +132,19 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
             problem = f"must be a number above 0 or 'robot', not {value!r}"
             raise InvalidInputError(option, problem, value) from error
     return tuple(limits)
+
+
+def tell_if_elsewhere(reference: Reference, start: Configuration) -> None:
+    """Print one line where a path of poses in the base frame begins elsewhere than the tip."""
+    first = reference.at(0.0)
+    distance = float(np.linalg.norm(first.position - start.position))
+    angle = float(rotation_angle(start.rotation, first.rotation))
+    if distance > _HERE[0] or angle > _HERE[1]:
+        print(
+            f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, at "
+            f"{np.round(first.position, 4).tolist()} m: --q0 takes the joint positions there",
+            file=sys.stderr,
+        )
 
 
 def draw(
@@ -138,19 +190,14 @@ def path(options: TrackOptions) -> Reference:
         InvalidInputError: An option is out of range, or is given and another path's.
     """
     name = options.reference
-    if name in _PATHS:
-        own = [field.name for field in fields(_PATHS[name])]
-    elif name.lower().endswith(".csv"):
-        own = []
-    else:
+    if name not in _PATHS and not name.lower().endswith(".csv"):
         raise NotFoundError("path", name, (*_PATHS, "FILE.csv"))
-    for other in _PATH_OPTIONS:
-        value = getattr(options, other)
+    own, make = _PATHS.get(name, _CSV)
+    for other in sorted({*_CSV[0]}.union(*(options for options, _ in _PATHS.values()))):
+        value, flag = getattr(options, other), f"--{other.replace('_', '-')}"
         if other not in own and value != getattr(TrackOptions, other):
-            raise InvalidInputError(f"--{other}", f"is no option of the path {name!r}", value)
-    if name not in _PATHS:
-        return Waypoints.from_csv(name)
-    return _PATHS[name](**{key: getattr(options, key) for key in _PATH_OPTIONS if key in own})
+            raise InvalidInputError(flag, f"is no option of the path {name!r}", value)
+    return make(options)
 
 
 def arm(options: TrackOptions) -> tuple[Robot, Vector]:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import computeJointJacobians, updateFramePlacement
+from pinocchio import computeJointJacobians, log3, updateFramePlacement
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
@@ -22,15 +22,15 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes import OrientationTask, Scheme
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 References = Reference | Mapping[str, Reference]
 
-FAR = 0.05
-"""Distance from the tip to the first target from which on a warning is given [m]."""
+FAR, TURNED = 0.05, 0.2
+"""Distance [m] and angle [rad] of a first target from which on a warning is given."""
 
 
 class Controller:
@@ -45,8 +45,7 @@ class Controller:
         dt: Control period [s].
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags.
-        policy: What to do at a step that the network does not solve in ``converged`` mode
-            (`iiwa_dnn.control.policies`).
+        policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
@@ -102,7 +101,7 @@ class Controller:
         Args:
             q: Measured joint positions [rad], (n,).
             t: Time [s]; the reference is asked for the time `delay` before it.
-            target: Where the tip should be, in place of the reference's target.
+            target: Target in place of the reference's; for tasks towards the next one `ahead` too.
 
         Returns:
             The command.
@@ -148,7 +147,7 @@ class Controller:
         base: Vector = np.zeros(18 * len(plan.frames))
         path, numbers = None, base[:0]
         if isinstance(reference, Reference) and plan.frames == (self.robot.tip,):
-            path = reference.compiled
+            path = (reference := self._ahead(self.robot.tip, reference)).compiled
             if path is not None:
                 base, numbers = reference.base, reference.numbers
         self._room = room = Room(plan, self.dt, path, base, numbers)
@@ -156,15 +155,18 @@ class Controller:
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
         """Warn where a first target is far from its frame: most likely it was not anchored."""
-        for name, target in zip(self.plan.frames, self.targets(t).reshape(-1, 18), strict=True):
-            distance = float(np.linalg.norm(target[:3] - start.frame(name).position))
-            if distance > FAR:
+        turns = any(isinstance(task, OrientationTask) for task in getattr(self.scheme, "tasks", ()))
+        for name, data in zip(self.plan.frames, self.targets(t).reshape(-1, 18), strict=True):
+            frame, target = start.frame(name), Target.from_data(data)
+            distance = float(np.linalg.norm(target.position - frame.position))
+            angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
+            if distance > FAR or angle > TURNED:
                 where = "tip" if name == self.robot.tip else f"frame {name}"
-                warnings.warn(
-                    f"the reference begins {distance:.3g} m from the {where}; to begin where it "
-                    "is: reference.anchored(configuration)",
-                    stacklevel=stacklevel,
+                message = (
+                    f"the reference begins {distance:.3g} m from the {where}, {angle:.3g} rad "
+                    "turned; to begin where it is: reference.anchored(configuration)"
                 )
+                warnings.warn(message, stacklevel=stacklevel)
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
@@ -233,7 +235,12 @@ class Controller:
         for name in self.plan.frames:
             if name not in given:
                 raise InvalidInputError("reference", f"is missing for frame {name!r}")
-        return np.concatenate([given[name].sample(times).data for name in self.plan.frames], axis=1)
+        seen = (self._ahead(name, given[name]).sample(times) for name in self.plan.frames)
+        return np.concatenate([targets.data for targets in seen], axis=1)
+
+    def _ahead(self, frame: str, reference: Reference) -> Reference:
+        """Return a frame's reference, one period ahead where its tasks track the next target."""
+        return reference.ahead(self.dt) if frame in self.plan.ahead else reference
 
     def answer(self, q: Vector, answers: Answers, t: float = 0.0) -> Vector:
         """Take a step towards the next target in `answers`, and add program and answer to them.

@@ -46,6 +46,7 @@ class Plan:
         asks: Whether Python code has to be asked for (a part of) the program.
         cascade: Levels of the tasks with priorities.
         frames: Names of the frames that tasks track, in the order of the targets.
+        ahead: Names of those whose tasks track the next target.
         place: Placement of the first of them, (12,), as `Kinematics.placements`.
         yielding: Answers where tasks yield to acceleration and jerk limits; None without those.
         stuck: Whether the task yielded at the last step.
@@ -88,6 +89,7 @@ class Plan:
         self.cascade = Cascade(priorities, self.sizes, solver)
         self.asks = layout is None or bool(layout.custom or self.cascade.levels)
         self.frames = (robot.tip,) if layout is None else layout.target_frames
+        self.ahead = frozenset() if layout is None else layout.ahead
         self.place: Vector = self.kinematics.placements[codes[5]]
         self.row_weights = None if layout is None else layout.row_weights
         self.version = solver.version

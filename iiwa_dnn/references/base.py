@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite, finite_array, read_only
+from iiwa_dnn.checks import finite, finite_array, positive, read_only
 from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
@@ -34,25 +34,32 @@ _AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)
 
 
 class Reference(ABC):
-    """A path for a frame, with a fixed orientation.
+    """A path for a frame: positions, and the turns of its orientation if it has any.
 
     A subclass is a frozen dataclass of the path's parameters and gives `displacement` and
-    `velocity`, or, as the package's own paths do, a compiled form, `path`. Until :meth:`anchored`
-    the origin is at position 0 with orientation identity.
+    `velocity`, and `turn` and `angular_velocity` where the frame turns; or, as the package's own
+    paths do, a compiled form, `path`. Until :meth:`anchored` the origin is at position 0 with
+    orientation identity.
 
     Attributes:
         name: Name of the path in settings and on the command line.
         path: Compiled form of the path, where it has one: it adds displacement and velocity at
-            times (k,), with the path's `numbers`, to targets (k, 18) from a row and column on.
+            times (k,), with the path's `numbers`, to targets (k, 18) from a row and column on, and
+            turns them.
         numbers: Constants of the compiled form, (c,).
         origin: Position of displacement 0 [m], shape (3,), read-only.
-        orientation: Orientation at all times, shape (3, 3), read-only.
+        orientation: Orientation that the turns begin from, shape (3, 3), read-only.
     """
 
     name: ClassVar[str]
     path: ClassVar[Any] = None
     numbers: Array = read_only(np.zeros(0))
     _base: Array = _AT_REST  # the target at the origin, at rest
+
+    def __init_subclass__(cls) -> None:
+        pair = (cls.turn is Reference.turn, cls.angular_velocity is Reference.angular_velocity)
+        if pair[0] != pair[1]:
+            raise TypeError(f"{cls.__name__} needs both turn and angular_velocity, or neither")
 
     @property
     def origin(self) -> Array:  # noqa: D102 - described in the class
@@ -61,6 +68,12 @@ class Reference(ABC):
     @property
     def orientation(self) -> Array:  # noqa: D102
         return read_only(self._base[3:12].reshape(3, 3))
+
+    def at_rest(self: Self) -> Self:
+        """Return a copy that begins at position 0 with orientation identity."""
+        clone = copy.copy(self)
+        clone._set(_base=_AT_REST)
+        return clone
 
     def _set(self, **values: Any) -> None:
         """Set checked parameters of a frozen dataclass."""
@@ -89,13 +102,34 @@ class Reference(ABC):
         """
         return self._along(t)[..., 12:15]
 
+    def turn(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Compute the rotation since t = 0, to be applied to the orientation there from the left.
+
+        Args:
+            t: Times [s], shape (...,).
+
+        Returns:
+            Rotation matrices, shape (..., 3, 3).
+        """
+        return self._along(t)[..., 3:12].reshape(*np.shape(t), 3, 3)
+
+    def angular_velocity(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Compute the exact angular velocity of :meth:`turn`, along the world's axes.
+
+        Args:
+            t: Times [s], shape (...,).
+
+        Returns:
+            Angular velocities [rad/s], shape (..., 3).
+        """
+        return self._along(t)[..., 15:]
+
     @property
     def compiled(self) -> Any:
         """`path`, unless a subclass overrides what computes the targets; else None."""
         cls = type(self)
-        own = (cls.displacement, cls.velocity, cls._targets)
-        inherited = (Reference.displacement, Reference.velocity, Reference._targets)
-        return cls.path if own == inherited else None
+        same = (getattr(cls, name) is getattr(Reference, name) for name in _COMPUTING)
+        return cls.path if all(same) else None
 
     @property
     def base(self) -> NDArray[np.float64]:
@@ -103,13 +137,15 @@ class Reference(ABC):
         return self._base
 
     def _along(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Compute displacements and velocities, in the places of targets, (..., 18)."""
-        path = type(self).path
-        if path is None:
-            raise TypeError(f"{type(self).__name__} overrides neither displacement nor path")
+        """Compute displacements, turns and velocities, in the places of targets, (..., 18)."""
+        path, cls = self.compiled or type(self).path, type(self)
+        methods = (cls.displacement, cls.velocity)
+        if path is None and not {Reference.displacement, Reference.velocity}.isdisjoint(methods):
+            raise TypeError(f"{cls.__name__} overrides neither displacement and velocity nor path")
         times = np.asarray(t, dtype=np.float64)
-        moved = np.zeros((times.size, _AT_REST.size))
-        path(np.ascontiguousarray(times.ravel()), self.numbers, moved, 0, 0)
+        moved = np.tile(_AT_REST, (times.size, 1))
+        if path is not None:
+            path(np.ascontiguousarray(times.ravel()), self.numbers, moved, 0, 0)
         return moved.reshape(*times.shape, _AT_REST.size)
 
     @property
@@ -123,7 +159,7 @@ class Reference(ABC):
         return self.period
 
     def anchored(self: Self, pose: Pose) -> Self:
-        """Return a copy that starts at a pose and keeps its orientation: moved, not turned.
+        """Return a copy that starts at a pose: displacements and turns stay about the same axes.
 
         Args:
             pose: The pose, for example an ``iiwa_dnn.Configuration``.
@@ -137,6 +173,12 @@ class Reference(ABC):
         base = np.concatenate([position, rotation.ravel(), np.zeros(6)])
         clone._set(_base=read_only(base))
         return clone
+
+    def ahead(self, dt: float) -> Reference:
+        """Return the path with the mean twist over the next dt [s] in place of the targets' own."""
+        from iiwa_dnn.references.ahead import Ahead
+
+        return Ahead(self, positive("dt", dt))
 
     def at(self, t: float) -> Target:
         """Compute the target at time t [s].
@@ -164,13 +206,23 @@ class Reference(ABC):
         else:
             targets[:, :3] += self.displacement(times)
             targets[:, 12:15] = self.velocity(times)
+            turned = self.turn(times) @ self.orientation
+            targets[:, 3:12] = turned.reshape(-1, 9)
+            targets[:, 15:] = self.angular_velocity(times)
         return targets
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, in JSON types, to make the path again, not anchored."""
         parameters = [f.name for f in fields(self) if f.init]  # type: ignore[arg-type]
         values = {name: getattr(self, name) for name in parameters}
-        return {"name": self.name} | {
-            name: np.asarray(value).tolist() if isinstance(value, np.ndarray | tuple) else value
-            for name, value in values.items()
-        }
+        return {"name": self.name} | {name: _plain(value) for name, value in values.items()}
+
+
+_COMPUTING = ("displacement", "velocity", "turn", "angular_velocity", "_targets")
+
+
+def _plain(value: Any) -> Any:
+    """Return a parameter in JSON types."""
+    if isinstance(value, Reference):
+        return value.settings()
+    return np.asarray(value).tolist() if isinstance(value, np.ndarray | tuple) else value

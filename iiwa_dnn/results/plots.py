@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iiwa_dnn.files import prepare_folder, write_atomically
-from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ _JOINTS = {
 }
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
+_TURNS = 1e-9  # change of a desired rotation's entries from which on it is drawn as turning
 _LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 
 
@@ -85,13 +86,24 @@ def write_figures(
 
 
 def overview_figure(record: Record) -> Figure:
-    """Draw path, joint angles, joint velocities and position error: the paper's Fig. 1 (a)–(d)."""
-    figure = new_figure(DOUBLE_COLUMN, 5.6)
-    draw_path(figure.add_subplot(2, 2, 1, **_projection(record)), record)
-    draw_joints(figure.add_subplot(2, 2, 2), record, "q")
-    draw_joints(figure.add_subplot(2, 2, 3), record, "dq")
-    draw_error(figure.add_subplot(2, 2, 4), record)
-    for axes, letter in zip(figure.axes, "abcd", strict=True):
+    """Draw path, joint angles, joint velocities and position error: the paper's Fig. 1 (a)–(d).
+
+    Where the target turns, (e) is the orientation error against it.
+    """
+    turns = bool(np.ptp(record.rotation_desired, axis=0).max() > _TURNS)
+    rows = 3 if turns else 2
+    figure = new_figure(DOUBLE_COLUMN, 2.8 * rows)
+    grid = figure.add_gridspec(rows, 2)
+    draw_path(figure.add_subplot(grid[0, 0], **_projection(record)), record)
+    draw_joints(figure.add_subplot(grid[0, 1]), record, "q")
+    draw_joints(figure.add_subplot(grid[1, 0]), record, "dq")
+    draw_error(figure.add_subplot(grid[1, 1]), record)
+    if turns:
+        axes = figure.add_subplot(grid[2, :])
+        draw_log(axes, record.t, orientation_error(record)[:, None], ["angle to the target"])
+        axes.set_ylabel("Orientation error [rad]")
+        time_axis(axes, record)
+    for axes, letter in zip(figure.axes, "abcde", strict=False):
         if hasattr(axes, "text2D"):  # a spatial axis turns its label with itself
             axes.text2D(0.5, -0.1, f"({letter})", transform=axes.transAxes, ha="center")
         else:

@@ -33,7 +33,8 @@ _SETTINGS = {
     "filter_window": "filter window [steps]",
 }
 _CAPTIONS = {
-    "overview": "Path, joint angles, joint velocities and position error.",
+    "overview": "Path, joint angles, joint velocities and position error, and the orientation "
+    "error against a target that turns.",
     "path": "Desired and actual path.",
     "joint_velocities": "Joint velocities that moved the robot.",
     "torques": "Joint torques: of each step the largest.",

@@ -71,6 +71,8 @@ class Layout:
         restrained: Whether a limit asks for the last commands.
         row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
         priorities: Level of each equality row, (p,); 0 for one that has to hold.
+        ahead: Names of the frames whose tasks track the next target.
+        needs_period: Whether a task asks for the next target, which needs a control period.
     """
 
     def __init__(
@@ -112,6 +114,12 @@ class Layout:
             robot.tip,
         )
         self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames]))
+        tracked = {(task.frame_name(robot), task.tracking) for task in tasks if task.tracks}
+        self.ahead = frozenset(name for name, tracking in tracked if tracking == "next")
+        self.needs_period = any(task.tracking == "next" for task in tasks)
+        if len(tracked) > len(names):
+            problem = f"must be the same of all tasks of a frame: {sorted(tracked)}"
+            raise InvalidInputError("tracking", problem)
         self._encode()
 
     def _encode(self) -> None:
@@ -262,11 +270,15 @@ def assemble(
                 codes[block + 4],
                 codes[block + 5],
             )
-            gain = numbers[at]
+            gain, period = numbers[at], 0.0
+            if numbers[at + 1] != 0.0:
+                gain, period = min(gain, rate), rate
             if kind == POSITION:
                 position_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
             elif kind == ORIENTATION_SO3:
-                so3_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
+                so3_rows(
+                    out, A, b, n, codes, support, gain, jacobian, place, targets, target, period
+                )
             elif kind == ORIENTATION_BLOCK:
                 block_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
             if rows < 0:

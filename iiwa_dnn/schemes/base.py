@@ -95,12 +95,16 @@ class Scheme:
         """
         return Layout(robot, self.costs, self.tasks, self.limits, self.slack)
 
-    def build_qp(self, conf: Configuration, target: Target | Mapping[str, Target]) -> QP:
+    def build_qp(
+        self, conf: Configuration, target: Target | Mapping[str, Target], dt: float = np.inf
+    ) -> QP:
         """Build the program of one instant; it is not solved here.
 
         Args:
             conf: Where the robot is, n joints.
             target: Where the tip should be; with tasks of other frames, a target by frame name.
+            dt: Control period [s], which tasks that track the next target need; `target` is then
+                one of `Reference.ahead`.
 
         Returns:
             A QP in n + slack variables: the rows of the tasks in A, of the limits in G.
@@ -109,6 +113,8 @@ class Scheme:
             InvalidInputError: A task's frame has no target, or a part does not fit the robot.
         """
         layout = self.layout(conf.robot)
+        if layout.needs_period:
+            checks.positive("dt", dt)
         kinematics = Kinematics(conf.robot, layout.frames, layout.needs_inertia)
         q = conf.arrays[0]
         kinematics.update(q)
@@ -116,11 +122,11 @@ class Scheme:
         data = np.empty(layout.size)
         assemble(
             data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
-            kinematics.inertia.ravel(), np.concatenate(list(targets.values())), np.inf,
-            np.zeros(2 * q.size),
+            kinematics.inertia.ravel(), np.concatenate(list(targets.values())),
+            1.0 / dt if dt < np.inf else np.inf, np.zeros(2 * q.size),
         )  # fmt: skip
         if layout.custom:
-            layout.fill(data, Step(kinematics, targets, 0.0, np.inf, q, np.zeros_like(q)))
+            layout.fill(data, Step(kinematics, targets, 0.0, dt, q, np.zeros_like(q)))
         return QP.from_data(data, layout.sizes)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:

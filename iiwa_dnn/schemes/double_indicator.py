@@ -19,7 +19,7 @@ alone. Source: equations (6) and (7) of the paper.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
@@ -27,8 +27,11 @@ from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import KINETICS, CyclicMotion, Kinetic, KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.parts import Limit, Tracking
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
+
+if TYPE_CHECKING:
+    from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,9 @@ class DoubleIndicator(Scheme):
             `simulate` and `Controller` anchor it where they begin.
         extra_limits: Limits beside the joints' positions and velocities, for example
             `AccelerationLimits` and `JerkLimits`.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target
+            (`iiwa_dnn.schemes.tasks`), in place of the two gains.
+        next_gain: Gain of ``"next"`` [1/s]; None stands for 1 / dt.
     """
 
     weight: float = 0.2
@@ -59,6 +65,8 @@ class DoubleIndicator(Scheme):
     kinetic: Kinetic = "identity"
     home: tuple[float, ...] | None = None
     extra_limits: tuple[Limit, ...] = ()
+    tracking: Tracking = "paper"
+    next_gain: float | None = None
 
     def __post_init__(self) -> None:
         """Compose the parts; raises InvalidInputError naming a parameter that is wrong."""
@@ -68,7 +76,7 @@ class DoubleIndicator(Scheme):
         checks.one_of("kinetic", self.kinetic, KINETICS)
         cyclic = CyclicMotion(1.0 - self.weight, self.drift_gain, self.home)
         object.__setattr__(self, "home", cyclic.home)
-        tasks = tracking(self.position_gain, self.orientation_gain, self.orientation)
+        tasks = tip_tasks(self)
         costs = [KineticEnergy(self.weight, self.kinetic), cyclic]
         self._compose(costs, tasks, [JointLimits(self.limit_gain), *self.extra_limits])
 
@@ -84,12 +92,11 @@ class DoubleIndicator(Scheme):
         return {"name": "double-indicator", **parameters}
 
 
-def tracking(
-    position_gain: float, orientation_gain: float, orientation: Orientation
-) -> list[PositionTask | OrientationTask]:
+def tip_tasks(scheme: DoubleIndicator | PseudoInverse) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
-    checks.not_negative("orientation_gain", orientation_gain)
-    position = PositionTask(position_gain)
-    if orientation == "none":
+    checks.not_negative("orientation_gain", scheme.orientation_gain)
+    how: dict[str, Any] = {"tracking": scheme.tracking, "next_gain": scheme.next_gain}
+    position = PositionTask(scheme.position_gain, **how)
+    if scheme.orientation == "none":
         return [position]
-    return [position, OrientationTask(orientation_gain, orientation)]
+    return [position, OrientationTask(scheme.orientation_gain, scheme.orientation, **how)]

@@ -17,9 +17,10 @@ from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes.parts import Step, Task
-from iiwa_dnn.schemes.tasks import ROTATION_LENGTH, rotation_log
+from iiwa_dnn.schemes.parts import Step, Task, Tracking
+from iiwa_dnn.schemes.tasks import ROTATION_LENGTH, check_tracking, task_gains
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -32,19 +33,27 @@ class FeedbackTask(Task):
         gain: Rate at which the error decays [1/s], at least 0.
         weight: None for hard rows, else the weight of the soft task, at least 0.
         priority: Level in a cascade, 1 the first; None: no cascade (`iiwa_dnn.control.cascade`).
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target.
+        next_gain: Gain of ``"next"`` [1/s], as of `PositionTask`.
     """
 
     gain: float = 10.2
     weight: float | None = None
     priority: int | None = None
+    tracking: Tracking = "paper"
+    next_gain: float | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         checks.not_negative("gain", self.gain)
-        if self.weight is not None:
-            checks.not_negative("weight", self.weight)
+        check_tracking(self)
         if self.priority is not None:
             checks.integer("priority", self.priority, 1)
+
+    def feedback(self, step: Step) -> float:
+        """Return the gain of a step [1/s]."""
+        gain = float(task_gains(self)[0])
+        return gain if self.tracking == "paper" else min(gain, 1.0 / step.dt)
 
     def _set(self, **values: Any) -> None:
         for name, value in values.items():
@@ -68,7 +77,7 @@ class PoseTask(FeedbackTask):
         """Return A (6, n) and b (6,)."""
         here, target = step.frame(self.frame), step.target(self.frame)
         error = np.concatenate([target.position - here.position, _log(target.rotation, here)])
-        return here.jacobian, target.data[12:] + self.gain * error
+        return here.jacobian, target.data[12:] + self.feedback(step) * error
 
 
 @dataclass(frozen=True)
@@ -114,7 +123,7 @@ class AxisTask(FeedbackTask):
         sine = np.sqrt(turn @ turn)
         angle = np.arctan2(sine, axis @ wanted)
         error = turn * (angle / sine if sine > 1e-12 else 1.0)
-        return normals.T @ here.jacobian[3:], normals.T @ (spin + self.gain * error)
+        return normals.T @ here.jacobian[3:], normals.T @ (spin + self.feedback(step) * error)
 
 
 @dataclass(frozen=True)
@@ -168,7 +177,7 @@ class RelativePoseTask(FeedbackTask):
         A = np.concatenate([back @ linear, back @ (J2[3:] - J1[3:])])
         error = np.empty(3)
         rotation_log(np.ascontiguousarray(pose[:3, :3] @ turn.T), error)
-        return A, self.gain * np.concatenate([pose[:3, 3] - place, error])
+        return A, self.feedback(step) * np.concatenate([pose[:3, 3] - place, error])
 
 
 @dataclass(frozen=True)
@@ -205,7 +214,7 @@ class RemoteCentreTask(FeedbackTask):
         here, normals = step.frame(self.frame), _normals(self.axis)
         apart, back = self.point - here.position, (here.rotation @ normals).T
         A = back @ (here.jacobian[:3] - _cross(apart) @ here.jacobian[3:])
-        return A, self.gain * (back @ apart)
+        return A, self.feedback(step) * (back @ apart)
 
 
 def _log(desired: Matrix, here: Any) -> Vector:

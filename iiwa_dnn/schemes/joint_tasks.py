@@ -41,7 +41,7 @@ class PostureTask(FeedbackTask):
         A, b = np.zeros((self.rows, step.q.size)), np.zeros(self.rows)
         for i, (name, wanted) in enumerate(self.joints.items()):
             j = _joint(step.robot, name)
-            A[i, j], b[i] = 1.0, self.gain * (wanted - step.q[j])
+            A[i, j], b[i] = 1.0, self.feedback(step) * (wanted - step.q[j])
         return A, b
 
 
@@ -74,7 +74,7 @@ class JointCouplingTask(FeedbackTask):
         A = np.zeros((1, step.q.size))
         for name, coefficient in self.coefficients.items():
             A[0, _joint(step.robot, name)] = coefficient
-        return A, self.gain * (self.offset - A @ step.q)
+        return A, self.feedback(step) * (self.offset - A @ step.q)
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class ElbowAngleTask(FeedbackTask):
         A = by_elbow @ (elbow.jacobian[:3] - moved) + by_wrist @ (wrist.jacobian[:3] - moved)
         missing = 0.0 if self.angle is None else self.angle - angle
         missing = (missing + np.pi) % (2.0 * np.pi) - np.pi
-        return A[np.newaxis], np.array([self.gain * missing])
+        return A[np.newaxis], np.array([self.feedback(step) * missing])
 
     def _names(self, robot: Robot) -> tuple[str, str, str]:
         if self.joints is None and robot.dof != 7:
@@ -185,7 +185,7 @@ class CentreOfMassTask(FeedbackTask):
         place, jacobian = conf.centre_of_mass
         at = ["xyz".index(axis) for axis in self.axes]
         wanted = place if self.position is None else np.array(self.position)
-        return jacobian[at], self.gain * (wanted - place)[at]
+        return jacobian[at], self.feedback(step) * (wanted - place)[at]
 
 
 def _swivel(u: Vector, d: Vector, reference: Vector) -> tuple[float, Vector, Vector]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,9 @@ from iiwa_dnn.robot.configuration import FrameState
 from iiwa_dnn.robot.kinematics import Kinematics
 
 PartT = TypeVar("PartT", bound="Part")
+
+Tracking = Literal["paper", "next"]
+TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
 
 CUSTOM = 0
 """The kind of a part without a compiled form."""
@@ -130,12 +133,16 @@ class Task(Part):
         weight: None for hard rows, else the weight of the soft task.
         priority: Level of a hard task in a cascade, 1 the first; None: it has to hold
             (`iiwa_dnn.control.cascade`).
+        tracking: ``"paper"``: the target of a step is that of its time, with the exact twist there.
+            ``"next"``: its twist is the mean one over the coming period, so that b of a frame's
+            rows may ask for the next target (`iiwa_dnn.schemes.tasks`).
     """
 
     tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
     priority: int | None = None
+    tracking: Tracking = "paper"
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""

@@ -21,7 +21,8 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.double_indicator import tracking
+from iiwa_dnn.schemes.double_indicator import tip_tasks
+from iiwa_dnn.schemes.parts import Tracking
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation
 
 RANK_TOLERANCE = 1e-10
@@ -36,17 +37,20 @@ class PseudoInverse(Scheme):
         position_gain: Feedback gain [1/s].
         orientation_gain: Feedback gain [1/s].
         orientation: ``"so3"``, ``"block"`` or ``"none"``.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target.
+        next_gain: Gain of ``"next"`` [1/s]; None stands for 1 / dt.
     """
 
     position_gain: float = 10.2
     orientation_gain: float = 10.2
     orientation: Orientation = "so3"
+    tracking: Tracking = "paper"
+    next_gain: float | None = None
 
     def __post_init__(self) -> None:
         """Compose the parts; raises InvalidInputError naming a parameter that is wrong."""
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
-        tasks = tracking(self.position_gain, self.orientation_gain, self.orientation)
-        self._compose([KineticEnergy()], tasks, [])
+        self._compose([KineticEnergy()], tip_tasks(self), [])
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """Compute the closed form A^+ b [rad/s], (n,), by numpy's singular value decomposition."""

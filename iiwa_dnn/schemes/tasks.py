@@ -3,20 +3,35 @@ r"""Tasks: equality rows that let a frame follow its target.
 A frame at position p with orientation R is to be at :math:`p_d, R_d` with the twist
 :math:`[v_d;\, \omega_d]`. Each task states its rows A dq = b; with a ``weight`` w they become the
 cost :math:`\tfrac12 w\,\|A \dot q - b\|^2` instead.
+
+The paper feeds the error back at a gain :math:`\delta`, with :math:`\delta\,dt \ll 1`. With
+``tracking="next"`` the rows ask for the target one period ahead: in place of the twist stands the
+mean one until then, and in place of the gain :math:`\gamma \le 1/dt`,
+
+.. math::
+
+    b = \frac{p_d(t + dt) - p}{dt} - \Bigl(\frac{1}{dt} - \gamma\Bigr) (p_d(t) - p), \qquad
+    b_\omega = \frac{\log(R_d(t + dt) R^T)}{dt}
+        - \Bigl(\frac{1}{dt} - \gamma\Bigr) \log(R_d(t) R^T),
+
+so that an Euler step leaves :math:`(1 - \gamma\,dt)` of the error, and with :math:`\gamma = 1/dt`
+nothing of it but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which
+does not add up from step to step. A smaller :math:`\gamma` is for noise (`noise_gain`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.references.rotations import rotated, rotation_log
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import Codes, Task
+from iiwa_dnn.schemes.parts import TRACKINGS, Codes, Task, Tracking
 
 Form = Literal["so3", "block"]
 Orientation = Literal["so3", "block", "none"]
@@ -41,24 +56,28 @@ class PositionTask(Task):
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
         priority: Level in a cascade, 1 the first; None: no cascade.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target.
+        next_gain: Gain of ``"next"`` [1/s], at least 0; None stands for 1 / dt, and more is cut to
+            it.
     """
 
     gain: float = 10.2
     frame: str | None = None
     weight: float | None = None
     priority: int | None = None
+    tracking: Tracking = "paper"
+    next_gain: float | None = None
     kind: int = field(default=POSITION, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         checks.not_negative("position_gain", self.gain)
-        if self.weight is not None:
-            checks.not_negative("weight", self.weight)
+        check_tracking(self)
 
     def numbers(self, robot: Robot) -> Vector:
-        """Return the gain, (1,)."""
-        return np.array([self.gain])
+        """Return the gain, and whether the next target is tracked, (2,)."""
+        return task_gains(self)
 
 
 @compiled
@@ -122,6 +141,8 @@ class OrientationTask(Task):
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
         priority: Level in a cascade, 1 the first; None: no cascade.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target.
+        next_gain: Gain of ``"next"`` [1/s], as of `PositionTask`.
     """
 
     gain: float = 10.2
@@ -129,6 +150,8 @@ class OrientationTask(Task):
     frame: str | None = None
     weight: float | None = None
     priority: int | None = None
+    tracking: Tracking = "paper"
+    next_gain: float | None = None
     kind: int = field(default=ORIENTATION_SO3, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
     row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
@@ -140,20 +163,37 @@ class OrientationTask(Task):
         if self.form == "block":
             object.__setattr__(self, "kind", ORIENTATION_BLOCK)
             object.__setattr__(self, "rows", 4)
-        if self.weight is not None:
-            checks.not_negative("weight", self.weight)
+        check_tracking(self)
 
     def numbers(self, robot: Robot) -> Vector:
-        """Return the gain, (1,)."""
-        return np.array([self.gain])
+        """Return the gain, and whether the next target is tracked, (2,)."""
+        return task_gains(self)
+
+
+def check_tracking(task: Any) -> None:
+    """Check weight, tracking and its gain; raises InvalidInputError."""
+    checks.one_of("tracking", task.tracking, TRACKINGS)
+    for name in ("weight", "next_gain"):
+        if getattr(task, name) is not None:
+            checks.not_negative(name, getattr(task, name))
+
+
+def task_gains(task: Any) -> Vector:
+    """Return the gain, not yet cut to 1 / dt, and 1 where the next target is tracked, (2,)."""
+    if task.tracking == "paper":
+        return np.array([task.gain, 0.0])
+    return np.array([np.inf if task.next_gain is None else task.next_gain, 1.0])
 
 
 @compiled
 def so3_rows(
     out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
-    jacobian: Matrix, place: Vector, targets: Vector, target: int,
+    jacobian: Matrix, place: Vector, targets: Vector, target: int, rate: float,
 ) -> None:  # fmt: skip
-    """Write three rows (3, n) and their right-hand side; arguments as `position_rows`."""
+    """Write three rows (3, n) and their right-hand side; arguments as `position_rows`.
+
+    A `rate` above zero is 1 / dt of a task that tracks the next target.
+    """
     relative, error = np.empty((3, 3)), np.empty(3)
     for i in range(3):
         for j in range(3):
@@ -167,6 +207,15 @@ def so3_rows(
         for j in range(jacobian.shape[0]):
             if codes[support + j] != 0:
                 out[rows + i * n + j] = jacobian[j, 3 + i]
+    if rate > 0.0:
+        # The logarithm of a product: the mean twist and the error do not just add up.
+        turn = targets[target + 15 : target + 18] / rate
+        for j in range(3):
+            relative[:, j] = rotated(turn, relative[:, j])
+        ahead = np.empty(3)
+        rotation_log(relative, ahead)
+        for i in range(3):
+            out[rhs + i] = rate * ahead[i] - (rate - gain) * error[i]
 
 
 @compiled
@@ -197,39 +246,6 @@ def block_rows(
     project_on_range(here, wanted)
     for i in range(4):
         out[rhs + i] = wanted[i]
-
-
-@compiled
-def rotation_log(R: Matrix, out: Vector) -> None:
-    """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
-
-    Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
-    """
-    trace = R[0, 0] + R[1, 1] + R[2, 2]
-    if trace > 0.0:
-        w = 0.5 * np.sqrt(1.0 + trace)
-        out[0] = (R[2, 1] - R[1, 2]) / (4.0 * w)
-        out[1] = (R[0, 2] - R[2, 0]) / (4.0 * w)
-        out[2] = (R[1, 0] - R[0, 1]) / (4.0 * w)
-    else:
-        i = 0
-        if R[1, 1] > R[0, 0]:
-            i = 1
-        if R[2, 2] > R[i, i]:
-            i = 2
-        j, k = (i + 1) % 3, (i + 2) % 3
-        largest = 0.5 * np.sqrt(max(1.0 + R[i, i] - R[j, j] - R[k, k], 0.0))
-        w = (R[k, j] - R[j, k]) / (4.0 * largest)
-        sign = 1.0 if w >= 0.0 else -1.0
-        w *= sign
-        out[i] = sign * largest
-        out[j] = sign * (R[i, j] + R[j, i]) / (4.0 * largest)
-        out[k] = sign * (R[i, k] + R[k, i]) / (4.0 * largest)
-    sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
-    # angle / sin(angle / 2), whose limit at 0 is 2
-    scale = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
-    for i in range(3):
-        out[i] *= scale
 
 
 @compiled

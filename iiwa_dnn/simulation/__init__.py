@@ -5,6 +5,7 @@ from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.motion import MOTIONS
 from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, VelocityDisturbance, gaussian_noise
 from iiwa_dnn.simulation.plants import IdealPlant, MujocoPlant, Plant
+from iiwa_dnn.simulation.retiming import Trajectory, retime
 from iiwa_dnn.simulation.runner import Simulation, simulate
 
 __all__ = [
@@ -18,7 +19,9 @@ __all__ = [
     "Plant",
     "Push",
     "Simulation",
+    "Trajectory",
     "VelocityDisturbance",
     "gaussian_noise",
+    "retime",
     "simulate",
 ]

@@ -13,11 +13,28 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
 
 Motion = Literal["euler", "midpoint", "rk4"]
 VelocityField = Callable[[Vector, float], Vector]
 Step = Callable[[VelocityField, Vector, float, float], Vector]
+
+
+def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
+    """Raise InvalidInputError unless a run can take this motion.
+
+    Args:
+        motion: Name of the motion.
+        one_clock: Whether network or physics advance by one control period a step.
+        ahead: Whether a task tracks the target one control period ahead.
+    """
+    checks.one_of("motion", motion, tuple(MOTIONS))
+    if motion != "euler" and (one_clock or ahead):
+        why = "in continuous mode and in physics: they have one clock"
+        why = "with tasks that track the next target" if ahead else why
+        raise InvalidInputError("motion", f"must be euler {why}", motion)
 
 
 def euler(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:

@@ -26,7 +26,7 @@ from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.history import COMPLETED, History, settings_of, step_count
 from iiwa_dnn.simulation.incidents import Incidents
 from iiwa_dnn.simulation.judgement import Judgement
-from iiwa_dnn.simulation.motion import MOTIONS, Motion
+from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, VelocityDisturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
 
@@ -76,11 +76,7 @@ class Simulation:
         several = reference if isinstance(reference, Mapping) else {"": reference}
         length = max(r.duration for r in several.values()) if duration is None else duration
         checks.positive("duration", length)
-        checks.one_of("motion", motion, tuple(MOTIONS))
         self._ideal = plant is None or isinstance(plant, IdealPlant)
-        if motion != "euler" and not (mode == "converged" and self._ideal):
-            problem = "must be euler in continuous mode and in physics: they have one clock"
-            raise InvalidInputError("motion", problem, motion)
         checks.not_negative("integral_gain", integral_gain)
         checks.integer("seed", seed, 0)
         self.steps = steps = step_count(length, dt)
@@ -94,6 +90,9 @@ class Simulation:
             robot, scheme, reference, dt=dt, mode=mode, policy=policy, solver=solver
         )
         self._controller.anchor(start)
+        layout = self._controller.plan.layout
+        one_clock = mode != "converged" or not self._ideal
+        check_motion(motion, one_clock, layout is not None and layout.needs_period)
         self._plant.start(robot, self._q0, dt, seed)
         self._controller.warn_if_far(start, 0.0, stacklevel=4)
         if integral_gain and len(self._controller.plan.frames) > 1:
@@ -105,7 +104,6 @@ class Simulation:
         )
         self._misled = chain.misleads or not self._ideal
         self._altered = chain.alters or motion != "euler"
-        layout = self._controller.plan.layout
         self._rows = [] if layout is None else layout.row_names()
         shared = {
             "dt": dt, "duration": length, "mode": mode, "noise": noise, "noise_at": noise_at,

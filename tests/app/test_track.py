@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from helpers_kinematics import PAPER_Q0, dh_pose
@@ -22,6 +23,8 @@ from iiwa_dnn.app.main import run as run_command
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.simulation import runner as loop
 
 SCRIPT = Path(__file__).parents[2] / "scripts" / "track_heart.py"
@@ -655,7 +658,8 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     options = (
         "robot mode weight orientation joint-limit dt duration scale motion noise filter-window "
-        "seed check tolerance out no-plots quiet policy speed gain integral-gain"
+        "seed check tolerance out no-plots quiet policy speed gain integral-gain "
+        "tracking next-gain"
     )
     for option in options.split():
         assert f"--{option}" in text
@@ -705,3 +709,39 @@ def test_the_scripts_exit_code_is_the_functions(tmp_path: Path) -> None:
     assert done.stdout == ""
     assert done.stderr == "track_heart: error: weight: must be in [0, 1], not 1.5\n"
     assert list(tmp_path.iterdir()) == []
+
+
+# Paths that turn
+
+
+@pytest.mark.parametrize("name", ["cone", "tilting-circle", "plane-heart", "sphere-heart"])
+def test_a_path_that_turns_is_drawn_and_its_orientation_error_shown(
+    name: str, tmp_path: Path
+) -> None:
+    out = tmp_path / "run"
+    arguments = ["--reference", name, "--duration", "0.02", "--dt", "1e-3", "--no-plots", "-q"]
+    assert call([*arguments, "--tracking", "next", "--out", str(out)]) == 0
+    metrics = json.loads((out / "metrics.json").read_text())
+    assert 0.0 <= metrics["max_orientation_error_rad"] < 1e-6
+    record = Record.load(out / "record.npz")
+    turned = np.ptp(record.rotation_desired, axis=0).max()
+    assert (turned > 1e-9) == (name != "plane-heart")
+
+
+def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    start = Configuration(load_robot("iiwa7"), PAPER_Q0)
+    x, y, z, w = pin.Quaternion(start.rotation).coeffs()
+    place = start.position
+    for shift in (0.0, 0.02):
+        rows = [[*(place + [shift + step, 0.0, 0.0]), w, x, y, z] for step in (0.0, 0.01)]
+        text = "\n".join(",".join(map(repr, map(float, row))) for row in rows)
+        (tmp_path / "poses.csv").write_text(f"x,y,z,qw,qx,qy,qz\n{text}\n")
+        out = tmp_path / f"run{shift}"
+        arguments = ["--reference", str(tmp_path / "poses.csv"), "--tool-speed", "0.01"]
+        call([*arguments, "--duration", "0.01", "--dt", "1e-3", "--no-plots", "--out", str(out)])
+        told = capsys.readouterr().err
+        assert ("begins 0.02 m and" in told) == (shift > 0.0)
+        desired = Record.load(out / "record.npz").position_desired[0]
+        np.testing.assert_allclose(desired, place + [shift, 0.0, 0.0], rtol=0, atol=1e-15)

@@ -328,8 +328,8 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
     [
         (KineticEnergy, ["weight", "kinetic"]),
         (CyclicMotion, ["weight", "gain", "home"]),
-        (PositionTask, ["gain", "frame", "weight"]),
-        (OrientationTask, ["gain", "form", "frame", "weight"]),
+        (PositionTask, ["gain", "frame", "weight", "priority", "tracking", "next_gain"]),
+        (OrientationTask, ["gain", "form", "frame", "weight", "priority", "tracking", "next_gain"]),
         (JointLimits, ["gain"]),
     ],
 )

@@ -80,3 +80,10 @@ def test_priorities(tmp_path: Path) -> None:
     left = [float(value) for value in re.findall(r"residual at most (\S+)", text)]
     assert max(left[:2]) < 1e-8
     assert left[2] > 0.1
+
+
+def test_an_orientation_of_ones_own(tmp_path: Path) -> None:
+    text = example(tmp_path, "own_orientation.py", "1")
+    assert number(r"error (\S+) m,", text) < 3e-8
+    assert number(r"m, (\S+) rad,", text) < 2e-7
+    assert "failures []" in text
