@@ -31,7 +31,7 @@ from iiwa_dnn.references import (
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot, robot_from_dh
 from iiwa_dnn.schemes import (
     AccelerationLimits,
     AxisTask,
@@ -125,6 +125,7 @@ __all__ = [
     "compute_metrics",
     "failures",
     "load_robot",
+    "robot_from_dh",
     "simulate",
     "solve_batch",
     "solve_problem",
