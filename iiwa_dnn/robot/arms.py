@@ -33,14 +33,6 @@ class Arm:
     start: tuple[float, ...] = ()
 
     @property
-    def installed(self) -> bool:
-        """Whether the package of the files is installed and has this one."""
-        try:
-            return self.path.is_file()
-        except MissingDependencyError:
-            return False
-
-    @property
     def path(self) -> Path:
         """The URDF file.
 

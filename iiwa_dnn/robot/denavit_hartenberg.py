@@ -42,8 +42,7 @@ def robot_from_dh(
         R_x(\alpha)\,T_x(a)\,R_z(\theta)\,T_z(d) \;\text{(modified)}.
 
     The frames are ``base``, ``link_1`` ... ``link_n``, the last one the tip; the joints are
-    ``joint_1`` ... ``joint_n``. The links have no mass, so that costs and plants that need it do
-    not go with such a robot, and neither does what reads a URDF file.
+    ``joint_1`` ... ``joint_n``. The links have no mass: physics and inertia costs need a URDF.
 
     Args:
         table: a [m], alpha [rad], d [m] and theta, the joint's offset [rad], (n, 4); in the

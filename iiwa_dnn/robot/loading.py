@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
@@ -11,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES
 from iiwa_dnn.robot.robot import Robot
@@ -22,7 +23,9 @@ _Array = NDArray[np.float64]
 
 def available_robots() -> tuple[str, ...]:
     """List the robots that `load_robot` knows by name: the package's own, then installed `ARMS`."""
-    return (*package_robots(), *(name for name, arm in ARMS.items() if arm.installed))
+    with contextlib.suppress(MissingDependencyError):
+        return (*package_robots(), *(name for name, arm in ARMS.items() if arm.path.is_file()))
+    return package_robots()
 
 
 def package_robots() -> tuple[str, ...]:

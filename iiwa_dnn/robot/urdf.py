@@ -58,11 +58,9 @@ def read(path: Path) -> ET.Element:
         root.extend([*part.findall("link"), *part.findall("joint")])
     for joint in root.findall("joint[@type='continuous']"):
         limit = joint.find("limit")
-        kept = {} if limit is None else limit.attrib
-        if limit is not None:
-            joint.remove(limit)
-        limits = {key: kept.get(key, "0") for key in ("effort", "velocity")}
-        ET.SubElement(joint, "limit", limits)
+        limit = ET.SubElement(joint, "limit", effort="0", velocity="0") if limit is None else limit
+        for key in ("lower", "upper"):
+            limit.attrib.pop(key, None)
         joint.set("type", "revolute")
     return root
 

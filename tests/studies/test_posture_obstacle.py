@@ -65,8 +65,6 @@ def test_jacobian_of_the_nearest_point(link: int) -> None:
         return frame.position + frame.rotation @ body
 
     expected = finite_difference(move, NEAR)
-    exact = study.PointAvoidance(printed=False).jacobian(frames, critical, link - 1)
-    np.testing.assert_allclose(exact, expected, atol=1e-8)
     printed = study.PointAvoidance().jacobian(frames, critical, link - 1)
     if link == 2:
         np.testing.assert_allclose(printed, expected, atol=1e-8)
