@@ -122,6 +122,8 @@ def test_verdicts() -> None:
     assert study.judge("AOA-2PF", theirs) == "reproduced"
     assert study.judge("AOA-2PF", (*theirs[:3], theirs[3] + 0.06, *theirs[4:])) == "same findings"
     assert study.judge("AOA-2PF", (*theirs[:5], theirs[5] / 3, theirs[6])) == "same findings"
+    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] / 9, *theirs[5:])) == "reproduced"
+    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] * 3, *theirs[5:])) == "same findings"
     assert study.judge("AOA-2PF", (*theirs[:6], 0.041)) == "not reproduced"
     assert study.judge("UOA-UPF", (*study.RECORDED["UOA-UPF"][:6], 0.06)) == "not reproduced"
     lines = study.table({"AOA-2PF": theirs}).splitlines()
