@@ -54,7 +54,8 @@ def load_robot(
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
             an arm of `iiwa_dnn.robot.arms.ARMS` has all joints frozen that do not move its tip.
         verify: Let a second reader judge joints, limits and link poses (`verification`).
-        tool: Pose of a tool in the frame `tip`, which takes the tip's place (`Robot.with_tool`).
+        tool: Pose of a tool in the frame `tip`, whose place it takes (`Robot.with_tool`): an SE3,
+            or x, y, z [m], roll, pitch, yaw [rad], (6,).
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
