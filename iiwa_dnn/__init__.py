@@ -34,7 +34,7 @@ from iiwa_dnn.references import (
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
+from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot, robot_from_dh
 from iiwa_dnn.schemes import (
     AccelerationLimits,
     AxisTask,
@@ -133,6 +133,7 @@ __all__ = [
     "failures",
     "load_robot",
     "retime",
+    "robot_from_dh",
     "simulate",
     "solve_batch",
     "solve_problem",

@@ -3,8 +3,6 @@
 import sys
 from pathlib import Path
 
-import numpy as np
-
 from iiwa_dnn import (
     Configuration,
     CrossCheck,
@@ -31,11 +29,11 @@ HEAD = (
 def main() -> int:
     """Draw, print and write; 1 if a run failed."""
     folder = prepare_folder(OUT)
-    starts = {"iiwa7": paper.START, **{name: arm.start for name, arm in ARMS.items()}}
     rows, failed = [], 0
-    for name, start in starts.items():
+    for name in ("iiwa7", *ARMS):
+        start = load_robot(name).start_posture()
         for task, orientation, size in (("pose", "so3", 6), ("position", "none", 3)):
-            row, reasons = draw(name, np.array(start), orientation)
+            row, reasons = draw(name, start, orientation)
             failed += bool(reasons)
             dof = len(start)
             rows.append((name, str(dof), task, str(dof - size), *row, reasons or "all agree"))

@@ -1,4 +1,4 @@
-"""Arms that can be loaded by name: URDF file, tip frame, locked joints and start posture.
+"""Arms that can be loaded by name: URDF file, tip frame and start posture.
 
 The files of `ARMS` come with the package ``example-robot-data`` (extra ``robots``), which is data
 only: the URDFs as their makers publish them.
@@ -25,14 +25,12 @@ class Arm:
     Attributes:
         file: The URDF's path in the package's folder of robots.
         tip: Frame that follows references.
-        locked: Joints of its gripper, which are held still.
-        start: Posture away from limits and singular postures [rad], (n,).
+        start: Posture away from limits and singular postures [rad], (n,); empty: none is chosen.
     """
 
     file: str
     tip: str
-    locked: tuple[str, ...]
-    start: tuple[float, ...]
+    start: tuple[float, ...] = ()
 
     @property
     def path(self) -> Path:
@@ -47,31 +45,43 @@ class Arm:
             raise MissingDependencyError(_PACKAGE, "pip install 'iiwa-dnn[robots]'") from error
 
 
+_TALOS, _BAXTER = "talos_data/robots/talos_reduced.urdf", "baxter_description/urdf/baxter.urdf"
+
 ARMS = {
+    "baxter_left": Arm(_BAXTER, "left_gripper"),
+    "baxter_right": Arm(_BAXTER, "right_gripper"),
+    "kinova": Arm("kinova_description/robots/kinova.urdf", "j2s6s200_end_effector"),
     "panda": Arm(
         "panda_description/urdf/panda.urdf",
         "panda_hand_tcp",
-        ("panda_finger_joint1", "panda_finger_joint2"),
         (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     ),
+    "talos_left": Arm(_TALOS, "gripper_left_base_link"),
     "talos_left_arm": Arm(
         "talos_data/robots/talos_left_arm.urdf",
         "gripper_left_base_link",
-        ("gripper_left_joint",),
         (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
     ),
-    "ur5": Arm(
-        "ur_description/urdf/ur5_robot.urdf", "tool0", (), (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)
+    "talos_right": Arm(_TALOS, "gripper_right_base_link"),
+    "tiago": Arm(
+        "tiago_description/robots/tiago.urdf",
+        "arm_tool_link",
+        (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6),
     ),
+    "ur3": Arm("ur_description/urdf/ur3_robot.urdf", "tool0"),
+    "ur5": Arm("ur_description/urdf/ur5_robot.urdf", "tool0", (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)),
+    "ur10": Arm("ur_description/urdf/ur10_robot.urdf", "tool0"),
     "xarm7": Arm(
-        "xarm_description/urdf/xarm7.urdf", "link_eef", (), (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
+        "xarm_description/urdf/xarm7.urdf", "link_eef", (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
     ),
+    "z1": Arm("z1_description/urdf/z1.urdf", "gripperStator"),
 }
+"""By name; all joints that do not move the tip are held still."""
 
 STARTS = {
     "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
     "iiwa7_dual": (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
-    **{name: arm.start for name, arm in ARMS.items()},
+    **{name: arm.start for name, arm in ARMS.items() if arm.start},
 }
 """Known start postures by the robot's name [rad], each (n,)."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
@@ -9,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES
 from iiwa_dnn.robot.robot import Robot
@@ -21,7 +22,14 @@ _Array = NDArray[np.float64]
 
 
 def available_robots() -> tuple[str, ...]:
-    """List the robots that come with the package; `load_robot` knows those of `arms` too."""
+    """List the robots that `load_robot` knows by name: the package's own, then installed `ARMS`."""
+    with contextlib.suppress(MissingDependencyError):
+        return (*package_robots(), *(name for name, arm in ARMS.items() if arm.path.is_file()))
+    return package_robots()
+
+
+def package_robots() -> tuple[str, ...]:
+    """List the robots that come with the package."""
     files = _robots_folder().glob("*/*.urdf")
     return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
 
@@ -31,6 +39,7 @@ def load_robot(
     tip: str | None = None,
     locked: Iterable[str] = (),
     verify: bool = False,
+    tool: pin.SE3 | ArrayLike | None = None,
 ) -> Robot:
     """Load a robot by its name or from a URDF file.
 
@@ -38,13 +47,15 @@ def load_robot(
     position limit, and a ``velocity`` of 0 stands for "not given": no velocity limit.
 
     Args:
-        name_or_path: A name out of `available_robots` or `iiwa_dnn.robot.arms.ARMS`, or the path
-            of a URDF file: a `Path`, or a string that ends in ``.urdf`` or has a separator in it.
+        name_or_path: A name out of `available_robots`, or the path of a URDF file: a `Path`, or a
+            string that ends in ``.urdf`` or has a separator in it.
         tip: Frame that follows references. Default: that of the name (`iiwa_dnn.robot.arms`), or
             the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
-            an arm loaded by name has the joints of its gripper frozen besides.
+            an arm of `iiwa_dnn.robot.arms.ARMS` has all joints frozen that do not move its tip.
         verify: Let a second reader judge joints, limits and link poses (`verification`).
+        tool: Pose of a tool in the frame `tip`, whose place it takes (`Robot.with_tool`): an SE3,
+            or x, y, z [m], roll, pitch, yaw [rad], (6,).
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
@@ -57,9 +68,9 @@ def load_robot(
     arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
     path = _find(name_or_path) if arm is None else arm.path
     root = urdf.read(path)
-    chosen = (locked,) if isinstance(locked, str) else tuple(locked)
-    frozen = tuple(dict.fromkeys((*(arm.locked if arm is not None else ()), *chosen)))
     full = urdf.build_model(path, root)
+    chosen = (locked,) if isinstance(locked, str) else tuple(locked)
+    frozen = tuple(dict.fromkeys((*(_still(full, arm.tip) if arm is not None else ()), *chosen)))
     # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.
     if tip is None:
         tip = root.get("tip") or _default_tip(full) if arm is None else arm.tip
@@ -76,7 +87,7 @@ def load_robot(
         from iiwa_dnn.robot.verification import verify_robot  # slow to import
 
         verify_robot(robot)
-    return robot
+    return robot if tool is None else robot.with_tool(tool)
 
 
 def _robots_folder() -> Path:
@@ -93,8 +104,7 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
     text = os.fspath(name_or_path)
     if isinstance(name_or_path, os.PathLike) or text.endswith(".urdf") or {"/", os.sep} & set(text):
         return Path(text)
-    available = available_robots()
-    if text not in available:
+    if text not in (available := package_robots()):
         raise NotFoundError("robot", text, (*available, *ARMS))
     return _robots_folder() / text / f"{text}.urdf"
 
@@ -109,6 +119,13 @@ def _default_tip(model: pin.Model) -> str:
     return str(ends[0])
 
 
+def _still(model: pin.Model, tip: str) -> list[str]:
+    """List the joints that do not move a frame."""
+    frame = model.frames[model.getFrameId(tip, pin.FrameType.BODY)]
+    moving = set(model.supports[frame.parentJoint])
+    return [name for i, name in enumerate(model.names) if i not in moving]
+
+
 def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[float, ...]]:
     """Freeze joints at zero or the limit nearest to it; return model and frozen positions [rad]."""
     names = tuple(model.names)
@@ -120,7 +137,7 @@ def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[f
     # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
     posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
     frozen = [names.index(name) for name in locked]
-    # Continuous, planar and floating joints have no limits, so they are at zero.
+    # Planar and floating joints are at zero.
     q_locked = [posture[model.idx_qs[i]] if model.nqs[i] == 1 else 0.0 for i in frozen]
     reduced = pin.buildReducedModel(model, frozen, posture) if locked else model
     return reduced, tuple(map(float, q_locked))
@@ -144,7 +161,7 @@ def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[_Array, _Arr
         if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:  # q and its velocity differ in kind
             problem = (
                 f"joint {name!r} is {joints[name].get('type')}; only joints with one coordinate "
-                "are supported: lock it, or make it revolute, with limits, in the URDF"
+                "are supported: lock it"
             )
             raise InvalidInputError("locked", problem, name)
         limit = joints[name].find("limit")

@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import STARTS
 
@@ -138,6 +139,28 @@ class Robot:
                 changed[key] = _limit(name, value, self.dof)
                 _check_above_zero(name, changed[key])
         return replace(self, **changed)
+
+    def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
+        """Return the same robot with a frame fixed to its tip, which becomes the tip.
+
+        Args:
+            tool: Pose of the tool in the tip's frame: a Pinocchio SE3, or x, y, z [m] and roll,
+                pitch, yaw [rad] as in a URDF's ``<origin>``, (6,).
+            name: Name of the frame, which is none of the robot's.
+
+        Raises:
+            InvalidInputError: If the pose is neither, or not finite, or the name is taken.
+        """
+        if name in self.frame_names:
+            raise InvalidInputError("name", f"the robot has a frame {name!r} already", name)
+        place = tool
+        if not isinstance(tool, pin.SE3):
+            numbers = checks.finite_array("tool", tool, (6,)).copy()
+            place = pin.SE3(pin.rpy.rpyToMatrix(numbers[3:]), numbers[:3])
+        model, tip = self.model.copy(), self.model.frames[self.tip_id]
+        at = (name, tip.parentJoint, self.tip_id, tip.placement * place, pin.FrameType.OP_FRAME)
+        model.addFrame(pin.Frame(*at))
+        return replace(self, model=model, tip=name)
 
     def start_posture(self) -> _Array:
         """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.

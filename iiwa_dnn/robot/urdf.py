@@ -37,7 +37,8 @@ def read(path: Path) -> ET.Element:
     """Read a URDF file as XML; return the element ``<robot>``, which has joints.
 
     ``<include file="other.urdf" prefix="left_"/>``, which is no URDF, stands for the links and
-    joints of another file, their names with the prefix.
+    joints of another file, their names with the prefix. A continuous joint becomes a revolute one
+    without position limits: one coordinate, like all others.
 
     Raises:
         FileError: If the file cannot be read, is not XML, has a DOCTYPE or is not a robot with
@@ -55,6 +56,12 @@ def read(path: Path) -> ET.Element:
                 if key in element.attrib:
                     element.set(key, include.get("prefix", "") + element.get(key, ""))
         root.extend([*part.findall("link"), *part.findall("joint")])
+    for joint in root.findall("joint[@type='continuous']"):
+        limit = joint.find("limit")
+        limit = ET.SubElement(joint, "limit", effort="0", velocity="0") if limit is None else limit
+        for key in ("lower", "upper"):
+            limit.attrib.pop(key, None)
+        joint.set("type", "revolute")
     return root
 
 
@@ -92,7 +99,7 @@ def drop_meshes(root: ET.Element) -> None:
 def weld(root: ET.Element, posture: Mapping[str, float]) -> None:
     """Replace joints by fixed ones, each at its position in `posture` [rad], by name.
 
-    The position of continuous, planar and floating joints has to be 0.
+    The position of planar and floating joints has to be 0.
     """
     for joint in root.findall("joint"):
         name, mimic = joint.get("name", ""), joint.find("mimic")

@@ -11,7 +11,7 @@ from modulefinder import ModuleFinder
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.robot import available_robots, load_robot
+from iiwa_dnn.robot.loading import load_robot, package_robots
 
 _PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
 
@@ -30,7 +30,7 @@ def fingerprint(task: Callable[..., Any]) -> dict[str, Any]:
     digest = hashlib.sha256()
     for path in sources(Path(inspect.getfile(task))):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    for robot in available_robots():
+    for robot in package_robots():
         urdf = load_robot(robot).path
         digest.update(b"" if urdf is None else urdf.read_bytes())
     versions = {name: version(name) for name in _PACKAGES}

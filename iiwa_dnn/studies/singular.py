@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.policies import Policy
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Line
-from iiwa_dnn.results.metrics import orientation_error, position_error
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies.runs import paper_robot
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TILT = 0.05
 """Angle between the tool and its desired orientation at the start [rad]."""
@@ -60,32 +50,3 @@ def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
         paper_robot(), DoubleIndicator(orientation="none"), line, start.q,
         dt=dt, duration=4.0, policy=policy, check=CrossCheck(()),
     )  # fmt: skip
-
-
-def save_singular_figure(
-    vertical: Mapping[str, Record], stretched: Mapping[str, Record], folder: str | os.PathLike[str]
-) -> list[Path]:
-    """Draw ``singular`` as PNG and PDF (`write_figures`), and return the files.
-
-    Args:
-        vertical: Runs of `tilted_run`, by rows and mode.
-        stretched: Runs of `stretched_run`, by policy.
-        folder: The folder; made if need be.
-    """
-    return write_figures({"singular": lambda: _figure(vertical, stretched)}, folder)
-
-
-def _figure(vertical: Mapping[str, Record], stretched: Mapping[str, Record]) -> Figure:
-    figure = new_figure(DOUBLE_COLUMN, 2.6)
-    left, middle, right = figure.subplots(1, 3)
-    for name, record in vertical.items():
-        left.semilogy(record.t[1:], orientation_error(record)[1:], label=name)
-    for name, record in stretched.items():
-        middle.plot(record.t, np.linalg.norm(position_error(record), axis=1), label=name)
-        right.plot(record.t[1:], np.abs(record.dq).max(axis=1), label=name, linewidth=0.6)
-    left.set(title="Tool vertical", xlabel="t [s]", ylabel="orientation error [rad]")
-    middle.set(title="Arm stretched", xlabel="t [s]", ylabel="position error [m]")
-    right.set(title="Arm stretched", xlabel="t [s]", ylabel="fastest joint [rad/s]")
-    for axes in (left, middle, right):
-        axes.legend()
-    return figure

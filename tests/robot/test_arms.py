@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pinocchio as pin
@@ -14,6 +15,7 @@ from iiwa_dnn import (
     DoubleIndicator,
     Heart,
     MissingDependencyError,
+    available_robots,
     compute_metrics,
     failures,
     load_robot,
@@ -22,7 +24,22 @@ from iiwa_dnn import (
 from iiwa_dnn.robot import arms
 from iiwa_dnn.robot.arms import ARMS
 
-JOINTS = {"panda": 7, "talos_left_arm": 6, "ur5": 6, "xarm7": 7}
+JOINTS = {
+    "baxter_left": 7, "baxter_right": 7, "kinova": 6, "panda": 7, "talos_left": 9, "talos_right": 9,
+    "talos_left_arm": 6, "tiago": 8, "ur3": 6, "ur5": 6, "ur10": 6, "xarm7": 7, "z1": 6,
+}  # fmt: skip
+
+
+def still(name: str) -> set[str]:
+    """Joints that are not between base and tip, by the XML."""
+    root = ElementTree.parse(example_urdf(ARMS[name].file)).getroot()
+    above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
+    names = {joint.get("name") for joint in above.values() if joint.get("type") != "fixed"}
+    link = ARMS[name].tip
+    while link in above:
+        names.discard(above[link].get("name"))
+        link = above[link].find("parent").get("link")
+    return names
 
 
 @pytest.fixture(autouse=True)
@@ -34,10 +51,11 @@ def installed() -> None:
 def test_an_arm_by_its_name_is_the_file_without_the_gripper(name: str) -> None:
     robot, arm = load_robot(name), ARMS[name]
     assert (robot.name, robot.dof, robot.tip) == (name, JOINTS[name], arm.tip)
-    assert robot.locked == arm.locked
+    assert set(robot.locked) == still(name)
+    assert name in available_robots()
     # By its file, everything said by hand.
-    by_hand = load_robot(example_urdf(arm.file), tip=arm.tip, locked=arm.locked)
-    q = np.array(arm.start)
+    by_hand = load_robot(example_urdf(arm.file), tip=arm.tip, locked=robot.locked)
+    q = robot.start_posture()
     for one, other in (
         (robot.limits, by_hand.limits),
         (Configuration(robot, q).pose, Configuration(by_hand, q).pose),
@@ -52,13 +70,14 @@ def test_an_arm_by_its_name_is_the_file_without_the_gripper(name: str) -> None:
 def test_locked_and_tip_can_be_chosen_besides() -> None:
     robot = load_robot("panda", tip="panda_link8", locked=("panda_joint3",))
     assert (robot.dof, robot.tip) == (6, "panda_link8")
-    assert robot.locked == (*ARMS["panda"].locked, "panda_joint3")
+    assert robot.locked == ("panda_finger_joint1", "panda_finger_joint2", "panda_joint3")
 
 
 @pytest.mark.parametrize("orientation", ["so3", "none"])
 @pytest.mark.parametrize("name", ARMS)
 def test_the_heart_with_redundancy_zero_one_three_and_four(name: str, orientation: str) -> None:
-    robot, q0 = load_robot(name), ARMS[name].start
+    robot = load_robot(name)
+    q0 = robot.start_posture()
     reference = Heart().anchored(Configuration(robot, q0))
     scheme = DoubleIndicator(orientation=orientation)
     record = simulate(robot, scheme, reference, q0, dt=1e-2)
@@ -71,7 +90,11 @@ def test_the_heart_with_redundancy_zero_one_three_and_four(name: str, orientatio
     # Pinocchio's own forward kinematics of the whole robot ends where the record says.
     full = pin.buildModelFromUrdf(str(example_urdf(ARMS[name].file)))
     data, q = full.createData(), pin.neutral(full)
-    q[[full.joints[full.getJointId(joint)].idx_q for joint in robot.joint_names]] = record.q[-1]
+    for joint, angle in zip(robot.joint_names, record.q[-1], strict=True):
+        index = full.getJointId(joint)
+        # A continuous joint of Pinocchio's has two coordinates.
+        values = [np.cos(angle), np.sin(angle)] if full.nqs[index] == 2 else [angle]
+        q[full.idx_qs[index] :][: len(values)] = values
     pin.framesForwardKinematics(full, data, q)
     tip = data.oMf[full.getFrameId(robot.tip, pin.FrameType.BODY)].translation
     np.testing.assert_allclose(record.position[-1], tip, atol=1e-12)
@@ -86,3 +109,4 @@ def test_without_the_package_one_line_says_what_to_install(
     monkeypatch.setattr(arms, "distribution", missing)
     with pytest.raises(MissingDependencyError, match=r"pip install 'iiwa-dnn\[robots\]'"):
         load_robot("panda")
+    assert "panda" not in available_robots()

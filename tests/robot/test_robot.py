@@ -7,13 +7,15 @@ import pickle
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import iiwa_dnn.robot.loading
-from helpers_kinematics import example_urdf
+from helpers_kinematics import example_urdf, finite_difference
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.loading import package_robots
 
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
@@ -71,13 +73,14 @@ def test_robots_beside_the_module_come_first(
     for folder, name in (("robots", "above"), ("iiwa_dnn/robots", "inside")):
         (tmp_path / folder / name).mkdir(parents=True)
         (tmp_path / folder / name / f"{name}.urdf").write_text(one_joint())
-        assert available_robots() == (name,)
+        assert available_robots()[0] == name
+        assert package_robots() == (name,)
 
 
 def test_unknown_robot_names_those_that_exist() -> None:
     with pytest.raises(NotFoundError, match="no robot 'iiwa14'; did you mean: iiwa7") as caught:
         load_robot("iiwa14")
-    assert caught.value.available == (*available_robots(), *ARMS)
+    assert caught.value.available == (*package_robots(), *ARMS)
 
 
 @pytest.mark.parametrize("bad", [None, 7])
@@ -136,10 +139,18 @@ def test_missing_file_and_folder(tmp_path: Path) -> None:
         load_robot(tmp_path)
 
 
-@pytest.mark.parametrize("kind", ["continuous", "floating", "planar"])
+@pytest.mark.parametrize("kind", ["floating", "planar"])
 def test_joints_of_other_kinds_are_named(written, kind: str) -> None:
     with pytest.raises(InvalidInputError, match=f"joint 'j' is {kind}"):
         load_robot(written(one_joint("", kind)))
+
+
+@pytest.mark.parametrize(("limit", "velocity"), [("", np.inf), (LIMIT, 4.0)])
+def test_continuous_joints_have_no_position_limits(written, limit: str, velocity: float) -> None:
+    robot = load_robot(written(one_joint(limit, "continuous")), verify=True)
+    np.testing.assert_array_equal(robot.limits[:, 0], [-np.inf, np.inf, velocity])
+    turned = Configuration(robot, [100.0]).rotation  # about y, past many full turns
+    np.testing.assert_allclose(turned[0], [np.cos(100.0), 0.0, np.sin(100.0)], atol=1e-12)
 
 
 def test_limits_that_are_not_given(written) -> None:
@@ -219,13 +230,43 @@ def test_panda() -> None:
         load_robot(path, tip="panda_rightfinger")
 
 
-def test_kinova_needs_its_continuous_joints_locked() -> None:
+def test_kinova_has_three_joints_without_limits() -> None:
     path = example_urdf("kinova_description/robots/kinova.urdf")
-    with pytest.raises(InvalidInputError, match="'j2s6s200_joint_1' is continuous"):
-        load_robot(path, tip="j2s6s200_end_effector")
-    locked = [f"j2s6s200_joint_{i}" for i in (1, 4, 6)]
-    robot = load_robot(path, "j2s6s200_end_effector", locked)
-    assert (robot.dof, robot.q_locked) == (3, (0.0, 0.0, 0.0))
+    robot = load_robot(path, tip="j2s6s200_end_effector")
+    unlimited = [f"j2s6s200_joint_{i}" for i in (1, 4, 6)]
+    assert np.array(robot.joint_names)[np.isinf(robot.q_upper)].tolist() == unlimited
+    locked = load_robot(path, robot.tip, unlimited)
+    assert (locked.dof, locked.q_locked) == (3, (0.0,) * 3)
+
+
+@pytest.mark.parametrize("as_se3", [True, False])
+def test_a_tool_takes_the_tips_place(robot: Robot, as_se3: bool) -> None:
+    numbers = [0.1, -0.02, 0.3, 0.4, -0.5, 0.6]
+    place = pin.SE3(pin.rpy.rpyToMatrix(np.array(numbers[3:])), np.array(numbers[:3]))
+    held = load_robot("iiwa7", tool=place if as_se3 else numbers)
+    assert (held.tip, held.dof) == ("tool", 7)
+    q = robot.start_posture()
+    expected = Configuration(robot, q).pose @ place.homogeneous
+    for again in (held, pickle.loads(pickle.dumps(held))):
+        conf = Configuration(again, q)
+        np.testing.assert_allclose(conf.pose, expected, atol=1e-15)
+        np.testing.assert_array_equal(conf.frame(robot.tip).pose, Configuration(robot, q).pose)
+    derivative = finite_difference(lambda x: Configuration(held, x).position, q)
+    np.testing.assert_allclose(conf.jacobian[:3], derivative, atol=1e-8)
+    assert robot.tip == "iiwa7_flange"
+    assert "tool" not in robot.frame_names
+    longer = held.with_tool([0, 0, 0.1, 0, 0, 0], "pen")
+    np.testing.assert_allclose(
+        Configuration(longer, q).position, conf.position + 0.1 * conf.rotation[:, 2], atol=1e-15
+    )
+    with pytest.raises(InvalidInputError, match="a frame 'tool' already"):
+        longer.with_tool(place)
+
+
+@pytest.mark.parametrize("bad", [[0, 0, 0.1], [np.nan] * 6, "pen", np.eye(3)])
+def test_a_tool_that_is_none(robot: Robot, bad: object) -> None:
+    with pytest.raises(InvalidInputError, match=r"^tool: "):
+        robot.with_tool(bad)  # type: ignore[arg-type]
 
 
 def test_with_limits(robot: Robot) -> None:

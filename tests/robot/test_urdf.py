@@ -9,7 +9,8 @@ import pytest
 import yourdfpy
 
 from helpers_kinematics import IIWA7_INERTIALS, PAPER_Q0, Array, dh_pose, rotation_angle
-from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
+from iiwa_dnn.robot import Configuration, Robot, load_robot
+from iiwa_dnn.robot.loading import package_robots
 from iiwa_dnn.robot.urdf import read
 
 JOINTS = [f"iiwa7_joint_{i}" for i in range(1, 8)]
@@ -164,7 +165,7 @@ def test_end_cylinders(urdf: yourdfpy.URDF, i: int, radius: float, low: float, h
 
 
 def test_every_robot_of_the_package_needs_no_file_of_another_package() -> None:
-    for name in available_robots():
+    for name in package_robots():
         path = load_robot(name).path
         assert path is not None
         root = read(path)

@@ -50,6 +50,12 @@ def test_a_network_of_ones_own(tmp_path: Path) -> None:
     assert number(r"velocities (\S+) rad/s", text) < 1e-7
 
 
+def test_a_second_paper(tmp_path: Path) -> None:
+    text = example(tmp_path, "posture_obstacle.py", "out", "1e-3", "0.1")
+    assert text.count("| authors |") == text.count("| ours |") == 4
+    assert (tmp_path / "out" / "posture_obstacle.png").stat().st_size > 10_000
+
+
 def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
     text = example(tmp_path, "sweep_weight.py")
     drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]

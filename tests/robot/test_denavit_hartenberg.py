@@ -1,0 +1,112 @@
+"""Robots from Denavit-Hartenberg tables, beside the product of the matrices and other sources."""
+
+from __future__ import annotations
+
+import pickle
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import Array, dh_pose, finite_difference
+from iiwa_dnn import (
+    Configuration,
+    CyclicMotion,
+    Heart,
+    JointLimits,
+    KineticEnergy,
+    PositionTask,
+    Scheme,
+    load_robot,
+    robot_from_dh,
+    simulate,
+)
+from iiwa_dnn.errors import InvalidInputError
+
+RNG = np.random.default_rng(5)
+TABLE = RNG.uniform(-1.0, 1.0, (6, 4)) * [0.4, np.pi, 0.4, np.pi]
+SLIDES = (3, 5)
+IIWA7 = [
+    (0.0, turn * np.pi / 2, d, 0.0)
+    for turn, d in zip((-1, 1, 1, -1, -1, 1, 0), (0.34, 0, 0.4, 0, 0.4, 0, 0.126), strict=True)
+]
+
+
+def printed_product(q: Array, convention: str) -> Array:
+    """Poses of the links (6, 4, 4) by the handbooks' matrices, entry by entry."""
+    pose, poses = np.eye(4), []
+    for i, (a, alpha, d, theta) in enumerate(TABLE):
+        theta, d = (theta, d + q[i]) if i + 1 in SLIDES else (theta + q[i], d)
+        c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+        standard = [[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, d]]
+        modified = [[c, -s, 0, a], [s * ca, c * ca, -sa, -d * sa], [s * sa, c * sa, ca, d * ca]]
+        rows = standard if convention == "standard" else modified
+        pose = pose @ np.vstack([rows, [0, 0, 0, 1]])
+        poses.append(pose)
+    return np.array(poses)
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_poses_are_the_product_of_the_printed_matrices(convention: str) -> None:
+    robot = robot_from_dh(TABLE, convention=convention, prismatic=SLIDES)
+    for q in RNG.uniform(-3.0, 3.0, (20, 6)):
+        conf = Configuration(robot, q)
+        poses = np.array([conf.frame(f"link_{i}").pose for i in range(1, 7)])
+        np.testing.assert_allclose(poses, printed_product(q, convention), atol=1e-14)
+        np.testing.assert_array_equal(conf.pose, poses[-1])
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_jacobian_is_the_derivative_of_the_pose(convention: str) -> None:
+    robot = robot_from_dh(TABLE, convention=convention, prismatic=SLIDES)
+    q = RNG.uniform(-3.0, 3.0, 6)
+    conf = Configuration(robot, q)
+    derivative = finite_difference(lambda x: printed_product(x, convention)[-1], q)
+    np.testing.assert_allclose(conf.jacobian[:3], derivative[:3, 3], atol=1e-8)
+    spin = np.einsum("ijn,kj->ikn", derivative[:3, :3], conf.rotation)  # dR R^T
+    expected = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+    np.testing.assert_allclose(conf.jacobian[3:], expected, atol=1e-8)
+
+
+def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
+    urdf, robot = load_robot("iiwa7"), robot_from_dh(IIWA7, name="iiwa7")
+    for q in RNG.uniform(-2.0, 2.0, (20, 7)):
+        conf, other = Configuration(robot, q), Configuration(urdf, q)
+        np.testing.assert_allclose(conf.pose, other.pose, atol=1e-9)
+        np.testing.assert_allclose(conf.jacobian, other.jacobian, atol=1e-9)
+        np.testing.assert_allclose(conf.position, dh_pose(q)[0], atol=1e-14)
+
+
+def test_such_a_robot_draws_a_heart() -> None:
+    robot = robot_from_dh(IIWA7, lower=-2.5, upper=2.5, velocity=[1.5] * 7, name="iiwa7")
+    conf = Configuration(robot, robot.start_posture())
+    parts = [KineticEnergy(0.2), CyclicMotion(0.8)], [PositionTask()], [JointLimits()]
+    record = simulate(robot, Scheme(*parts), Heart().anchored(conf), conf.q, dt=1e-3, duration=0.1)
+    assert np.abs(record.position - record.position_desired).max() < 1e-5
+    assert np.nanmax(record.solution_gap) < 1e-7
+
+
+def test_limits_names_and_pickling() -> None:
+    robot = robot_from_dh(TABLE, upper=[1, 2, 3, 4, 5, 6], velocity=0.5, name="six")
+    assert (robot.name, robot.tip, robot.dof) == ("six", "link_6", 6)
+    assert robot.frame_names[:2] == ("base", "link_1")
+    assert robot.joint_names[-1] == "joint_6"
+    np.testing.assert_array_equal(robot.limits, [[-np.inf] * 6, [1, 2, 3, 4, 5, 6], [0.5] * 6])
+    again, q = pickle.loads(pickle.dumps(robot)), np.arange(6.0)
+    np.testing.assert_array_equal(Configuration(again, q).pose, Configuration(robot, q).pose)
+
+
+@pytest.mark.parametrize(
+    ("table", "options", "words"),
+    [
+        (np.zeros((2, 3)), {}, "table"),
+        (np.zeros((0, 4)), {}, "table: has 0 rows"),
+        ([[0, 0, np.nan, 0]], {}, "finite"),
+        ([[0, 0, 1, 0]], {"prismatic": [2]}, r"table: has 1 rows for prismatic joints \[2\]"),
+        ([[0, 0, 1, 0]], {"convention": "classic"}, "convention"),
+        ([[0, 0, 1, 0]], {"lower": 1, "upper": 0}, "lower"),
+        ([[0, 0, 1, 0]], {"velocity": [1, 2]}, "velocity"),
+    ],
+)
+def test_bad_tables_are_refused(table: object, options: dict[str, object], words: str) -> None:
+    with pytest.raises(InvalidInputError, match=words):
+        robot_from_dh(table, **options)

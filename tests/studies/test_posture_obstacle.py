@@ -1,0 +1,131 @@
+"""The second paper's arm, rows and runs, beside finite differences and a second implementation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import Array, finite_difference
+from iiwa_dnn import Circle, Configuration, Step
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.studies import posture_obstacle as study
+
+ARM = study.arm()
+FRAMES = ("base", *(f"link_{i}" for i in range(1, 7)))
+NEAR = np.array([-0.1, 0.05, 0.1, -0.2, 0.1, 0.3]) + study.START
+"""A posture near the point."""
+
+
+def step_at(q: Array, dq: Array) -> Step:
+    kinematics = Kinematics(ARM)
+    kinematics.update(q)
+    return Step(kinematics, {}, 0.0, 1e-3, q, dq)
+
+
+def states(q: Array) -> list:
+    conf = Configuration(ARM, q)
+    return [conf.frame(name) for name in FRAMES]
+
+
+def test_posture_rows_are_the_rates_of_the_vertical_seen_from_the_tool() -> None:
+    A, b = study.Posture(3).equations(step_at(NEAR, np.zeros(6)))
+    expected = finite_difference(lambda q: Configuration(ARM, q).rotation[2], NEAR)
+    np.testing.assert_allclose(A, expected, atol=1e-8)
+    assert not b.any()
+    assert np.linalg.matrix_rank(A, 1e-9) == 2
+    np.testing.assert_array_equal(study.Posture(2).equations(step_at(NEAR, b.repeat(2)))[0], A[:2])
+
+
+def test_two_rows_nearly_lose_a_direction_where_the_tool_is_level() -> None:
+    step = step_at(np.array(study.START), np.zeros(6))
+    least = [np.linalg.svd(study.Posture(k).equations(step)[0])[1][1] for k in (2, 3)]
+    assert least[0] < 0.1 * least[1]
+
+
+def test_nearest_points_are_the_nearest_of_many() -> None:
+    points, distance = study.nearest_points(states(NEAR))
+    joints = np.array([f.position for f in states(NEAR)])
+    joints[3] -= 0.2073 * states(NEAR)[3].rotation[:, 2]
+    samples = (
+        joints[1:3, None] + np.linspace(0, 1, 2001)[:, None] * np.diff(joints, axis=0)[1:3, None]
+    )
+    brute = np.linalg.norm(samples - study.OBSTACLE, axis=-1).min(axis=1)
+    np.testing.assert_allclose(distance[1:3], brute, atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(points - study.OBSTACLE, axis=1), distance)
+
+
+@pytest.mark.parametrize("link", [2, 3])
+def test_jacobian_of_the_nearest_point(link: int) -> None:
+    frames = states(NEAR)
+    critical, _ = study.nearest_points(frames)
+    body = frames[link].rotation.T @ (critical[link - 1] - frames[link].position)
+
+    def move(q: Array) -> Array:
+        frame = states(q)[link]
+        return frame.position + frame.rotation @ body
+
+    expected = finite_difference(move, NEAR)
+    printed = study.PointAvoidance().jacobian(frames, critical, link - 1)
+    if link == 2:
+        np.testing.assert_allclose(printed, expected, atol=1e-8)
+    else:  # the authors' point lies on the axis of the link's own joint, which does not move it
+        assert not np.allclose(printed, expected, atol=1e-2)
+        np.testing.assert_allclose(printed[:, link - 1], 0.0, atol=1e-12)
+        assert np.linalg.norm(expected[:, link - 1]) > 0.01
+
+
+def test_rows_of_avoidance_remember_the_approach_at_the_outer_distance() -> None:
+    limit, dq, values = study.PointAvoidance(), np.array([-0.1, 0, 0, 0, 0, 0]), []
+    for turned in np.linspace(0.0, 0.1, 400):  # joint 1 alone turns the arm towards the point
+        q = study.START - turned * np.eye(6)[0]
+        G, h = limit.inequalities(step_at(q, dq))
+        assert (h >= 0.0).all()
+        np.testing.assert_array_equal(G[6:], 0.0)
+        values.append((study.nearest_points(states(q))[1].min(), h[:3].max(), G[3:].any()))
+    distance, bound, second = np.array(values).T
+    assert distance[0] > study.OUTER
+    assert not bound[distance > study.OUTER * 1.001].any()
+    inside = (distance < study.OUTER * 0.998) & (second == 0)
+    assert inside.any()
+    scale = (distance[inside] - study.INNER) / (study.OUTER - study.INNER)
+    approach = bound[inside] / scale.clip(1e-9)
+    np.testing.assert_allclose(approach, approach[0], rtol=1e-9)
+    assert approach[0] > 0.0
+
+
+def test_the_network_takes_the_velocity_nearest_to_the_last_one() -> None:
+    """Without a cost the run is that of dq += pinv(J) (r' - J dq), written in numpy alone."""
+    dt, steps = 2e-3, 1500
+    record = study.run("UOA-UPF", dt, dt * steps)
+    circle = Circle(0.12, 10.0).anchored(Configuration(ARM, study.START))
+    q, dq = np.array(study.START), np.zeros(6)
+    for k in range(steps):
+        J = Configuration(ARM, q).jacobian[:3]
+        dq = dq + np.linalg.pinv(J) @ (circle.at(k * dt).linear_velocity - J @ dq)
+        q = q + dt * dq
+    np.testing.assert_allclose(record.q[-1], q, atol=1e-3)
+    shortest = np.linalg.pinv(J) @ (J @ dq)
+    assert np.linalg.norm(dq - shortest) > 0.05  # the velocity of least norm is another one
+
+
+def test_tilt_and_distance_are_kept() -> None:
+    record = study.run("AOA-3PF", 2e-3, 1.8)
+    assert record.settings["status"] == "completed"
+    distance, posture = study.over_time(record.q)
+    assert study.INNER < distance.min() < study.OUTER
+    assert posture.max() < study.POSTURE
+    assert study.measure(record.t, record.q)[4] < study.PATH
+
+
+def test_verdicts() -> None:
+    theirs = study.RECORDED["AOA-2PF"]
+    assert study.judge("AOA-2PF", theirs) == "reproduced"
+    assert study.judge("AOA-2PF", (*theirs[:3], theirs[3] + 0.06, *theirs[4:])) == "same findings"
+    assert study.judge("AOA-2PF", (*theirs[:5], theirs[5] / 3, theirs[6])) == "same findings"
+    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] / 9, *theirs[5:])) == "reproduced"
+    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] * 3, *theirs[5:])) == "same findings"
+    assert study.judge("AOA-2PF", (*theirs[:6], 0.041)) == "not reproduced"
+    assert study.judge("UOA-UPF", (*study.RECORDED["UOA-UPF"][:6], 0.06)) == "not reproduced"
+    lines = study.table({"AOA-2PF": theirs}).splitlines()
+    assert len(lines) == 4
+    assert lines[3].endswith("| 0.0839 | reproduced |")
