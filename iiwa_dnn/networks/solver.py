@@ -21,6 +21,7 @@ from iiwa_dnn.networks.integrators import (
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
+from iiwa_dnn.qp.backend import provide
 from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
@@ -29,7 +30,7 @@ from iiwa_dnn.qp.solution import Solution, Status
 if TYPE_CHECKING:
     import qpsolvers
 
-LARGE = 60
+LARGE = 150
 """Variables from which on a cold start goes through the barrier and LAPACK at once."""
 
 _PARTS = ("network", "tol", "settler", "follower")
@@ -182,12 +183,12 @@ class DNNSolver:
     def _second_try(
         self, network: Network, qp: QP, state: Vector, point: Vector, settled: Settled
     ) -> Settled:
-        """Start again through the barrier with what is left of the budget, if it fits and helps."""
+        """Start again through the barrier, with the budget once more, and take the better point."""
         settler = self.settler
         if type(settler) is not ImplicitEuler or network.compiled is None or qp.sizes[0] >= LARGE:
             return settled
         other = point.copy()
-        again = barrier.settle(qp, state, other, self.tol, settler.max_steps - settled[0])
+        again = barrier.settle(qp, state, other, self.tol, settler.max_steps)
         if not max(again[2:]) < max(settled[2:]):
             return settled
         point[:] = other
@@ -262,3 +263,6 @@ def solve_problem(
     solver.reset()
     stated = qp.to_qpsolvers() if isinstance(problem, QP) else problem
     return solver.solve(qp).to_qpsolvers(stated)
+
+
+provide(solve_problem)

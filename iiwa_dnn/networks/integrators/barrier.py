@@ -28,6 +28,7 @@ regularisation.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.qp.layout import Triple, Vector
@@ -35,9 +36,14 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
 ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2))
-"""Inverse of the first step's length [1/rho], share of the way to the boundary that is gone, and
+"""Inverse of the steps' length [1/rho], share of the way to the boundary that is gone, and
 least fall of the barrier, of one attempt after another."""
-EPS, REFINED, TARGET = 1e-16, 4, 1.0
+EPS = 1e-16
+"""Least eps times delta: below, rounding of A^T A/delta could make K indefinite."""
+REFINED = 4
+"""Solutions of one system, the first and its refinements."""
+NEAR = 1e-3
+"""Size of the scaled residuals from which on the point is judged in the program's own units."""
 MOST = 150
 """Systems of one attempt."""
 STALLED = 25
@@ -82,7 +88,7 @@ class _Run:
         self.lower = np.flatnonzero((qp.lb > -np.inf) & (qp.lb < qp.ub))
         upper, lower = (qp.ub / self.d)[self.upper], (qp.lb / self.d)[self.lower]
         self.chi = np.concatenate([qp.h[self.rows] * self.e, upper, -lower])
-        self.parts = np.cumsum([len(G), len(self.upper)])
+        self.parts = len(G), len(G) + len(self.upper)
         self.gram = self.A.T @ self.A
 
     def _equilibrate(self) -> None:
@@ -109,10 +115,10 @@ class _Run:
 
     def transposed(self, mu: Vector) -> Vector:
         """Compute Omega^T mu."""
-        z, u, low = np.split(mu, self.parts)
-        total: Vector = self.G.T @ z
-        total[self.upper] += u
-        total[self.lower] -= low
+        first, second = self.parts
+        total: Vector = self.G.T @ mu[:first]
+        total[self.upper] += mu[first:second]
+        total[self.lower] -= mu[second:]
         return total
 
     def factor(self, weights: Vector) -> bool:
@@ -122,12 +128,14 @@ class _Run:
         """
         from scipy.linalg.lapack import dpotrf
 
-        z, u, low = np.split(weights, self.parts)
-        rows = np.sqrt(z)[:, None] * self.G
-        self.H = self.P + rows.T @ rows + self.gram / self.delta
+        first, second = self.parts
+        rows = np.sqrt(weights[:first])[:, None] * self.G
+        self.H = rows.T @ rows
+        self.H += self.P
+        self.H += self.gram / self.delta
         diagonal = np.einsum("ii->i", self.H)
-        diagonal[self.upper] += u
-        diagonal[self.lower] += low
+        diagonal[self.upper] += weights[first:second]
+        diagonal[self.lower] += weights[second:]
         self.eps = EPS / self.delta
         while self.eps < 1.0:
             self.systems += 1
@@ -150,7 +158,7 @@ class _Run:
             change, _ = dpotrs(self.L, ex + self.A.T @ (ey / delta), lower=1)
             dx, dy = dx + change, dy + (self.A @ change - ey) / delta
             gap = ry - self.A @ dx
-            ex = rx - (self.H @ dx + TARGET * self.eps * dx + self.A.T @ (dy - self.A @ dx / delta))
+            ex = rx - (self.H @ dx + self.eps * dx + self.A.T @ (dy - self.A @ dx / delta))
             ey = gap + delta * dy
             error = max(np.abs(ex).max(), np.abs(ey).max(initial=0.0))
             if not 1e-13 * scale < error < 0.5 * before:
@@ -195,65 +203,63 @@ class _Run:
         dual = np.abs(Px + q + G.T @ z + A.T @ y + z_box).max()
         return primal, float(dual), abs(float(gap))
 
-    def attempt(self, delta: float, share: float, fall: float, max_systems: int) -> bool:
-        """Follow the smoothed flow from its start; returns whether the point was found."""
-        k, stalled, best, nearest = len(self.chi), 0, np.inf, np.inf
+    def start(self, delta: float) -> tuple[Vector, Vector, Vector, Vector]:
+        """Find x and y that balance cost and limits, and positive mu and slacks around them."""
         self.delta = delta
-        self.factor(np.ones(k))
+        self.factor(np.ones_like(self.chi))
         x, y = self.solve(-self.q + self.transposed(self.chi), self.b)
         slack = self.chi - self.times(x)
-        shift_s, shift_z = -slack.min(initial=0.0), slack.max(initial=0.0)
-        s = np.maximum(slack + (1.0 + shift_s if shift_s > 0.0 else 0.0), 1e-2)
-        mu = np.maximum(-slack + (1.0 + shift_z if shift_z > 0.0 else 0.0), 1e-2)
-        kept = (x, y, mu, s)
+        mu, s = (np.maximum(v - min(v.min(initial=0.0), 0.0), 1e-2) for v in (-slack, slack))
+        return x, y, mu + (slack > 0.0).any(), s + (slack < 0.0).any()
+
+    def newton(
+        self, target: Vector, rates: tuple[Vector, Vector, Vector], mu: Vector, s: Vector
+    ) -> tuple[Vector, Vector, Vector, Vector]:
+        """Solve one linearly implicit step with s dmu + mu ds = target; returns dx, dy, dmu, ds."""
+        rd, rp, ri = rates
+        W, t = 1.0 / (s / mu + self.delta), ri + target / mu
+        dx, dy = self.solve(-rd - self.transposed(W * t), -rp)
+        dmu = W * (self.times(dx) + t)
+        return dx, dy, dmu, (target - s * dmu) / mu
+
+    def attempt(self, delta: float, share: float, fall: float, max_systems: int) -> bool:
+        """Follow the smoothed flow from its start; returns whether the point was found."""
+        k, stalled, best, nearest = max(len(self.chi), 1), 0, np.inf, np.inf
+        x, y, mu, s = kept = self.start(delta)
         last = min(max_systems, self.systems + MOST)
         while self.systems < last:
             rd = self.P @ x + self.q + self.A.T @ y + self.transposed(mu)
-            rp, ri = self.A @ x - self.b, self.times(x) + s - self.chi
-            nu = float(s @ mu) / k if k else 0.0
-            size = max(np.abs(r).max(initial=0.0) for r in (rd, rp, ri, np.array([nu])))
+            rates = rd, self.A @ x - self.b, self.times(x) + s - self.chi
+            nu = float(s @ mu) / k
+            size = max(nu, *(float(np.abs(r).max(initial=0.0)) for r in rates))
             if not size < np.inf:
                 break
-            value = size
-            if size < 1e-3:
+            better = size < 0.9 * best
+            if size < NEAR:
                 value = self.judge(x, y, mu)
-                if value <= self.tol:
+                if value <= 0.5 * self.tol:  # sums in another order round otherwise
                     return True
-            better = (size < 1e-3 and value < nearest) or size < 0.9 * best
+                better, nearest = better or value < nearest, min(nearest, value)
             if better:
-                stalled, kept = 0, (x, y, mu, s)
-                nearest = min(nearest, value) if size < 1e-3 else nearest
-            best, stalled = min(best, size), stalled + (not better)
-            if stalled > STALLED or (k and nu < 1e-20):
+                kept = x, y, mu, s
+            best, stalled = min(best, size), 0 if better else stalled + 1
+            if stalled > STALLED or 0.0 < nu < 1e-20 or not self.factor(1.0 / (s / mu + delta)):
                 break
-            W = 1.0 / (s / mu + delta)
-            if not self.factor(W):
-                break
-
-            def newton(
-                target: Vector, rd=rd, rp=rp, ri=ri, W=W, s=s, mu=mu
-            ) -> tuple[Vector, ...]:
-                t = ri + target / mu
-                dx, dy = self.solve(-rd - self.transposed(W * t), -rp)
-                dmu = W * (self.times(dx) + t)
-                return dx, dy, dmu, (target - s * dmu) / mu
-
-            dx, dy, dmu, ds = newton(-s * mu)
-            one, two = 1.0, 1.0
-            if k:
-                one, two = _length(s, ds), _length(mu, dmu)
-                after = float((s + one * ds) @ (mu + two * dmu)) / k
+            dx, dy, dmu, ds = self.newton(-s * mu, rates, mu, s)
+            if nu > 0.0:
+                after = float((s + _length(s, ds) * ds) @ (mu + _length(mu, dmu) * dmu)) / k
                 center = max(min(1.0, max(0.0, after / nu)) ** 3, fall)
-                dx, dy, dmu, ds = newton(-s * mu - ds * dmu + center * nu)
-                reach = min(max(share, 1.0 - nu), 1.0 - 1e-6)
-                one, two = (min(1.0, reach * _length(*v)) for v in ((s, ds), (mu, dmu)))
+                dx, dy, dmu, ds = self.newton(-s * mu - ds * dmu + center * nu, rates, mu, s)
+            # All the way only where nothing is in it.
+            reach = min(max(share, 1.0 - nu), 1.0 - 1e-6)
+            one, two = (v if v == 1.0 else reach * v for v in (_length(s, ds), _length(mu, dmu)))
             x, s, y, mu = x + one * dx, s + one * ds, y + two * dy, mu + two * dmu
             self.time += 1.0 / delta
         x, y, mu, s = kept
         # From zero, the steps find the smallest multipliers of the active rows: less rounding.
         return self.network(x, y, mu, mu > s) or self.network(x, 0.0 * y, 0.0 * mu, mu > s)
 
-    def network(self, x: Vector, y: Vector, mu: Vector, active: Vector) -> bool:
+    def network(self, x: Vector, y: Vector, mu: Vector, active: NDArray[np.bool_]) -> bool:
         """Take linearly implicit steps of the projection network; returns whether it settled."""
         mu, delta = np.where(active, mu, 0.0), self.delta
         for _ in range(NETWORK_STEPS):
@@ -265,7 +271,7 @@ class _Run:
             dx, dy = self.solve(-rd - self.transposed(push), self.b - self.A @ x)
             mu = mu + push + np.where(active, self.times(dx) / delta, 0.0)
             x, y, self.time = x + dx, y + dy, self.time + 1.0 / delta
-            if self.judge(x, y, np.maximum(mu, 0.0)) <= self.tol:
+            if self.judge(x, y, np.maximum(mu, 0.0)) <= 0.5 * self.tol:
                 break
             active = mu + self.times(x) - self.chi > 0.0
             mu = np.where(active, mu, 0.0)
