@@ -237,8 +237,9 @@ class _Run:
             better = size < 0.9 * best
             if size < NEAR:
                 value = self.judge(x, y, mu)
-                if value <= 0.5 * self.tol:  # sums in another order round otherwise
-                    return True
+                if value <= 0.5 * self.tol:
+                    kept = x, y, mu, s
+                    break  # the network's own steps sharpen it
                 better, nearest = better or value < nearest, min(nearest, value)
             if better:
                 kept = x, y, mu, s
