@@ -10,6 +10,14 @@ import numpy as np
 
 from iiwa_dnn.qp.program import QP, Matrix, Vector
 
+SCALINGS = {
+    "rows times 1e-6 to 1e6": (1.0, 1.0, 1.0),
+    "cost times 1e6": (0.0, 1.0, 1e6),
+    "cost times 1e-6": (0.0, 1.0, 1e-6),
+    "multipliers near 1e6": (0.0, 1e6, 1.0),
+}
+"""Kinds of bad scaling: share of the decades in the rows, size of the multipliers and the cost."""
+
 
 def strictly_convex(
     rng: np.random.Generator,
@@ -109,6 +117,35 @@ def unbounded(rng: np.random.Generator) -> QP:
     q = rng.standard_normal(n)
     q -= (q @ direction + 10.0 ** rng.uniform(-2.0, 1.0)) * along
     return QP(factor.T @ factor, q, G, G @ x + rng.exponential(size=m), A, A @ x, lb, ub)
+
+
+def degenerate(rng: np.random.Generator) -> QP:
+    """A feasible program around a vertex of the box: no interior point, multipliers up to 3e4.
+
+    The condition of P is up to 1e6, |q| up to 1e2; half of the programs have a doubled equality.
+    """
+    n = int(rng.integers(2, 31))
+    P, x = _positive_definite(rng, n, 1e6 ** rng.uniform()), np.sign(rng.standard_normal(n))
+    A = rng.standard_normal((int(rng.integers(0, n // 2 + 1)), n))
+    if len(A) and rng.uniform() < 0.5:
+        A = np.vstack([A, 2.0 * A[:1]])
+    G = rng.standard_normal((int(rng.integers(0, 2 * n + 1)), n))
+    slack = rng.exponential(size=len(G)) * (rng.uniform(size=len(G)) < 0.5)
+    q = rng.standard_normal(n) * 10.0 ** rng.uniform(-1.0, 2.0)
+    return QP(P, q, G, G @ x + slack, A, A @ x, -np.ones(n), np.ones(n))
+
+
+def badly_scaled(rng: np.random.Generator, kind: str) -> QP:
+    """A solvable program of one of the kinds in `SCALINGS`, 5 to 29 variables."""
+    rows, multipliers, cost = SCALINGS[kind]
+    n = int(rng.integers(5, 30))
+    P, x = _positive_definite(rng, n, 1e3), rng.standard_normal(n)
+    G, A = rng.standard_normal((n, n)), rng.standard_normal((n // 3, n))
+    z = multipliers * rng.exponential(size=n) * (rng.uniform(size=n) < 0.4)
+    q = -(P @ x + G.T @ z + A.T @ (multipliers * rng.standard_normal(n // 3)))
+    h, b = G @ x + rng.exponential(size=n) * (z == 0.0), A @ x
+    e, f = (10.0 ** (rows * rng.uniform(-6.0, 6.0, size)) for size in (n, n // 3))
+    return QP(cost * P, cost * q, e[:, None] * G, e * h, f[:, None] * A, f * b)
 
 
 def _positive_definite(rng: np.random.Generator, n: int, condition: float) -> Matrix:

@@ -12,6 +12,9 @@ from numba import njit
 
 from iiwa_dnn.qp.layout import ONE, Vector, compiled, larger
 
+ROUNDING = 1e-10
+"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry."""
+
 # reassoc lets a sum run in several lanes. Comparisons are left alone, so a NaN stays a NaN.
 SUMS = {"contract", "reassoc"}
 
@@ -130,3 +133,26 @@ def extreme_eigenvalues(K: Vector, n: int) -> tuple[float, float]:
     for i in range(1, n):
         smallest, largest = min(smallest, K[i * n + i]), larger(largest, K[i * n + i])
     return smallest, largest
+
+
+@compiled
+def is_convex(data: Vector, n: int, K: Vector) -> bool:
+    """Tell whether P is symmetric and positive semidefinite to `ROUNDING` of its scale.
+
+    Args:
+        data: Numbers that begin with P, of size n n or more.
+        n: Number of variables.
+        K: Scratch, (n n,).
+    """
+    scale = 0.0
+    for i in range(n * n):
+        scale = larger(scale, abs(data[i]))
+    for i in range(n):
+        for k in range(i):
+            if not abs(data[i * n + k] - data[k * n + i]) <= ROUNDING * scale:
+                return False
+    for i in range(n * n):
+        K[i] = data[i]
+    for i in range(n):
+        K[i * n + i] += ROUNDING * scale
+    return scale == 0.0 or cholesky_factor(K, n)

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container
+from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size
+from iiwa_dnn.qp.dense import ROUNDING, is_convex
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, offsets
 from iiwa_dnn.qp.residuals import point_residuals
 from iiwa_dnn.qp.solution import Residuals
 
@@ -31,11 +33,11 @@ if TYPE_CHECKING:
 
 __all__ = ["FIELDS", "QP", "Matrix", "Vector"]
 
+_WITH_LOOPS = 10_000
+"""Size of `QP.data` up to which compiled loops check the values in less time than numpy."""
+
 FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 """Names of the eight arrays, in the order of `QP.data` and of qpsolvers."""
-
-ROUNDING = 1e-10
-"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry."""
 
 
 @lru_cache
@@ -205,6 +207,8 @@ class QP:
                 not positive semidefinite, or a lower bound exceeds its upper bound. The message
                 names the argument.
         """
+        if self.data.size < _WITH_LOOPS and _well_formed(self.data, *self.sizes):
+            return
         for name in ("P", "q", "G", "A", "b"):
             if not np.isfinite(getattr(self, name)).all():
                 raise InvalidInputError(name, "has a value that is not finite")
@@ -219,11 +223,29 @@ class QP:
         scale = max(float(np.abs(self.P).max()), np.finfo(float).tiny)
         if np.abs(self.P - self.P.T).max() > ROUNDING * scale:
             raise InvalidInputError("P", "is not symmetric")
+        with suppress(np.linalg.LinAlgError):
+            np.linalg.cholesky(self.P + 0.5 * ROUNDING * scale * np.eye(self.sizes[0]))
+            return
         smallest = float(np.linalg.eigvalsh(self.P)[0])
         if smallest < -ROUNDING * scale:
             raise InvalidInputError(
                 "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
             )
+
+
+@compiled
+def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
+    """Tell whether `QP.check_values` would find nothing, in one pass over the numbers."""
+    _, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h = at_G + m * n
+    for k in range(at_lb):
+        value = data[k]
+        if not (abs(value) < np.inf or (at_h <= k < at_A and value > 0.0)):
+            return False
+    for i in range(at_lb, at_lb + n):
+        if not (data[i] <= data[i + n] and data[i] < np.inf and data[i + n] > -np.inf):
+            return False
+    return is_convex(data, n, np.empty(n * n))
 
 
 def numbers(name: str, value: Any) -> NDArray[np.float64]:

@@ -79,12 +79,15 @@ def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) ->
     for j in range(m):
         point[at_z + j] = max(s[at_z + j], 0.0)
     for i in range(n):
-        aim = point[i] - data[at_q + i] - dot(data, i * n, point, n)
+        fall = -data[at_q + i] - dot(data, i * n, point, n)
         for j in range(p):
-            aim -= data[at_A + j * n + i] * point[n + j]
+            fall -= data[at_A + j * n + i] * point[n + j]
         for j in range(m):
-            aim -= data[at_G + j * n + i] * point[at_z + j]
-        point[at_z + m + i] = aim - min(max(aim, data[at_lb + i]), data[at_ub + i])
+            fall -= data[at_G + j * n + i] * point[at_z + j]
+        # The distance to the bound first: at a bound it is zero, and the rest is not rounded.
+        above = point[i] - data[at_ub + i] + fall
+        below = point[i] - data[at_lb + i] + fall
+        point[at_z + m + i] = above if above > 0.0 else (below if below < 0.0 else 0.0)
     return point_residuals(data, n, m, p, point)
 
 

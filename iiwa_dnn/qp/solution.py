@@ -29,7 +29,7 @@ class Status(str, Enum):
     NOT_FINITE = "not finite"
     """The data or the state is no longer a number."""
     PRIMAL_INFEASIBLE = "primal infeasible"
-    """No point satisfies the constraints: Farkas multipliers prove it."""
+    """No point with entries below 1e8 satisfies the constraints: Farkas multipliers prove it."""
     UNBOUNDED = "dual infeasible (unbounded)"
     """The cost falls for ever along a direction that no constraint ends: the direction proves it.
 

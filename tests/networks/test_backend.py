@@ -1,0 +1,33 @@
+"""The network as a solver of qpsolvers, judged by another solver and by qpsolvers' residuals."""
+
+import numpy as np
+import pytest
+import qpsolvers
+
+import iiwa_dnn
+from benchmarks import programs
+
+
+def test_qpsolvers_lists_the_network_once_and_solves_with_it() -> None:
+    iiwa_dnn.qp.register()
+    iiwa_dnn.qp.register()
+    assert qpsolvers.available_solvers.count("iiwa_dnn") == 1
+    assert qpsolvers.dense_solvers.count("iiwa_dnn") == 1
+    for seed in range(20):
+        qp, known = programs.strictly_convex(np.random.default_rng([41, seed]), None, 1e2)
+        problem = qp.to_qpsolvers()
+        x = qpsolvers.solve_qp(*problem.unpack(), solver="iiwa_dnn", initvals=known, eps_abs=1e-8)
+        np.testing.assert_allclose(x, known, atol=1e-5)
+        solution = qpsolvers.solve_problem(problem, solver="iiwa_dnn")
+        assert solution.is_optimal(2e-9)
+
+
+def test_no_solution_and_bad_input_are_told_as_qpsolvers_does() -> None:
+    iiwa_dnn.qp.register()
+    one, zero = np.eye(1), np.zeros(1)
+    none = qpsolvers.solve_qp(one, zero, -one, zero - 1, lb=zero - 1, ub=zero, solver="iiwa_dnn")
+    assert none is None
+    with pytest.raises(qpsolvers.ProblemError, match="not convex"):
+        qpsolvers.solve_qp(-one, zero, solver="iiwa_dnn")
+    with pytest.raises(TypeError, match="eps_bas"):
+        qpsolvers.solve_qp(one, zero, solver="iiwa_dnn", eps_bas=1.0)

@@ -1,0 +1,60 @@
+"""Degenerate, badly scaled and large programs, each judged by qpsolvers' residuals."""
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from benchmarks import programs
+from iiwa_dnn import QP, DNNSolver
+from iiwa_dnn.networks.integrators import barrier
+
+
+def test_degenerate_vertices_settle() -> None:
+    for seed in range(300):
+        problem = programs.degenerate(np.random.default_rng([7, seed])).to_qpsolvers()
+        solution = iiwa_dnn.solve_problem(problem)
+        assert solution.found, seed
+        assert solution.is_optimal(2e-9), seed
+
+
+@pytest.mark.parametrize("kind", programs.SCALINGS)
+def test_badly_scaled_programs_settle(kind: str) -> None:
+    for seed in range(20):
+        problem = programs.badly_scaled(np.random.default_rng([8, seed]), kind).to_qpsolvers()
+        assert iiwa_dnn.solve_problem(problem, tol=1e-6).is_optimal(1.1e-6), seed
+
+
+# The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
+@pytest.mark.parametrize(("P", "G", "h"), [(1e8, -1.0, -1.0), (1.0, -1e-5, -1.0)])
+def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float) -> None:
+    solution = DNNSolver(tol=1e-5).solve(QP([[P]], [0.0], [[G]], [h]))
+    assert solution.found
+    assert solution.x[0] == pytest.approx(h / G, rel=1e-12)
+    assert solution.z[0] == pytest.approx(-P * h / G / G, rel=1e-9)
+
+
+def test_the_barrier_finds_what_is_known_by_construction() -> None:
+    for seed in range(30):
+        qp, known = programs.strictly_convex(np.random.default_rng([43, seed]), None, 1e2)
+        n, m, p = qp.sizes
+        state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
+        residuals = barrier.settle(qp, state, point, 1e-9, 1000)[2:]
+        assert max(residuals) <= 1e-9, seed
+        assert qp.residuals(*np.split(point, [n, n + p, n + p + m])).largest <= 1e-9
+        # No eigenvalue of P is below 0.1, and half of it times |dx|^2 is at most the gap.
+        np.testing.assert_allclose(point[:n], known, atol=np.sqrt(2e-9 / 0.1))
+
+
+def test_a_large_cold_program_settles() -> None:
+    qp, known = programs.strictly_convex(np.random.default_rng(44), 160, 1e2, spoilt=False)
+    solution = DNNSolver().solve(qp)
+    assert solution.found
+    np.testing.assert_allclose(solution.x, known, atol=1e-6)
+
+
+def test_a_batch_leaves_no_degenerate_member_behind() -> None:
+    qp = programs.badly_scaled(np.random.default_rng([8, 0]), "rows times 1e-6 to 1e6")
+    batch = iiwa_dnn.solve_batch(
+        qp.P, np.stack([qp.q, 2.0 * qp.q]), qp.G, qp.h, qp.A, qp.b, tol=1e-6
+    )
+    assert batch.found.all()
