@@ -22,7 +22,7 @@ _Array = NDArray[np.float64]
 
 def available_robots() -> tuple[str, ...]:
     """List the robots that come with the package; `load_robot` knows those of `arms` too."""
-    files = _robots_folder().glob("*/*.urdf")
+    files = robots_folder().glob("*/*.urdf")
     return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
 
 
@@ -79,7 +79,7 @@ def load_robot(
     return robot
 
 
-def _robots_folder() -> Path:
+def robots_folder() -> Path:
     """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
     here = Path(__file__).resolve().parents[1]
     inside = here / "robots"
@@ -96,7 +96,7 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
     available = available_robots()
     if text not in available:
         raise NotFoundError("robot", text, (*available, *ARMS))
-    return _robots_folder() / text / f"{text}.urdf"
+    return robots_folder() / text / f"{text}.urdf"
 
 
 def _default_tip(model: pin.Model) -> str:
