@@ -82,8 +82,7 @@ class Record:
         frame_rotation: Their orientations, (N+1, f, 3, 3).
         frame_position_desired: Their desired positions [m], (N+1, f, 3).
         frame_rotation_desired: Their desired orientations, (N+1, f, 3, 3).
-        distance: Distance of the nearest pair of bodies [m], (N+1,), of a run that avoids
-            collisions.
+        distance: Distance of the nearest pair of bodies [m], (N+1,), where collisions are avoided.
         nearest: Index of that pair in ``settings["collisions"]["pairs"]``, (N+1,).
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none

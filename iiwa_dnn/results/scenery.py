@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.schemes.obstacles import HalfSpace, Obstacle, make_obstacle, outline
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
 
 if TYPE_CHECKING:
     import mujoco

@@ -1,5 +1,6 @@
 """Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
+from iiwa_dnn.robot.obstacles import Box, Capsule, ConvexMesh, HalfSpace, Obstacle, Sphere
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, Manipulability
@@ -13,7 +14,6 @@ from iiwa_dnn.schemes.joint_tasks import (
 )
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.motion_limits import AccelerationLimits, JerkLimits
-from iiwa_dnn.schemes.obstacles import Box, Capsule, ConvexMesh, HalfSpace, Obstacle, Sphere
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask

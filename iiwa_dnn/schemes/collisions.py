@@ -29,7 +29,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.obstacles import Obstacle, make_obstacle
+from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import FOUND, HEAD, PAIR, Scene, make_scene, measure
 
@@ -123,7 +123,7 @@ class CollisionAvoidance(Limit):
         return self.scene(robot).frames
 
     def numbers(self, robot: Robot) -> Vector:
-        """Return `Scene.numbers`."""
+        """Return `Scene.numbers`, (k,)."""
         return self.scene(robot).numbers
 
     def move(self, robot: Robot, numbers: Vector, t: float) -> None:
@@ -153,7 +153,14 @@ def stated(scheme: object, robot: Robot) -> dict[str, Any]:
 
 
 def recorded(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
-    """Return a record's arrays ``distance`` and ``nearest`` where a scheme avoids collisions."""
+    """Return a record's arrays ``distance`` and ``nearest`` where a scheme avoids collisions.
+
+    Args:
+        scheme: The scheme.
+        robot: The robot.
+        q: Joint positions [rad], (k, n).
+        t: Times [s], (k,).
+    """
     part = avoidance_of(scheme)
     if part is None:
         return {}

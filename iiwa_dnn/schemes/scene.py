@@ -14,8 +14,8 @@ from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle
 from iiwa_dnn.schemes.distances import hull_points, segment_points
-from iiwa_dnn.schemes.obstacles import HalfSpace, Obstacle
 from iiwa_dnn.schemes.reaches import bounds_of_motion
 
 HEAD, SHAPE, PAIR, FOUND = 8, 8, 13, 17
@@ -168,7 +168,7 @@ def measure(numbers: Vector, at: int, dof: int, placements: Matrix, found: Vecto
         at: See `numbers`.
         dof: Number of joints.
         placements: `Kinematics.placements`, (frames, 12).
-        found: The results, (pairs (17 + dof),).
+        found: The results, (k,) with k = pairs (17 + dof).
     """
     shapes, pairs = int(numbers[at + 4]), int(numbers[at + 5])
     at_pairs, at_points = at + int(numbers[at + 6]), at + int(numbers[at + 7])

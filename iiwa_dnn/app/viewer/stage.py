@@ -10,9 +10,9 @@ import pinocchio as pin
 
 from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.results.scenery import OBSTACLE_COLOUR
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, outline
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
-from iiwa_dnn.schemes.obstacles import HalfSpace, Obstacle, outline
 
 _PIECES = 400  # straight pieces that a path is drawn with, at most
 

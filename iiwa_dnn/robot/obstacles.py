@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
-from iiwa_dnn.qp import Matrix, Vector
 
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 Motion = Callable[[float], ArrayLike]
 
 
