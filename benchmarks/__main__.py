@@ -1,4 +1,4 @@
-"""``python -m benchmarks solvers``, ``loop``, ``targets`` or ``collisions``: measure, beside peers."""
+"""``python -m benchmarks`` solvers, loop, targets or collisions: measure, beside peers."""
 
 import sys
 
