@@ -1,10 +1,14 @@
-"""``python -m benchmarks solvers``, ``loop`` and ``targets``: measure, beside peers."""
+"""``python -m benchmarks`` solvers, loop, targets or collisions: measure, beside peers."""
 
 import sys
 
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
+from benchmarks.collisions import bench_collisions
 
-COMMANDS = {"solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets}
+COMMANDS = {
+    "solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets,
+    "collisions": bench_collisions,
+}  # fmt: skip
 
 if __name__ == "__main__":
     name = sys.argv[1] if len(sys.argv) > 1 else ""

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -113,6 +113,8 @@ def measure_steps(
     dt: float,
     pythons: Mapping[str, Path | None] | None = None,
     progress: Callable[[int], object] = lambda done: None,
+    scene: Mapping[str, Any] | None = None,
+    loops: Sequence[Loop] | None = None,
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Let all loops follow the beginning of the heart, in turns, each in a process of its own.
 
@@ -121,21 +123,25 @@ def measure_steps(
         dt: Control period [s].
         pythons: Python interpreter by module, for libraries that this one does not have.
         progress: Called with the number of steps done since the last call.
+        scene: Further arrays of the task, such as obstacles.
+        loops: Loops to measure; None: all of `LOOPS`.
 
     Returns:
         Of each loop the times per step [us] and the largest distance to the reference [m] after a
-        step, and the modules that no Python was found for.
+        step, with a scene also the joint positions; and the modules that no Python was found for.
     """
     robot, given = paper_robot(), pythons or {}
     reference = Heart().anchored(Configuration(robot, paper.START))
     targets = reference.sample(np.arange(max(steps, 20) + 1) * dt)
     found: dict[str, Path] = {}
-    for module in dict.fromkeys(loop.module for loop in LOOPS):
+    wanted = LOOPS if loops is None else loops
+    for module in dict.fromkeys(loop.module for loop in wanted):
         python = given.get(module) or (importlib.util.find_spec(module) and Path(sys.executable))
         if python:
             found[module] = python
-    loops = [loop for loop in LOOPS if loop.module in found]
+    loops = [loop for loop in wanted if loop.module in found]
     times: dict[Loop, list[float]] = {loop: [] for loop in loops}
+    moved: dict[Loop, list[list[float]]] = {loop: [] for loop in loops}
     errors, data = dict.fromkeys(loops, 0.0), robot.model.createData()
     drivers: list[Driver] = []
     with tempfile.TemporaryDirectory() as folder:
@@ -144,6 +150,7 @@ def measure_steps(
             task, urdf=str(file_of(robot)), tip=robot.tip, names=robot.joint_names, dt=dt,
             q0=paper.START, lower=robot.q_lower, upper=robot.q_upper, velocity=robot.dq_max,
             poses=[pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
+            **(scene or {}),
         )  # fmt: skip
         try:
             drivers += [Driver(loop, found[loop.module], task) for loop in loops]
@@ -152,6 +159,7 @@ def measure_steps(
                 for loop, driver in zip(loops, drivers, strict=True):
                     taken = driver.take(first, last)
                     times[loop] += taken["us"]
+                    moved[loop] += taken["q"] if scene else []
                     for k, q in enumerate(taken["q"], first + 1):
                         tip = Configuration(robot, q, data).position
                         error = float(np.linalg.norm(tip - targets[k].position))
@@ -167,10 +175,11 @@ def measure_steps(
             "p99_us": float(np.percentile(times[loop], 99.0)),
             "p999_us": float(np.percentile(times[loop], 99.9)),
             "max_position_error_m": errors[loop],
+            **({"q": moved[loop]} if scene else {}),
         }
         for loop in loops
     ]
-    return rows, sorted({loop.module for loop in LOOPS} - set(found))
+    return rows, sorted({loop.module for loop in wanted} - set(found))
 
 
 def measure_own_part(duration: float, dt: float, rounds: int = 3) -> dict[str, float]:

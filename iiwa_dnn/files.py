@@ -6,6 +6,7 @@ import json
 import math
 import os
 import secrets
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -13,6 +14,11 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from iiwa_dnn.errors import FileError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 
 def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], object]) -> None:
@@ -91,6 +97,20 @@ def write_json(path: str | os.PathLike[str], value: object) -> None:
         ValueError: If the value holds NaN or an infinity.
     """
     write_text(path, json.dumps(value, indent=2, allow_nan=False) + "\n")
+
+
+def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises:
+        FileError: It cannot be read, or is not TOML.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            tables: dict[str, Any] = tomllib.load(file)
+            return tables
+    except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
+        raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
 
 
 def plain(value: object) -> Any:

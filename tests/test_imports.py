@@ -32,7 +32,7 @@ ORDER = (
 # It reads a Record and recomputes nothing: robot, solver and simulation are out of its sight.
 BEFORE_THE_RECORD = {"errors", "checks", "files"}
 # What draws the robot itself needs its shapes too, and nothing else of it.
-DRAW_THE_ROBOT = {"pictures"}
+DRAW_THE_ROBOT = {"pictures", "scenery"}
 
 FILES = sorted(PACKAGE.rglob("*.py"))
 

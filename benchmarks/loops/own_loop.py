@@ -18,7 +18,13 @@ def make(task: Task, variant: str) -> Loop:
     )
     q, dt = np.array(task["q0"]), float(task["dt"])
     heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q))
-    controller = iiwa_dnn.Controller(robot, iiwa_dnn.DoubleIndicator(), heart, dt=dt)
+    scheme: iiwa_dnn.Scheme = iiwa_dnn.DoubleIndicator()
+    if "balls" in task:
+        balls = map(iiwa_dnn.Sphere, task["balls"], map(float, task["ball_radii"]))
+        distance = float(task["distance"])
+        avoid = iiwa_dnn.CollisionAvoidance(list(balls), self_collision=False, distance=distance)
+        scheme = iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoid])
+    controller = iiwa_dnn.Controller(robot, scheme, heart, dt=dt)
     controller.warm_up()
     command: Any = None
 

@@ -6,8 +6,13 @@ of its beginning.
 
 from __future__ import annotations
 
+from typing import Any
+
+import coal
+import numpy as np
 import pink
 import pinocchio as pin
+from pink.barriers import SelfCollisionBarrier
 from pink.limits import AccelerationLimit, ConfigurationLimit, VelocityLimit
 from serve import Loop, Task, serve
 
@@ -20,7 +25,14 @@ def make(task: Task, variant: str) -> Loop:
     model, dt = pin.buildModelFromUrdf(str(task["urdf"])), float(task["dt"])
     model.lowerPositionLimit, model.upperPositionLimit = task["lower"], task["upper"]
     model.velocityLimit = task["velocity"]
-    configuration = pink.Configuration(model, model.createData(), task["q0"].copy())
+    q0, barriers = task["q0"].copy(), []
+    scene: dict[str, Any] = {}
+    if "balls" in task:
+        geometry = collision_geometry(model, task)
+        count, distance = len(geometry.collisionPairs), float(task["distance"])
+        barriers = [SelfCollisionBarrier(count, gain=20.0, d_min=distance)]
+        scene = {"collision_model": geometry, "collision_data": geometry.createData()}
+    configuration = pink.Configuration(model, model.createData(), q0, **scene)
     frame = pink.FrameTask(str(task["tip"]), position_cost=1.0, orientation_cost=1.0)
     posture = pink.PostureTask(cost=1e-3)
     posture.set_target(task["q0"])
@@ -33,12 +45,35 @@ def make(task: Task, variant: str) -> Loop:
 
     def step(k: int) -> None:
         frame.set_target(poses[k + later])
-        velocity = pink.solve_ik(configuration, tasks, dt, solver=solver, limits=limits, **options)
+        velocity = pink.solve_ik(
+            configuration, tasks, dt, solver=solver, limits=limits, barriers=barriers, **options
+        )
         if limited:
             rates.set_last_integration(velocity, dt)
         configuration.integrate_inplace(velocity, dt)
 
     return step, lambda: configuration.q
+
+
+def collision_geometry(model: pin.Model, task: Task) -> pin.GeometryModel:
+    """Describe the capsules and the balls to Pinocchio, with a pair of each and each."""
+    geometry = pin.GeometryModel()
+    for center, radius in zip(task["balls"], task["ball_radii"], strict=True):
+        place, name = pin.SE3(np.eye(3), center), f"ball_{geometry.ngeoms}"
+        geometry.addGeometryObject(pin.GeometryObject(name, 0, place, coal.Sphere(radius)))
+    balls = geometry.ngeoms
+    capsules = zip(task["links"], task["a"], task["b"], task["radii"], strict=True)
+    for link, a, b, radius in capsules:
+        frame, along = model.frames[model.getFrameId(str(link), pin.FrameType.BODY)], b - a
+        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), along + [0, 0, 1e-9])
+        place = frame.placement * pin.SE3(turn.matrix(), 0.5 * (a + b))
+        shape = coal.Capsule(radius, float(np.linalg.norm(along)))
+        index = geometry.addGeometryObject(
+            pin.GeometryObject(str(link), frame.parentJoint, place, shape)
+        )
+        for k in range(balls):
+            geometry.addCollisionPair(pin.CollisionPair(index, k))
+    return geometry
 
 
 if __name__ == "__main__":

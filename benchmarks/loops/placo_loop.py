@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
+
 import placo
+from balls import write_scene
 from serve import Loop, Task, serve
 
 
 def make(task: Task, variant: str) -> Loop:
     """Make the loop."""
-    robot = placo.RobotWrapper(str(task["urdf"]))
+    urdf = Path(str(task["urdf"]))
+    if "balls" in task:
+        folder = tempfile.TemporaryDirectory()
+        urdf, pairs = write_scene(task, Path(folder.name))
+    robot = placo.RobotWrapper(str(urdf))
+    if "balls" in task:
+        robot.load_collision_pairs(str(pairs))
     names = [str(name) for name in task["names"]]
     for i, name in enumerate(names):
         robot.set_joint(name, float(task["q0"][i]))
@@ -24,6 +34,11 @@ def make(task: Task, variant: str) -> Loop:
     joints.configure("posture", "soft", 1e-3)
     solver.enable_joint_limits(True)
     solver.enable_velocity_limits(True)
+    if "balls" in task:
+        avoid = solver.add_avoid_self_collisions_constraint()
+        avoid.self_collisions_margin = float(task["distance"])
+        avoid.self_collisions_trigger = float(task["distance"]) + 0.2
+        avoid.configure("balls", "hard", 1.0)
     solver.dt = float(task["dt"])
 
     def step(k: int) -> None:

@@ -32,12 +32,7 @@ from iiwa_dnn.errors import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.files import one_line
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from iiwa_dnn.files import read_toml
 
 S = TypeVar("S")
 
@@ -116,10 +111,7 @@ def read_settings(kind: type[S], path: Path) -> S:
 
 def _words(kind: type[Any], path: Path) -> list[str]:
     """Return the command line that a settings file stands for."""
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
-        raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
+    values = read_toml(path)
     command = values.pop("command", kind.command)
     if command != kind.command:
         raise FileError(path, f"holds settings of {command!r}, not of {kind.command!r}")

@@ -98,8 +98,9 @@ def _values(options: RunOptions) -> dict[str, Any]:
         value = getattr(options, field.name)
         if field.name in _NOT_KEPT or value is None or value == ():
             continue
-        if field.name in ("robot", "reference") and (
-            os.sep in value or value.endswith((".urdf", ".csv"))
+        if isinstance(value, Path) or (
+            field.name in ("robot", "reference")
+            and (os.sep in value or value.endswith((".urdf", ".csv")))
         ):
             value = str(Path(value).resolve())
         values[field.name] = list(value) if isinstance(value, tuple) else value

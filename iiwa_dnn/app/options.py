@@ -102,6 +102,7 @@ class TrackOptions(RunOptions):
     offset: _Vector = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
     amplitudes: _Vector = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
     period: Time = Heart.period  # time of one round on the path [s]; a CSV file has its own
+    obstacles: _File = None  # TOML file of obstacles that the arm avoids, and with them itself
     weight: _Number = 0.2  # weight xi of the kinetic index against the joint drift, in [0, 1]
     orientation: _Form = "so3"  # form of the orientation task: so3, block (the paper's) or none
     dt: Time = 1e-4  # control period [s]

@@ -32,7 +32,14 @@ from iiwa_dnn.results.metrics import rotation_angle
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
+from iiwa_dnn.schemes import (
+    AccelerationLimits,
+    CollisionAvoidance,
+    DoubleIndicator,
+    JerkLimits,
+    Limit,
+    Scheme,
+)
 from iiwa_dnn.simulation import Plant, Simulation
 from iiwa_dnn.studies import paper
 
@@ -94,7 +101,7 @@ def simulation(
         q0: Joint positions at the start [rad], (n,).
         plant: Moves under the commands; None: the ideal one.
     """
-    scheme = DoubleIndicator(
+    scheme: Scheme = DoubleIndicator(
         weight=options.weight,
         position_gain=options.gain,
         orientation_gain=options.gain,
@@ -104,6 +111,9 @@ def simulation(
         tracking=options.tracking,
         next_gain=options.next_gain,
     )
+    if options.obstacles is not None:
+        avoidance = CollisionAvoidance.from_toml(options.obstacles)
+        scheme = Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoidance])
     reference, start = path(options), Configuration(robot, q0)
     if getattr(reference, "quaternions", None) is None:
         reference = reference.anchored(start)

@@ -8,7 +8,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import computeJointJacobians, log3, updateFramePlacement
+from pinocchio import (
+    computeJointJacobians,
+    log3,
+    updateFramePlacement,
+    updateFramePlacements,
+)
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
@@ -262,6 +267,7 @@ class Controller:
         """Take a step at the joint positions that the plan holds."""
         if plan.needs_more:
             plan.update(plan.q)
+            plan.move(t)
         else:
             model, data, tip, _ = plan.pinocchio
             computeJointJacobians(model, data, plan.q)
@@ -293,7 +299,8 @@ class Controller:
         """
         plan = self.plan
         state = self.solver.warm_state(plan.sizes)
-        if state is None or plan.network is None or plan.asks or plan.inertia.size:
+        in_python = plan.asks or plan.moves or plan.inertia.size
+        if state is None or plan.network is None or in_python:
             return 0
         rows, first, dt, step = answers.rows, answers.count, self.dt, plan.step
         codes, work, jacobian, placements = plan.compiled
@@ -303,8 +310,8 @@ class Controller:
         for index in range(first, first + count):
             computeJointJacobians(model, data, moving)
             updateFramePlacement(model, data, tip)
-            for frame in others:
-                updateFramePlacement(model, data, frame)
+            if others:
+                updateFramePlacements(model, data)
             if not step(rows, index, codes, work, jacobian, placements, state, False, dt):
                 break
         else:
@@ -322,6 +329,8 @@ class Controller:
             plan.assemble(answers.program(index), answers.targets[index])
         qp = answers.qp(index)
         duration = 0.0 if self.mode == "converged" else self.dt
+        if duration == 0.0 and plan.network is not None and plan.yielding is None:
+            self.solver.reset()  # compiled code has tried from the last state already
         solution, resolution = answer(plan, qp, self.solver, self.policy, duration)
         if resolution is not None:
             qp, answers.resolved[index] = resolution.qp, resolution
@@ -338,6 +347,7 @@ class Controller:
         plan = self.plan
         n, m, p = plan.sizes
         plan.update(q)
+        plan.move(t)
         data = np.empty((n + m + p) * (n + 1) + 2 * n)
         plan.build(data, targets, t)
         return QP.from_data(data, plan.sizes)

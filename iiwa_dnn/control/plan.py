@@ -43,6 +43,7 @@ class Plan:
         shape: Shape of q.
         inertia: Inertia matrix row by row, likewise; empty where no cost takes it.
         needs_more: Whether more kinematics than Jacobian and tip are asked for.
+        moves: Whether constants change along a run (`move`).
         asks: Whether Python code has to be asked for (a part of) the program.
         cascade: Levels of the tasks with priorities.
         frames: Names of the frames that tasks track, in the order of the targets.
@@ -114,6 +115,9 @@ class Plan:
             self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
         self._constants = work[1 + 3 * dof + NETWORK + inertia.size :]
+        moving = () if layout is None else layout.moving
+        self._moving = [(part, self._constants[place]) for part, place in moving]
+        self.moves = bool(self._moving)
         self.pinocchio = self.kinematics.pinocchio
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
@@ -153,6 +157,11 @@ class Plan:
         self.kinematics.update(self.q)
         if self.inertia.size:
             self.inertia[:] = self.kinematics.inertia.ravel()
+
+    def move(self, t: float) -> None:
+        """Bring the constants that change along a run to a time [s]."""
+        for part, numbers in self._moving:
+            part.move(self.kinematics.robot, numbers, t)
 
     def assemble(self, data: Vector, targets: Vector) -> None:
         """Write the program of the compiled parts into `data`."""

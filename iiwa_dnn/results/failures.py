@@ -16,7 +16,7 @@ from iiwa_dnn.results.metrics import (
 from iiwa_dnn.results.record import Record, percent
 
 LIMIT_SLACK = 1e-9
-"""Excess over a limit [rad, rad/s] that is forgiven: the rounding of the motion's integration."""
+"""Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
 
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
 
@@ -43,6 +43,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         *_unsolved(metrics, record),
         *_crosscheck(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),
+        *_too_near(metrics.get("collisions")),
         *_torques(metrics, record),
     ]
 
@@ -50,7 +51,8 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 def describe(limit: Mapping[str, Any]) -> str:
     """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
     if "row" in limit:
-        return f"row {limit['row']} of {limit['part']}"
+        about = f" ({limit['about']})" if "about" in limit else ""
+        return f"row {limit['row']} of {limit['part']}{about}"
     return f"joint {limit['joint']} {limit['side']} {limit['limit']} limit"
 
 
@@ -150,6 +152,13 @@ def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[st
                 where = f"; joint {joint + 1} at {_at(record, step)}"
             reasons.append(f"joint {kind} limit broken by {_show(worst)} {unit}{where}")
     return reasons
+
+
+def _too_near(collisions: Mapping[str, Any] | None) -> list[str]:
+    if collisions is None or collisions["missing_m"] <= LIMIT_SLACK:
+        return []
+    text = "{second} and {first} came as near as {least_distance_m:.6g} m at t = {time_s:.6g} s"
+    return [f"{text}, allowed {{allowed_m:.6g}} m".format_map(collisions)]
 
 
 def _torques(metrics: Mapping[str, Any], record: Record | None) -> list[str]:

@@ -81,7 +81,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
     (torques, settled error, recovery from a push), one that tracks several frames ``frames``
     (largest errors of those beside the first), a run in which a bound, an inequality row, a policy
-    or clipping acted ``incidents``.
+    or clipping acted ``incidents``, one that avoids collisions ``collisions`` (the nearest pair,
+    and by how much it came nearer than it may).
 
     Args:
         record: The run.
@@ -113,6 +114,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             **_physics(record, np.linalg.norm(error, axis=1)),
             **_incidents(record),
             **_frames(record),
+            **_collisions(record),
             "settings": {key: value for key, value in settings.items() if key != "versions"},
             "versions": settings.get("versions", {}),
         }
@@ -248,6 +250,22 @@ def _incidents(record: Record) -> dict[str, Any]:
     }
 
 
+def _collisions(record: Record) -> dict[str, Any]:
+    """Name the nearest pair of a run, and the distance by which it was too near."""
+    if record.distance is None or record.nearest is None:
+        return {}
+    least, stated = int(record.distance.argmin()), record.settings["collisions"]
+    first, second = stated["pairs"][int(record.nearest[least])]
+    distance, allowed = float(record.distance[least]), float(stated["distance"])
+    where = {"first": first, "second": second, "time_s": float(record.t[least])}
+    missing = max(0.0, allowed - distance)
+    return {
+        "collisions": {
+            "least_distance_m": distance, **where, "allowed_m": allowed, "missing_m": missing,
+        }
+    }  # fmt: skip
+
+
 def _bounds(
     record: Record, signed: Codes, at_velocity: BoolArray, sized: bool = False
 ) -> list[dict[str, Any]]:
@@ -268,7 +286,7 @@ def _rows(record: Record, values: Codes | None, sized: bool = False) -> list[dic
     if values is None:
         return found
     for row, column in zip(record.settings["rows"], values.T, strict=True):
-        name = {"part": row["part"], "row": row["row"]}
+        name = {key: row[key] for key in ("part", "row", "about") if key in row}
         found += _spell(record, name, column > 0, column if sized else None)
     return found
 

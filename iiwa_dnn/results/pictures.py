@@ -23,12 +23,12 @@ from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.scenery import SCENERY_GROUP, add_obstacles, add_scenery
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
 from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
 from iiwa_dnn.robot.robot import Robot
 
 if TYPE_CHECKING:
-    import mujoco
     from matplotlib.figure import Figure
 
 Image = NDArray[np.uint8]
@@ -46,7 +46,6 @@ _MARGIN = 12
 DESIRED_COLOUR = (0.2, 0.25, 0.35, 1.0)
 DRAWN_COLOUR = (0.86, 0.0, 0.1, 1.0)
 
-_SCENERY_GROUP = 2
 _PIECES = 400  # straight ones that a path is drawn with
 
 
@@ -203,7 +202,8 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
         spec.visual.quality.offsamples = 4 if smooth else 0
         spec.visual.quality.shadowsize = 4096 if smooth else 1024
-        _add_scenery(mj, spec, record)
+        add_scenery(mj, spec, record)
+        self._obstacles = add_obstacles(mj, spec, record)
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
@@ -212,7 +212,7 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._behind = 2e-3 * self._camera.distance * sight
         self._options = mj.MjvOption()
         self._options.geomgroup[:] = 0
-        self._options.geomgroup[[VISUAL_GROUP, _SCENERY_GROUP]] = 1
+        self._options.geomgroup[[VISUAL_GROUP, SCENERY_GROUP]] = 1
         self._options.sitegroup[:] = 0
         self._options.flags[mj.mjtVisFlag.mjVIS_TRANSPARENT] = view == "path"
         self._scene = mj.MjvScene(self._model, maxgeom=self._model.ngeom + 2 * _PIECES + 10)
@@ -232,6 +232,8 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colours to 255."""
         mj = self._mj
         self._data.qpos[:] = self._record.q[sample]
+        for number, obstacle in enumerate(self._obstacles):
+            self._data.mocap_pos[number] = obstacle.shift(float(self._record.t[sample]))
         mj.mj_kinematics(self._model, self._data)
         mj.mj_camlight(self._model, self._data)
         mj.mjv_updateScene(
@@ -271,42 +273,6 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
 def sample_at(record: Record, t: float) -> int:
     """Return the index of the record's sample nearest to a time [s]."""
     return int(np.abs(record.t - t).argmin())
-
-
-def _add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
-    """Add floor, light and, under a path in a horizontal plane, a sheet of paper."""
-    visual, world = spec.visual, spec.worldbody
-    visual.headlight.ambient[:] = 0.4
-    visual.headlight.diffuse[:] = 0.3
-    visual.headlight.specular[:] = 0.1
-    visual.map.alpha = 0.07  # of the arm where it is translucent
-    spec.stat.center, spec.stat.extent = [0.0, 0.0, 0.4], 1.2
-    spec.add_texture(
-        name="sky", type=mj.mjtTexture.mjTEXTURE_SKYBOX, builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
-        rgb1=[1.0, 1.0, 1.0], rgb2=[1.0, 1.0, 1.0], width=16, height=16,
-    )  # fmt: skip
-    scenery = {"group": _SCENERY_GROUP, "contype": 0, "conaffinity": 0}
-    spec.add_texture(
-        name="tiles", type=mj.mjtTexture.mjTEXTURE_2D, builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.90, 0.91, 0.93], rgb2=[0.84, 0.86, 0.89], width=256, height=256,
-    )  # fmt: skip
-    # A repeat has two tiles a side: they are 0.25 m wide.
-    floor = spec.add_material(name="floor", texuniform=True, texrepeat=[2.0, 2.0])
-    floor.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
-    world.add_geom(
-        type=mj.mjtGeom.mjGEOM_PLANE, size=[1.25, 1.25, 0.1], material="floor", **scenery
-    )
-    world.add_light(
-        pos=[0.8, -0.6, 2.6], dir=[-0.25, 0.2, -1.0], diffuse=[0.55, 0.55, 0.55],
-        castshadow=True, type=mj.mjtLightType.mjLIGHT_SPOT, cutoff=60.0, exponent=1.0,
-    )  # fmt: skip
-    low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
-    if high[2] - low[2] < 1e-3 < high[0] - low[0]:
-        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
-        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
-            type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
-            pos=[*middle, low[2] - 3e-3], **scenery,
-        )  # fmt: skip
 
 
 def _arm_camera(mj: Any, record: Record) -> Any:

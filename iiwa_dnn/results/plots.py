@@ -44,11 +44,14 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
 
     The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
     ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
-    and of a run in physics ``torques``. The same record gives the same bytes.
+    of a run in physics ``torques`` and of one that avoids collisions ``distance``. The same record
+    gives the same bytes.
     """
     figures = {name: partial(draw, record) for name, draw in FIGURES.items()}
     if record.torque is not None:
         figures["torques"] = partial(_single, draw_joints, record, name="torque")
+    if record.distance is not None:
+        figures["distance"] = partial(_single, draw_distance, record)
     return write_figures(figures, folder)
 
 
@@ -274,6 +277,20 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
         axes.set_ylim(-1.05 * largest / scale, 1.05 * largest / scale)
     axes.set_ylabel(f"Position error [{unit}]")
     legend_above(axes, columns=4)
+
+
+def draw_distance(axes: Axes, record: Record) -> None:
+    """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
+    if record.distance is not None:
+        # Of each stretch the smallest: that is what counts.
+        times, _, least, _ = envelope(record.t, record.distance)
+        axes.plot(times, least, color="0.0", label="nearest pair")
+    allowed = record.settings["collisions"]["distance"]
+    axes.axhline(allowed, color="0.0", linewidth=0.8, linestyle=(0, (8, 3)), label="least allowed")
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    time_axis(axes, record)
+    axes.set_ylabel("Distance [m]")
+    legend_above(axes, columns=2)
 
 
 def draw_log(

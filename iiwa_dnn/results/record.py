@@ -82,6 +82,8 @@ class Record:
         frame_rotation: Their orientations, (N+1, f, 3, 3).
         frame_position_desired: Their desired positions [m], (N+1, f, 3).
         frame_rotation_desired: Their desired orientations, (N+1, f, 3, 3).
+        distance: Distance of the nearest pair of bodies [m], (N+1,), where collisions are avoided.
+        nearest: Index of that pair in ``settings["collisions"]["pairs"]``, (N+1,).
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
@@ -115,6 +117,8 @@ class Record:
     frame_rotation: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
     frame_position_desired: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
     frame_rotation_desired: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
+    distance: Annotated[FloatArray | None, ("N+1",), np.float64] = None
+    nearest: Annotated[IntArray | None, ("N+1",), np.int64] = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
@@ -140,6 +144,10 @@ class Record:
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
         limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
         object.__setattr__(self, "settings", _checked(self.settings, limits, sizes))
+        if (self.distance is None) != (self.nearest is None):
+            raise InvalidInputError("distance", "and nearest come together", self.distance)
+        if self.nearest is not None:
+            _check_pairs(self.settings, self.nearest)
         # One solver's NaN does not hide another's answer.
         gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
         gap.flags.writeable = False
@@ -325,6 +333,18 @@ def _check_lists(
     if not named or len(rows) != sizes.get("m", len(rows)):
         problem = f'must name {sizes.get("m", "the")} rows as {{"part": text, "row": from 1}}'
         raise InvalidInputError("settings['rows']", problem, rows)
+
+
+def _check_pairs(settings: Mapping[str, Any], nearest: IntArray) -> None:
+    """Check that every index of a pair has a name, and the least distance is stated."""
+    try:
+        pairs, distance = settings["collisions"]["pairs"], settings["collisions"]["distance"]
+        fits = nearest.min() >= 0 and nearest.max() < len(pairs) and _is_number(distance)
+    except (KeyError, TypeError):
+        fits = False
+    if not fits:
+        problem = "must state the distance, and the pairs that the array nearest counts"
+        raise InvalidInputError("settings['collisions']", problem, settings.get("collisions"))
 
 
 def _is_number(value: object) -> bool:

@@ -40,6 +40,7 @@ _CAPTIONS = {
     "torques": "Joint torques: of each step the largest.",
     "moments": "The arm, and below it the path so far, face on.",
     "position_error": "Position error, actual minus desired.",
+    "distance": "Distance of the nearest pair of bodies, and the least that is allowed.",
     "convergence": "KKT residual of the network and gap to the reference: the line is the largest "
     "value, the band the range, of each short stretch of time.",
 }
@@ -57,6 +58,7 @@ _SUMMARY = {
     "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
     "wall time": "{wall_time_s} s, {realtime_factor} x real time",
 }
+_NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
 _ACTED = {
     "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
     "active_rows": "{name} active for {time_s} s, multiplier up to {max_multiplier}",
@@ -138,7 +140,7 @@ def write_report(
     Raises:
         FileError: If it cannot be written.
     """
-    settings = metrics["settings"]
+    settings, near = metrics["settings"], "collisions" in metrics
     results = _rows(metrics, _RESULTS) + _physics(metrics.get("physics"))
     versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
     lag = "Continuous mode: the gap is the network's lag, reported and not judged."
@@ -151,6 +153,7 @@ def write_report(
         "## Cross-check",
         markdown_table(_HEAD, _rows(metrics["crosscheck"], _CROSSCHECK)),
         *_incidents(metrics.get("incidents")),
+        *(["Nearest pair: " + _fill(_NEAREST, metrics["collisions"]) + "."] if near else []),
         *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
@@ -185,6 +188,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
         lines["cross-check"] = "not asked for"
     lines |= _physics_lines(metrics.get("physics"))
     lines |= _incident_lines(metrics.get("incidents", {}))
+    if "collisions" in metrics:
+        lines["nearest pair"] = _fill(_NEAREST, metrics["collisions"])
     lines["wall time"] = lines.pop("wall time")
     lines["verdict"] = "\n".join(reasons) or _success(metrics)
     width = max(map(len, lines)) + 2

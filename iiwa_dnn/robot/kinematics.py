@@ -27,7 +27,7 @@ class Kinematics:
         jacobian: Joint Jacobian, (n, 6): row j is the twist [linear velocity of the world's origin;
             angular velocity] for each unit of velocity of joint j, along the world's axes.
         placements: Frame placements by frame index, (frames, 12): the rotation's columns, then the
-            position [m]. Only the rows of `frame_ids` are current.
+            position [m]. A loop may keep only the rows of `frame_ids` current.
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current where `dynamics` is set.
     """
 
@@ -59,8 +59,7 @@ class Kinematics:
         if self._dynamics:
             pin.crba(model, data, q)
         pin.computeJointJacobians(model, data, q)
-        for index in self.frame_ids:
-            pin.updateFramePlacement(model, data, index)
+        pin.updateFramePlacements(model, data)  # no slower than one of them
 
     def frame(self, name: str) -> tuple[_Array, _Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.

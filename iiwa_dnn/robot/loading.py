@@ -30,7 +30,7 @@ def available_robots() -> tuple[str, ...]:
 
 def package_robots() -> tuple[str, ...]:
     """List the robots that come with the package."""
-    files = _robots_folder().glob("*/*.urdf")
+    files = robots_folder().glob("*/*.urdf")
     return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
 
 
@@ -90,7 +90,7 @@ def load_robot(
     return robot if tool is None else robot.with_tool(tool)
 
 
-def _robots_folder() -> Path:
+def robots_folder() -> Path:
     """Find the robots' folder: beside the rooms in an installed wheel, above in the repository."""
     here = Path(__file__).resolve().parents[1]
     inside = here / "robots"
@@ -106,7 +106,7 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
         return Path(text)
     if text not in (available := package_robots()):
         raise NotFoundError("robot", text, (*available, *ARMS))
-    return _robots_folder() / text / f"{text}.urdf"
+    return robots_folder() / text / f"{text}.urdf"
 
 
 def _default_tip(model: pin.Model) -> str:

@@ -1,6 +1,8 @@
 """Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
+from iiwa_dnn.robot.obstacles import Box, Capsule, ConvexMesh, HalfSpace, Obstacle, Sphere
 from iiwa_dnn.schemes.base import Scheme
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, Manipulability
 from iiwa_dnn.schemes.double_indicator import DoubleIndicator
 from iiwa_dnn.schemes.frame_tasks import AxisTask, PoseTask, RelativePoseTask, RemoteCentreTask
@@ -19,17 +21,23 @@ from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 __all__ = [
     "AccelerationLimits",
     "AxisTask",
+    "Box",
+    "Capsule",
     "CentreOfMassTask",
+    "CollisionAvoidance",
+    "ConvexMesh",
     "Cost",
     "CyclicMotion",
     "DoubleIndicator",
     "ElbowAngleTask",
+    "HalfSpace",
     "JerkLimits",
     "JointCouplingTask",
     "JointLimits",
     "KineticEnergy",
     "Limit",
     "Manipulability",
+    "Obstacle",
     "OrientationTask",
     "Part",
     "PoseTask",
@@ -39,6 +47,7 @@ __all__ = [
     "RelativePoseTask",
     "RemoteCentreTask",
     "Scheme",
+    "Sphere",
     "Step",
     "Task",
 ]

@@ -8,7 +8,7 @@ writes a whole program into one `QP.data` array; parts without a compiled form a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.collisions import COLLISION, collision_rows
 from iiwa_dnn.schemes.costs import (
     CYCLIC_MOTION,
     KINETIC_ENERGY,
@@ -66,6 +67,7 @@ class Layout:
         frames: Names of all frames that parts name.
         codes: What compiled code reads of the layout: head, joints that move each frame, blocks.
         numbers: Constants of the compiled parts, one after the other.
+        moving: Limits with constants that change along a run, each with their place in `numbers`.
         custom: Blocks of parts without a compiled form.
         needs_inertia: Whether a part asks for the inertia matrix.
         restrained: Whether a limit asks for the last commands.
@@ -93,13 +95,14 @@ class Layout:
         limits = merged(limits)
         hard = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
+        bounding = [(limit, limit.row_count(robot)) for limit in limits]
         self.blocks = (
             *(Block(cost, 0, 0) for cost in costs),
-            *_stacked(hard),
+            *_stacked([(part, part.rows) for part in hard]),
             *(Block(task, 0, task.rows) for task in soft),
-            *_stacked(limits),
+            *_stacked(bounding),
         )
-        m, p = (sum(part.rows for part in parts) for parts in (limits, hard))
+        m, p = sum(rows for _, rows in bounding), sum(task.rows for task in hard)
         self.sizes = (robot.dof + slack, m, p)
         self.custom = tuple(block for block in self.blocks if block.part.kind == CUSTOM)
         self.row_weights = np.repeat([t.row_weight for t in hard], [t.rows for t in hard])
@@ -113,7 +116,8 @@ class Layout:
         self.target_frames = tuple(sorted(names, key=lambda name: name != robot.tip)) or (
             robot.tip,
         )
-        self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames]))
+        more = [name for limit in limits for name in limit.extra_frames(robot)]
+        self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames, *more]))
         tracked = {(task.frame_name(robot), task.tracking) for task in tasks if task.tracks}
         self.ahead = frozenset(name for name, tracking in tracked if tracking == "next")
         self.needs_period = any(task.tracking == "next" for task in tasks)
@@ -130,6 +134,11 @@ class Layout:
         constants = [block.part.numbers(self.robot) for block in compiled]
         starts = [0, *accumulate(map(len, constants))]
         self.numbers: Vector = np.concatenate([np.zeros(0), *constants])
+        self.moving = [
+            (block.part, slice(start, stop))
+            for block, (start, stop) in zip(compiled, pairwise(starts), strict=True)
+            if isinstance(block.part, Limit) and block.part.moves
+        ]
         dof, count = self.robot.dof, len(compiled)
         kinematics = Kinematics(self.robot, self.frames)
         first = self.robot.frame_id(self.target_frames[0])
@@ -160,13 +169,15 @@ class Layout:
         return (n + m + p) * (n + 1) + 2 * n
 
     def row_names(self) -> list[dict[str, object]]:
-        """Return for each inequality row its part and its number in it, counted from 1."""
-        return [
-            {"part": type(block.part).__name__, "row": i + 1}
-            for block in self.blocks
-            if isinstance(block.part, Limit)
-            for i in range(block.rows)
-        ]
+        """Return for each inequality row its part, its number in it from 1, and its name if any."""
+        found: list[dict[str, object]] = []
+        for block in self.blocks:
+            if isinstance(block.part, Limit):
+                names = block.part.row_names(self.robot)
+                for i in range(block.rows):
+                    about = {"about": names[i]} if names else {}
+                    found.append({"part": type(block.part).__name__, "row": i + 1} | about)
+        return found
 
     def fill(self, data: Vector, step: Step) -> None:
         """Ask the parts without a compiled form, and add what they say to an assembled program.
@@ -206,10 +217,10 @@ class Layout:
                     np.minimum(qp.ub, upper, out=qp.ub)
 
 
-def _stacked(parts: Sequence[Task] | Sequence[Limit]) -> list[Block]:
+def _stacked(parts: Sequence[tuple[Part, int]]) -> list[Block]:
     """Blocks of parts whose rows stand one after the other."""
-    starts = accumulate((part.rows for part in parts), initial=0)
-    return [Block(part, start, part.rows) for part, start in zip(parts, starts, strict=False)]
+    starts = accumulate((rows for _, rows in parts), initial=0)
+    return [Block(part, start, rows) for (part, rows), start in zip(parts, starts, strict=False)]
 
 
 def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matrix:
@@ -259,6 +270,10 @@ def assemble(
             joint_limits(data, at_lb, n, dof, numbers, at, q, rate)
         elif kind == MOTION_LIMITS:
             motion_limits(data, at_lb, n, dof, numbers, at, q, past, rate)
+        elif kind == COLLISION:
+            at_G = n * n + n + start * n
+            at_h = n * n + n + m * n + start
+            collision_rows(data, at_G, at_h, n, dof, rows, numbers, at, jacobian, placements, rate)
         else:
             count = abs(rows)
             if rows > 0:

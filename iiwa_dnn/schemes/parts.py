@@ -100,6 +100,14 @@ class Part:
         name = getattr(self, "frame", None)
         return robot.tip if name is None else str(name)
 
+    def row_count(self, robot: Robot) -> int:
+        """Return the number of rows for a robot; `rows`, unless a part says otherwise."""
+        return self.rows
+
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the names of further frames whose placements the compiled form needs."""
+        return ()
+
     def anchored(self: PartT, conf: Configuration) -> PartT:
         """Return the part with `conf` as the posture to come back to, where it lacks one."""
         return self
@@ -153,7 +161,19 @@ class Limit(Part):
     """Bounds lb <= x <= ub, inequality rows G x <= h, or both.
 
     The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
+
+    Attributes:
+        moves: Whether constants of the compiled form change along a run, by `move`.
     """
+
+    moves: bool = False
+
+    def move(self, robot: Robot, numbers: Vector, t: float) -> None:
+        """Write what has moved until a time [s] into the constants of the compiled form, (k,)."""
+
+    def row_names(self, robot: Robot) -> list[str]:
+        """Return names of the inequality rows, in words; none where their numbers will do."""
+        return []
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,); asked where `rows` is above 0."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.policies import Action, Resolution
+from iiwa_dnn.results.failures import describe
 from iiwa_dnn.robot import Robot
 
 
@@ -73,7 +74,7 @@ class Incidents:
         ]
         if "blocking_rows" in self._arrays:
             blocking = np.flatnonzero(self._arrays["blocking_rows"][k])
-            where += [f"row {self._rows[i]['row']} of {self._rows[i]['part']}" for i in blocking]
+            where += [describe(self._rows[i]) for i in blocking]
         against = f", against {', '.join(where)}" if where else ""
         return f"stopped at step {k} (t = {t:g} s): no solution{against}"
 

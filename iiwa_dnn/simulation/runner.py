@@ -22,6 +22,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes.collisions import recorded, stated
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.history import COMPLETED, History, settings_of, step_count
 from iiwa_dnn.simulation.incidents import Incidents
@@ -111,7 +112,7 @@ class Simulation:
             "integral_gain": integral_gain, "policy": policy, "seed": seed,
             "disturbance": None if disturbance is None else disturbance.settings(),
             "estimator": None if estimator is None else estimator.settings(),
-            "rows": self._rows, "check": self._check.settings(),
+            "rows": self._rows, "check": self._check.settings(), **stated(scheme, robot),
         }  # fmt: skip
         self._settings = shared | settings_of(self._controller, self._q0) | self._plant.settings()
         packages = (*_PACKAGES, *self._plant.packages)
@@ -259,15 +260,17 @@ class Simulation:
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
         """What was recorded, cut to the steps that were taken."""
+        t, history = self._dt * np.arange(steps + 1, dtype=np.float64), self._history
         return Record(
-            t=self._dt * np.arange(steps + 1, dtype=np.float64),
-            **self._history.arrays(steps),
+            t=t,
+            **history.arrays(steps),
             solution_gap=agreement.solution_gap,
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": status},
             **self._incidents.arrays(steps),
             **self._judgement.arrays(steps),
+            **recorded(self._controller.scheme, self._robot, history.q[: steps + 1], t),
             wall_time_s=wall_time,
         )
 

@@ -22,7 +22,7 @@ ARRAYS = [
 ]
 OPTIONAL = {
     "torque", "bound_multiplier", "clipped", "action", "fraction", "blocking", "row_multiplier",
-    "blocking_rows",
+    "blocking_rows", "distance", "nearest",
 }  # fmt: skip
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 

@@ -93,3 +93,14 @@ def test_an_orientation_of_ones_own(tmp_path: Path) -> None:
     assert number(r"error (\S+) m,", text) < 3e-8
     assert number(r"m, (\S+) rad,", text) < 2e-7
     assert "failures []" in text
+
+
+def test_the_heart_around_an_obstacle(tmp_path: Path) -> None:
+    text = example(tmp_path, "avoid_obstacle.py", "figures", "5e-3")
+    errors = re.findall(r"error (\S+) m", text)
+    nearest = [float(value) for value in re.findall(r"least distance (\S+) m", text)]
+    assert float(errors[1]) < 1.1 * float(errors[0])
+    assert nearest[0] < -0.03
+    assert 0.02 <= nearest[1] < 0.021
+    assert "failures []" in text
+    assert (tmp_path / "figures" / "obstacle.png").exists()

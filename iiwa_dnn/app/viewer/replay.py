@@ -12,6 +12,7 @@ from iiwa_dnn.app.viewer.stage import Stage
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.scenery import obstacles_of
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
 _DESIRED_COLOUR, _DRAWN_COLOUR = (70, 80, 100), (220, 0, 30)
@@ -74,6 +75,7 @@ class ReplayPanel:
         self._shown: tuple[float, bool] | None = None
         self._since_readout = np.inf
         stage.line("desired", record.position_desired, _DESIRED_COLOUR, 2.0)
+        stage.add_obstacles(obstacles_of(record))
         stage.look_at(record.position_desired.mean(axis=0))
         gui = stage.server.gui
         folders = gui.add_folder("Replay"), gui.add_folder("State")
@@ -103,7 +105,7 @@ class ReplayPanel:
         if state == self._shown:
             return
         k = self.sample
-        self._stage.show(self.record.q[k])
+        self._stage.show(self.record.q[k], float(self.record.t[k]))
         if k > 0:
             self._stage.line("drawn", self.record.position[: k + 1], _DRAWN_COLOUR, 4.0)
         self._stage.set_line_visible("drawn", k > 0)
@@ -135,6 +137,8 @@ class ReplayPanel:
             "position error": readout.length(float(self._error[k])),
             "orientation error": f"{self._turn[k]:.2e} rad",
         }
+        if record.distance is not None:
+            values["distance of the nearest pair"] = readout.length(float(record.distance[k]))
         if record.steps:
             values["KKT residual of the network"] = f"{record.kkt_residual[step]:.1e}"
             gap = record.crosscheck_gap[step]

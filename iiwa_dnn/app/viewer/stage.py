@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.results.record import FloatArray
+from iiwa_dnn.results.scenery import OBSTACLE_COLOUR
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, outline
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
 
@@ -48,10 +51,22 @@ class Stage:
             else:
                 scene.add_box(dimensions=shape.size, **place)
         self._lines: dict[str, Any] = {}
+        self._obstacles: list[tuple[Any, Obstacle]] = []
 
-    def show(self, q: FloatArray) -> None:
-        """Move the robot to joint positions (n,) [rad]."""
+    def add_obstacles(self, obstacles: Iterable[Obstacle]) -> None:
+        """Draw obstacles, all but half-spaces; `show` moves them."""
+        for number, obstacle in enumerate(obstacles):
+            if not isinstance(obstacle, HalfSpace):
+                colour = tuple(round(255 * part) for part in OBSTACLE_COLOUR)
+                name, outside = f"/obstacle_{number}", outline(obstacle)
+                node = self.server.scene.add_mesh_simple(name, *outside, color=colour)
+                self._obstacles.append((node, obstacle))
+
+    def show(self, q: FloatArray, t: float = 0.0) -> None:
+        """Move the robot to joint positions (n,) [rad], and obstacles to where they are then."""
         with self.server.atomic():
+            for node, obstacle in self._obstacles:
+                node.position = obstacle.shift(t)
             poses = joint_poses(self.robot, q, self._data)
             for joint, pose in zip(self._joints, poses, strict=True):
                 joint.position, joint.wxyz = pose.translation, wxyz(pose.rotation)

@@ -33,7 +33,7 @@ TRIALS = np.array([1.0, 1e-2, 1e2, 1e-4, 1e4])
 conditioned systems, longer ones bring nearly dependent rows to rest."""
 STALLED = 30
 """Rounds with small rates but large residuals, as large multipliers have them, before the end."""
-TRAVELLING = 3
+TRAVELLING = 12
 """Longest steps that do not halve the rates, before the end: the state travels, since there is no
 solution or none that is near."""
 FIRST_STEP, GROWTH = 1.0, 4.0

@@ -1,0 +1,54 @@
+"""The heart among balls, 21 pairs, beside Pink's barriers, mink's limit and PlaCo's constraint.
+
+``python -m benchmarks collisions`` prints the table. All keep the same capsules (PlaCo: cylinders,
+since it reads them from a URDF) from the same balls, with the same gain and distance.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import iiwa_dnn
+from benchmarks.control import LOOPS, measure_steps, paper_robot
+from iiwa_dnn.robot.collision import collision_model
+
+BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
+RADII, DISTANCE = (0.05, 0.1, 0.1), 0.03  # [m]
+_NAMES = ("iiwa_dnn, with q + dt dq", "PlaCo", "Pink, daqp", "mink, daqp")
+
+
+def bench_collisions(arguments: Sequence[str] | None = None, prog: str = "collisions") -> int:
+    """Measure and print a table; returns 0."""
+    parser = argparse.ArgumentParser(prog, description=bench_collisions.__doc__)
+    parser.add_argument("--steps", type=int, default=10_000, help="number of steps")
+    parser.add_argument("--placo-python", type=Path, help="Python interpreter with PlaCo")
+    parser.add_argument("--mink-python", type=Path, help="Python interpreter with mink")
+    options = parser.parse_args(arguments)
+    robot = paper_robot()
+    moving = [c for c in collision_model(robot).capsules if not c.link.endswith("_0")]
+    scene = {
+        "links": [c.link for c in moving], "a": [c.a for c in moving], "b": [c.b for c in moving],
+        "radii": [c.radius for c in moving], "balls": BALLS, "ball_radii": RADII,
+        "distance": DISTANCE,
+    }  # fmt: skip
+    pythons = {"placo": options.placo_python, "mink": options.mink_python}
+    loops = [loop for loop in LOOPS if loop.name in _NAMES]
+    rows, missing = measure_steps(options.steps, 1e-3, pythons, scene=scene, loops=loops)
+    balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
+    judge = iiwa_dnn.CollisionAvoidance(balls, self_collision=False).scene(robot)
+    print(f"{len(judge.pairs)} pairs, {options.steps} steps of 1 ms, distance {DISTANCE} m")
+    print("| loop | median [us] | p99 [us] | error [m] | least distance [m] | variation [rad] |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for row in rows:
+        q = np.array(row["q"])
+        near = judge.nearest(q, np.zeros(len(q)))[0].min()
+        varied = np.abs(np.diff(q, n=2, axis=0)).sum()
+        print(f"| {row['name']} | {row['median_us']:.1f} | {row['p99_us']:.1f} | "
+              f"{row['max_position_error_m']:.2g} | {near:.6f} | {varied:.3g} |")  # fmt: skip
+    if missing:
+        print(f"not measured: {', '.join(missing)}")
+    return 0

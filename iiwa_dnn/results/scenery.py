@@ -1,0 +1,74 @@
+"""The surroundings of a drawn arm: floor, light, a sheet under the path, obstacles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
+
+if TYPE_CHECKING:
+    import mujoco
+
+SCENERY_GROUP = 2
+OBSTACLE_COLOUR = (0.25, 0.45, 0.75)
+
+
+def obstacles_of(record: Record) -> list[Obstacle]:
+    """Return the obstacles of a record that can be drawn: no half-spaces.
+
+    A motion that is a function is not in the record; such an obstacle is shown where it began.
+    """
+    tables = record.settings.get("collisions", {}).get("obstacles", [])
+    made = [make_obstacle({k: v for k, v in t.items() if k != "motion"}) for t in tables]
+    return [obstacle for obstacle in made if not isinstance(obstacle, HalfSpace)]
+
+
+def add_obstacles(mj: Any, spec: mujoco.MjSpec, record: Record) -> list[Obstacle]:
+    """Add the obstacles of a record, each a mocap body that stands at its displacement."""
+    obstacles = obstacles_of(record)
+    for number, obstacle in enumerate(obstacles):
+        vertices, faces = outline(obstacle)
+        name = f"obstacle_{number}"
+        spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())
+        spec.worldbody.add_body(name=name, mocap=True).add_geom(
+            type=mj.mjtGeom.mjGEOM_MESH, meshname=name, rgba=[*OBSTACLE_COLOUR, 1.0],
+            group=SCENERY_GROUP, contype=0, conaffinity=0,
+        )  # fmt: skip
+    return obstacles
+
+
+def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
+    """Add floor, light and, under a path in a horizontal plane, a sheet of paper."""
+    visual, world = spec.visual, spec.worldbody
+    visual.headlight.ambient[:] = 0.4
+    visual.headlight.diffuse[:] = 0.3
+    visual.headlight.specular[:] = 0.1
+    visual.map.alpha = 0.07  # of the arm where it is translucent
+    spec.stat.center, spec.stat.extent = [0.0, 0.0, 0.4], 1.2
+    spec.add_texture(
+        name="sky", type=mj.mjtTexture.mjTEXTURE_SKYBOX, builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
+        rgb1=[1.0, 1.0, 1.0], rgb2=[1.0, 1.0, 1.0], width=16, height=16,
+    )  # fmt: skip
+    scenery = {"group": SCENERY_GROUP, "contype": 0, "conaffinity": 0}
+    spec.add_texture(
+        name="tiles", type=mj.mjtTexture.mjTEXTURE_2D, builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.90, 0.91, 0.93], rgb2=[0.84, 0.86, 0.89], width=256, height=256,
+    )  # fmt: skip
+    # A repeat has two tiles a side: they are 0.25 m wide.
+    floor = spec.add_material(name="floor", texuniform=True, texrepeat=[2.0, 2.0])
+    floor.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
+    world.add_geom(
+        type=mj.mjtGeom.mjGEOM_PLANE, size=[1.25, 1.25, 0.1], material="floor", **scenery
+    )
+    world.add_light(
+        pos=[0.8, -0.6, 2.6], dir=[-0.25, 0.2, -1.0], diffuse=[0.55, 0.55, 0.55],
+        castshadow=True, type=mj.mjtLightType.mjLIGHT_SPOT, cutoff=60.0, exponent=1.0,
+    )  # fmt: skip
+    low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
+    if high[2] - low[2] < 1e-3 < high[0] - low[0]:
+        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
+        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
+            type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
+            pos=[*middle, low[2] - 3e-3], **scenery,
+        )  # fmt: skip

@@ -1,0 +1,249 @@
+"""Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.files import one_line
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Motion = Callable[[float], ArrayLike]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Obstacle:
+    """A convex shape that stands still or is moved without being turned.
+
+    Attributes:
+        velocity: Constant velocity [m/s], (3,).
+        motion: Displacement [m], (3,), at a time [s], in place of a velocity; a function of the
+            time alone, so that a record can be made of it.
+        speed: Bound on the speed [m/s], needed with `motion`; that of `velocity`, if larger.
+    """
+
+    velocity: Sequence[float] = (0.0, 0.0, 0.0)
+    motion: Motion | None = None
+    speed: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        for name in {"center", "a", "b", "half_extents"} & vars(self).keys():
+            self._set(name, checks.vector3(name, getattr(self, name)))
+        if hasattr(self, "radius"):
+            checks.positive("radius", self.radius)
+        self._set("velocity", checks.vector3("velocity", self.velocity))
+        own = float(np.linalg.norm(self.velocity))
+        self._set("speed", max(own, checks.not_negative("speed", self.speed)))
+        if self.motion is not None and (own > 0.0 or not self.speed > 0.0):
+            problem = "a motion needs a bound on its speed above 0, and no velocity beside it"
+            raise InvalidInputError("speed", problem, self.speed)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the obstacle ever moves."""
+        return self.motion is not None or any(self.velocity)
+
+    @property
+    def points(self) -> Matrix:
+        """Points whose convex hull, grown by `thickness`, is the shape at time 0 [m], (k, 3)."""
+        raise NotImplementedError
+
+    @property
+    def thickness(self) -> float:
+        """Radius by which the hull of `points` is grown [m]."""
+        return float(getattr(self, "radius", 0.0))
+
+    def shift(self, t: float) -> Vector:
+        """Return the displacement at a time [s], (3,) [m]."""
+        if self.motion is None:
+            return t * np.asarray(self.velocity)
+        return checks.finite_array("motion", self.motion(t), (3,))
+
+    def settings(self) -> dict[str, Any]:
+        """Return shape and parameters as a table of an obstacle file has them."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        if values["motion"] is not None:
+            values["motion"] = getattr(self.motion, "__name__", type(self.motion).__name__)
+        return {"shape": type(self).__name__} | {k: v for k, v in values.items() if v is not None}
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
+
+
+@dataclass(frozen=True)
+class Sphere(Obstacle):
+    """A sphere.
+
+    Attributes:
+        center: Its middle [m], (3,).
+        radius: Its radius [m], above 0.
+    """
+
+    center: Sequence[float]
+    radius: float
+
+    @property
+    def points(self) -> Matrix:
+        """The middle, (1, 3)."""
+        return np.array([self.center])
+
+
+@dataclass(frozen=True)
+class Capsule(Obstacle):
+    """All points within a radius of a segment.
+
+    Attributes:
+        a: One end of the segment [m], (3,).
+        b: The other end [m], (3,).
+        radius: The radius [m], above 0.
+    """
+
+    a: Sequence[float]
+    b: Sequence[float]
+    radius: float
+
+    @property
+    def points(self) -> Matrix:
+        """The ends, (2, 3)."""
+        return np.array([self.a, self.b])
+
+
+@dataclass(frozen=True)
+class Box(Obstacle):
+    """A box.
+
+    Attributes:
+        center: Its middle [m], (3,).
+        half_extents: Half of its edges [m], (3,), above 0.
+        rotation: Its axes in the world as columns, (3, 3); None: the world's.
+    """
+
+    center: Sequence[float]
+    half_extents: Sequence[float]
+    rotation: Sequence[Sequence[float]] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        super().__post_init__()
+        for half in self.half_extents:
+            checks.positive("half_extents", half)
+        if self.rotation is not None:
+            turn = checks.finite_array("rotation", self.rotation, (3, 3))
+            if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
+                raise InvalidInputError("rotation", "is no rotation matrix", self.rotation)
+            self._set("rotation", tuple(map(tuple, turn.tolist())))
+
+    @property
+    def points(self) -> Matrix:
+        """The corners, (8, 3)."""
+        signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+        axes = np.eye(3) if self.rotation is None else np.array(self.rotation)
+        corners: Matrix = np.asarray(self.center) + signs * np.asarray(self.half_extents) @ axes.T
+        return corners
+
+
+@dataclass(frozen=True)
+class ConvexMesh(Obstacle):
+    """The convex hull of points.
+
+    Attributes:
+        vertices: The points [m], (k, 3), four at least, not all in a plane.
+    """
+
+    vertices: Sequence[Sequence[float]]
+
+    def __post_init__(self) -> None:
+        """Check the vertices; raises InvalidInputError."""
+        super().__post_init__()
+        vertices = checks.finite_array("vertices", self.vertices, (-1, 3))
+        if len(vertices) < 4 or np.linalg.matrix_rank(vertices - vertices[0], 1e-9) < 3:
+            raise InvalidInputError("vertices", "must be four or more and span a solid", vertices)
+        self._set("vertices", tuple(map(tuple, vertices.tolist())))
+
+    @property
+    def points(self) -> Matrix:
+        """The vertices, (k, 3)."""
+        return np.array(self.vertices)
+
+
+@dataclass(frozen=True)
+class HalfSpace(Obstacle):
+    """A half of space, such as the floor: all points x with normal . x <= offset.
+
+    Attributes:
+        normal: Direction out of it, (3,), of any length above 0; kept with length 1.
+        offset: Its boundary's distance from the origin along the normal [m].
+    """
+
+    normal: Sequence[float]
+    offset: float
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        super().__post_init__()
+        normal = np.array(checks.vector3("normal", self.normal))
+        length = checks.positive("normal", float(np.linalg.norm(normal)))
+        self._set("normal", tuple((normal / length).tolist()))
+        checks.finite("offset", self.offset)
+
+    @property
+    def points(self) -> Matrix:
+        """A point of the boundary, (1, 3)."""
+        return self.offset * np.array([self.normal])
+
+
+SHAPES: dict[str, type[Obstacle]] = {
+    shape.__name__: shape for shape in (Sphere, Capsule, Box, ConvexMesh, HalfSpace)
+}
+
+
+def make_obstacle(table: dict[str, Any]) -> Obstacle:
+    """Make an obstacle from a table of an obstacle file: ``shape`` and the shape's parameters.
+
+    Raises:
+        InvalidInputError: The shape or a parameter is missing, unknown or wrong.
+    """
+    values = dict(table)
+    name = str(values.pop("shape", "")).replace("_", "").lower()
+    by_name = {shape.lower(): kind for shape, kind in SHAPES.items()}
+    if name not in by_name:
+        raise InvalidInputError("shape", f"must be one of {', '.join(SHAPES)}, not {name!r}")
+    kind = by_name[name]
+    known = {field.name for field in fields(kind)} - {"motion"}
+    if unknown := sorted(values.keys() - known):
+        there = ", ".join(sorted(known))
+        raise InvalidInputError(
+            unknown[0], f"is no parameter of {kind.__name__}; there are {there}"
+        )
+    try:
+        return kind(**values)
+    except TypeError as error:
+        raise InvalidInputError(kind.__name__, one_line(error).partition(" ")[2]) from error
+
+
+def outline(obstacle: Obstacle) -> tuple[Matrix, NDArray[np.int32]]:
+    """Return vertices (k, 3) [m] at time 0 and triangles (m, 3) of a shape, for pictures."""
+    from scipy.spatial import ConvexHull  # slow to import
+
+    points = obstacle.points
+    if obstacle.thickness:
+        rank = np.arange(800) + 0.5  # points spread evenly over a ball
+        turn, height = np.pi * (1.0 + 5.0**0.5) * rank, 1.0 - rank / 400.0
+        ring = np.sqrt(1.0 - height**2)
+        ball = np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
+        points = (points[:, np.newaxis] + obstacle.thickness * ball).reshape(-1, 3)
+    hull = ConvexHull(points)
+    outside = np.cross(
+        *(points[hull.simplices[:, k]] - points[hull.simplices[:, 0]] for k in (1, 2))
+    )
+    inward = np.sum(outside * hull.equations[:, :3], axis=1) < 0.0
+    faces = np.where(inward[:, np.newaxis], hull.simplices[:, ::-1], hull.simplices)
+    return points, faces.astype(np.int32)

@@ -1,0 +1,50 @@
+"""``track --obstacles``: the arm keeps away, the report says so, a bad file is one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from iiwa_dnn import Record
+from iiwa_dnn.app.main import main
+
+FILE = """distance = 0.03
+[[obstacle]]
+shape = "sphere"
+center = [0.36, 0.16, 0.64]
+radius = 0.05
+"""
+
+
+def test_a_run_keeps_away_and_its_report_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "obstacles.toml").write_text(FILE, encoding="utf-8")
+    words = ["track", "--obstacles", str(tmp_path / "obstacles.toml"), "--dt", "5e-3"]
+    assert main([*words, "--duration", "3", "--out", str(tmp_path / "run")]) == 0
+    text = capsys.readouterr().out
+    assert "nearest pair" in text
+    assert "iiwa7_link_4 and Sphere 1" in text
+    record = Record.load(tmp_path / "run" / "record.npz")
+    assert record.distance is not None
+    assert record.distance.min() >= 0.03
+    assert (tmp_path / "run" / "distance.png").exists()
+    report = (tmp_path / "run" / "report.md").read_text(encoding="utf-8")
+    assert "Nearest pair: " in report
+    again = ["track", "--settings", str(tmp_path / "run" / "settings.toml"), "--no-plots"]
+    assert main([*again, "--out", str(tmp_path / "again")]) == 0
+    repeated = Record.load(tmp_path / "again" / "record.npz")
+    assert (repeated.q == record.q).all()
+
+
+def test_a_bad_file_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "bad.toml").write_text(FILE.replace("0.05", "-1"), encoding="utf-8")
+    out = str(tmp_path / "run")
+    assert main(["track", "--obstacles", str(tmp_path / "bad.toml"), "--out", out]) == 2
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert "bad.toml: obstacle 1: radius: must be a finite number above 0" in message
+    assert not (tmp_path / "run").exists()

@@ -1,0 +1,275 @@
+"""Rows of collision avoidance: gradients, bounds, the theorem, policies, files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
+from iiwa_dnn.robot.collision import collision_model
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.reaches import bounds_of_motion
+from iiwa_dnn.schemes.scene import FOUND, measure
+
+ROBOT = iiwa_dnn.load_robot("iiwa7")
+START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+BALL = iiwa_dnn.Sphere([0.36, 0.16, 0.64], 0.05)
+
+
+def scheme(*limits: iiwa_dnn.Limit) -> iiwa_dnn.Scheme:
+    paper = iiwa_dnn.DoubleIndicator()
+    return iiwa_dnn.Scheme(paper.costs, paper.tasks, [*paper.limits, *limits])
+
+
+def heart(scale: float = 3.45e-3, period: float = 10.0) -> iiwa_dnn.Reference:
+    path = iiwa_dnn.Heart(scale=scale, period=period)
+    return path.anchored(iiwa_dnn.Configuration(ROBOT, START))
+
+
+def all_distances(avoidance: iiwa_dnn.CollisionAvoidance, robot: Any, q: np.ndarray) -> np.ndarray:
+    scene = avoidance.scene(robot)
+    kinematics = Kinematics(robot, scene.frames)
+    kinematics.update(q)
+    found = np.empty(len(scene.pairs) * (FOUND + robot.dof))
+    measure(scene.numbers, 0, robot.dof, kinematics.placements, found)
+    return found[10 :: FOUND + robot.dof].copy()
+
+
+@pytest.mark.parametrize("name", ["iiwa7", "panda"])
+def test_rows_are_the_gradients_of_the_distances(name: str) -> None:
+    robot = iiwa_dnn.load_robot(name)
+    avoidance = iiwa_dnn.CollisionAvoidance(obstacles_for(False), nearest=200)
+    random, h, worst = np.random.default_rng(0), 1e-6, 0.0
+    for _ in range(5):
+        q = random.uniform(0.5 * robot.q_lower, 0.5 * robot.q_upper)
+        conf = iiwa_dnn.Configuration(robot, q)
+        G = scheme(avoidance).build_qp(conf, iiwa_dnn.Target(conf.position, conf.rotation)).G
+        apart = all_distances(avoidance, robot, q) > 1e-3
+        for j, e in enumerate(np.eye(robot.dof)):
+            ends = [all_distances(avoidance, robot, q + s * h * e) for s in (-1.0, 1.0)]
+            slope = (ends[1] - ends[0]) / (2.0 * h)
+            worst = max(worst, np.abs(-G[apart, j] - slope[apart]).max())
+    assert worst < 1e-5  # second differences at the kinks of boxes
+
+
+def test_h_is_the_damper_without_a_control_period() -> None:
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.02, gain=4.0)
+    conf = iiwa_dnn.Configuration(ROBOT, START)
+    qp = scheme(avoidance).build_qp(conf, iiwa_dnn.Target(conf.position, conf.rotation))
+    distances = all_distances(avoidance, ROBOT, START)
+    counted = np.isfinite(qp.h)
+    assert counted.any()
+    np.testing.assert_allclose(qp.h[counted], 4.0 * (distances - 0.02)[counted], rtol=1e-12)
+    # Idle rows are those that no velocity within the limits can break.
+    idle = ~counted
+    assert (4.0 * (distances - 0.02) >= np.abs(qp.G) @ ROBOT.dq_max - 1e-9)[idle].all()
+
+
+def test_no_acceleration_is_above_its_bound() -> None:
+    random, joint, h = np.random.default_rng(1), 7, 1e-4
+    point = np.array([0.02, -0.03, 0.06])
+    for first in (0, 2):
+        speed, acceleration, turn, _, *mask = bounds_of_motion(ROBOT, first, joint, point[None])
+        assert mask == [0.0] * first + [1.0] * (joint - first)
+        found = []
+        for _ in range(300):
+            q, dq = random.uniform(-2.0, 2.0, 7), ROBOT.dq_max * random.choice([-1.0, 1.0], 7)
+            place = []
+            for s in (-h, 0.0, h):
+                kinematics = iiwa_dnn.Configuration(ROBOT, q + s * dq)
+                tip = kinematics.frame("iiwa7_link_7")
+                x = tip.position + tip.rotation @ point
+                if first:
+                    base = kinematics.frame("iiwa7_link_2")
+                    x = base.rotation.T @ (x - base.position)
+                place.append(x)
+            found.append([np.linalg.norm(place[2] - place[0]) / (2 * h),
+                          np.linalg.norm(place[2] - 2 * place[1] + place[0]) / h**2])  # fmt: skip
+        largest = np.max(found, axis=0)
+        assert 0.2 * speed < largest[0] < speed
+        assert 0.1 * acceleration < largest[1] < acceleration
+        assert turn == pytest.approx(ROBOT.dq_max[first:].sum())
+
+
+@pytest.mark.parametrize(("name", "moving"), [("iiwa7", True), ("panda", False)])
+def test_random_motion_never_comes_too_near(name: str, moving: bool) -> None:
+    found = wander(name, 1500, 1, moving, sampled=3)
+    assert found["least_m"] >= 0.02 - SLACK
+    assert found["least_between_m"] >= 0.02 - SLACK
+    assert found["difference_m"] < 2e-6  # coal's own tolerance is 1e-6
+    assert found["active"] > 50
+    assert found["policy"] == 0
+
+
+def test_the_elbow_gives_way_and_the_heart_stays() -> None:
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
+    free = iiwa_dnn.simulate(ROBOT, scheme(), heart(), START, dt=5e-3)
+    record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=5e-3)
+    metrics = iiwa_dnn.compute_metrics(record)
+    assert iiwa_dnn.failures(record) == []
+    assert avoidance.scene(ROBOT).nearest(free.q, free.t)[0].min() < 0.01
+    near = metrics["collisions"]
+    assert near["first"] == "Sphere 1"
+    assert 0.03 <= near["least_distance_m"] < 0.032
+    assert near["missing_m"] == 0.0
+    without = iiwa_dnn.compute_metrics(free)["max_position_error_m"]
+    assert metrics["max_position_error_m"] < 1.1 * without
+    judge = Judge(ROBOT, avoidance)
+    coals = [judge.distance(q, t) for q, t in zip(record.q, record.t, strict=True)]
+    np.testing.assert_allclose(record.distance, coals, atol=1e-9)
+
+
+def test_rows_begin_and_end_without_chatter() -> None:
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
+    record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=1e-3, duration=4.0)
+    active = (record.row_multiplier > 0).any(axis=1).astype(int)
+    assert active.any()
+    assert np.abs(np.diff(active)).sum() <= 4  # on and off, not again and again
+    jumps = np.abs(np.diff(record.dq, n=2, axis=0)).max()
+    assert jumps < 0.01  # [rad/s] between three steps
+
+
+def test_the_path_yields_where_the_arm_cannot() -> None:
+    tip = iiwa_dnn.Configuration(ROBOT, START).position
+    wall = iiwa_dnn.Sphere(tip + [0.05, 0.0, -0.12], 0.06)  # under the heart
+    avoidance = iiwa_dnn.CollisionAvoidance([wall], self_collision=False, distance=0.01)
+    line = iiwa_dnn.Line(offset=(0.0, 0.0, -0.1), period=4.0)
+    path = line.anchored(iiwa_dnn.Configuration(ROBOT, START))
+    for policy in ("slow", "relax"):
+        record = iiwa_dnn.simulate(
+            ROBOT, scheme(avoidance), path, START, dt=5e-3, duration=2.0, policy=policy
+        )
+        assert record.distance.min() >= 0.01
+        reasons = iiwa_dnn.failures(record)
+        assert any("CollisionAvoidance" in reason and "Sphere 1" in reason for reason in reasons)
+
+
+def test_an_obstacle_that_comes_is_kept_away_from() -> None:
+    coming = iiwa_dnn.Sphere([0.33, 0.16, 0.84], 0.05, velocity=[0.0, 0.0, -0.04])
+    avoidance = iiwa_dnn.CollisionAvoidance([coming], distance=0.03)
+    record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=5e-3, duration=5.0)
+    assert record.distance.min() >= 0.03
+    assert avoidance.scene(ROBOT).nearest(np.tile(START, (2, 1)), np.array([0.0, 5.0]))[0][1] < 0.03
+
+
+def test_more_pairs_than_rows_keep_the_nearest() -> None:
+    many = [iiwa_dnn.Sphere([0.36, 0.16, 0.64 + 0.3 * k], 0.05) for k in range(5)]
+    few = iiwa_dnn.CollisionAvoidance(many, distance=0.03, nearest=4)
+    conf = iiwa_dnn.Configuration(ROBOT, START)
+    target = iiwa_dnn.Target(conf.position, conf.rotation)
+    some = scheme(few).build_qp(conf, target)
+    whole = scheme(iiwa_dnn.CollisionAvoidance(many, distance=0.03, nearest=99))
+    qp = whole.build_qp(conf, target)
+    slack = np.where(np.isfinite(qp.h), qp.h - np.abs(qp.G) @ ROBOT.dq_max, 0.0)
+    chosen = np.sort(np.argsort(slack, kind="stable")[: np.isfinite(some.h).sum()])
+    np.testing.assert_array_equal(some.G[np.isfinite(some.h)], qp.G[chosen])
+    assert few.row_names(ROBOT) == []
+
+
+def test_both_plants_record_the_distance() -> None:
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
+    record = iiwa_dnn.simulate(
+        ROBOT, scheme(avoidance), heart(), START, dt=1e-3, duration=0.3,
+        plant=iiwa_dnn.MujocoPlant(),
+    )  # fmt: skip
+    assert record.distance.shape == (record.steps + 1,)
+    assert record.distance.min() > 0.029
+
+
+def test_a_record_keeps_the_distances(tmp_path: Path) -> None:
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
+    record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=5e-3, duration=0.1)
+    record.save(tmp_path / "record.npz")
+    again = iiwa_dnn.Record.load(tmp_path / "record.npz")
+    np.testing.assert_array_equal(again.distance, record.distance)
+    pair = again.settings["collisions"]["pairs"][again.nearest[0]]
+    assert pair == ["Sphere 1", "iiwa7_link_4"]
+
+
+def test_capsules_hold_the_shapes_of_the_urdf() -> None:
+    import pinocchio as pin
+
+    model = collision_model(ROBOT)
+    spheres = pin.buildGeomFromUrdf(ROBOT.model, str(ROBOT.path), pin.GeometryType.COLLISION)
+    for shape in spheres.geometryObjects:
+        half = getattr(shape.geometry, "halfLength", 0.0)
+        turns = np.linspace(0.0, 2.0 * np.pi, 24)
+        rim = shape.geometry.radius * np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])
+        points = [rim + [0.0, 0.0, z] for z in (-half, half)]
+        frame = ROBOT.model.frames[shape.parentFrame]
+        place = frame.placement.actInv(shape.placement)
+        held = np.zeros(48, bool)
+        for capsule in model.capsules:
+            if capsule.link == frame.name:
+                a, b = np.array(capsule.a), np.array(capsule.b)
+                x = np.vstack(points) @ place.rotation.T + place.translation
+                along = np.clip((x - a) @ (b - a) / max((b - a) @ (b - a), 1e-12), 0.0, 1.0)
+                away = np.linalg.norm(x - a - along[:, None] * (b - a), axis=1)
+                held |= away <= capsule.radius + 1e-7
+        assert held.all()
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[[obstacle]]\nshape = 'ball'", "obstacle 1: shape: must be one of Sphere"),
+        ("[[obstacle]]\nshape = 'sphere'\nradius = 1", "obstacle 1: Sphere: missing"),
+        ("[[obstacle]]\nshape = 'sphere'\ncenter = [0, 0]\nradius = 1", "obstacle 1: center"),
+        ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_extents"),
+        ("distance = -1", "distance: must be a finite number above 0"),
+        ("distanz = 1", "unexpected keyword argument 'distanz'"),
+        ("obstacle = 3", "not"),
+        ("x = [", "cannot be read as TOML"),
+    ],
+)
+def test_a_bad_file_is_refused_in_one_line(tmp_path: Path, text: str, reason: str) -> None:
+    path = tmp_path / "obstacles.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(iiwa_dnn.FileError, match="toml: ") as caught:
+        iiwa_dnn.CollisionAvoidance.from_toml(path)
+    assert reason in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_is_what_python_says(tmp_path: Path) -> None:
+    path = tmp_path / "obstacles.toml"
+    path.write_text(
+        "distance = 0.03\n[[obstacle]]\nshape = 'sphere'\n"
+        "center = [0.36, 0.16, 0.64]\nradius = 0.05\n"
+        "[[obstacle]]\nshape = 'half_space'\nnormal = [0, 0, 2]\noffset = -0.1\n"
+        "[[obstacle]]\nshape = 'capsule'\na = [1, 0, 0]\nb = [1, 1, 0]\nradius = 0.1\n"
+        "velocity = [0.1, 0, 0]\n",
+        encoding="utf-8",
+    )
+    read = iiwa_dnn.CollisionAvoidance.from_toml(path)
+    assert read.obstacles[0] == BALL
+    assert read.obstacles[1] == iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.1)
+    assert read.obstacles[2].speed == pytest.approx(0.1)
+    assert read.distance == 0.03
+
+
+@pytest.mark.parametrize(
+    ("make", "argument"),
+    [
+        (lambda: iiwa_dnn.Sphere([0, 0, 0], 0.0), "radius"),
+        (lambda: iiwa_dnn.Sphere([0, 0, 0], 1.0, motion=lambda t: [t, 0, 0]), "speed"),
+        (lambda: iiwa_dnn.HalfSpace([0, 0, 0], 1.0), "normal"),
+        (lambda: iiwa_dnn.Box([0, 0, 0], [1, 1, 1], np.diag([1, 1, -1])), "rotation"),
+        (lambda: iiwa_dnn.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]), "vertices"),
+        (lambda: iiwa_dnn.CollisionAvoidance(["ball"]), "obstacles"),
+        (lambda: iiwa_dnn.CollisionAvoidance(activation=0.01), "activation"),
+        (lambda: iiwa_dnn.CollisionAvoidance(self_collision=False).scene(ROBOT), "obstacles"),
+        (
+            lambda: iiwa_dnn.CollisionAvoidance().scene(ROBOT.with_limits(velocity=np.inf)),
+            "robot",
+        ),
+    ],
+)
+def test_bad_input_names_its_argument(make: Any, argument: str) -> None:
+    with pytest.raises(iiwa_dnn.InvalidInputError) as caught:
+        make()
+    assert caught.value.argument == argument
