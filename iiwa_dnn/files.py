@@ -140,3 +140,8 @@ def one_line(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return " ".join(str(error).split()) or type(error).__name__
+
+
+def percent(share: float) -> str:
+    """Show a share as ``12.3 %``; one below 1 never as 100.0 %."""
+    return f"{min(100.0 * share, 100.0 if share >= 1.0 else 99.9):.1f} %"

@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.files import percent
 from iiwa_dnn.results.metrics import (
     compute_metrics,
     limits,
     position_limit_excess,
     velocity_limit_excess,
 )
-from iiwa_dnn.results.record import Record, percent
+from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""

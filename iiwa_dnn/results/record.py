@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.files import one_line, plain, write_atomically
+from iiwa_dnn.files import one_line, percent, plain, write_atomically
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -256,11 +256,6 @@ _ARRAYS = {
     if get_origin(hint) is Annotated
 }
 _OPTIONAL = {item.name for item in fields(Record) if item.default is None}
-
-
-def percent(share: float) -> str:
-    """Show a share as ``12.3 %``; one below 1 never as 100.0 %."""
-    return f"{min(100.0 * share, 100.0 if share >= 1.0 else 99.9):.1f} %"
 
 
 def _read_only(name: str, value: ArrayLike, dimensions: int, kind: type[Any]) -> NDArray[Any]:

@@ -13,7 +13,8 @@ import pytest
 
 from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.results.record import Record, percent
+from iiwa_dnn.files import percent
+from iiwa_dnn.results.record import Record
 
 ARRAYS = [
     field.name
@@ -22,7 +23,8 @@ ARRAYS = [
 ]
 OPTIONAL = {
     "torque", "bound_multiplier", "clipped", "action", "fraction", "blocking", "row_multiplier",
-    "blocking_rows", "distance", "nearest",
+    "blocking_rows", "distance", "nearest", "level_residual", "frame_position", "frame_rotation",
+    "frame_position_desired", "frame_rotation_desired",
 }  # fmt: skip
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 
@@ -89,6 +91,8 @@ def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
         "blocking": -2 * np.eye(10, 7, dtype=np.int8),
         "row_multiplier": np.linspace(0.0, 1.0, 30).reshape(10, 3),
         "blocking_rows": np.eye(10, 3, dtype=np.int8),
+        "level_residual": np.linspace(0.0, 1.0, 20).reshape(10, 2),
+        "frame_position": np.linspace(0.0, 1.0, 66).reshape(11, 2, 3),
     }
     make_record(**happened, settings={"rows": ROWS}).save(tmp_path / "record.npz")
     loaded = Record.load(tmp_path / "record.npz")
