@@ -1,0 +1,54 @@
+r"""The gradient network: steepest descent on half the squared residual of the KKT conditions.
+
+.. math::  \rho\,\dot s = -W^T E(s), \qquad W = \partial E / \partial s
+
+It needs one product where the zeroing network solves a linear system, and decays at the smallest
+eigenvalue of :math:`W^T W`, the square of the program's condition; behind a program that moves at
+a speed v it lags by about :math:`\rho\,v/\lambda_{min}`.
+
+Source: Y. Zhang, K. Chen, H.-Z. Tan, "Performance analysis of gradient neural network exploited for
+online time-varying matrix inversion", IEEE Transactions on Automatic Control 54 (2009).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iiwa_dnn.networks.base import Flow
+from iiwa_dnn.networks.kkt_system import KktSystem
+from iiwa_dnn.networks.zeroing import ZeroingNetwork
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
+
+
+@dataclass(frozen=True)
+class GradientNetwork(ZeroingNetwork):
+    """The gradient network; the zeroing network's activation and form, no integral, no growth."""
+
+    def flow(self, qp: QP) -> Flow:
+        """Make the right-hand side and its derivative, exact at rest, for this program."""
+        system = KktSystem(qp, self.form)
+
+        def rates(state: Vector) -> Vector:
+            error, _ = system.evaluate(state)
+            result: Vector = -system.matrix.T @ self.activation(error)
+            return result
+
+        def jacobian(state: Vector) -> Vector:
+            system.evaluate(state)
+            result: Vector = -system.matrix.T @ system.matrix
+            return result
+
+        return Flow(rates, jacobian)
+
+    def moving_flow(self, qp: QP, rate: QP) -> Flow:
+        """Make the same right-hand side: the rate of the program is not used."""
+        return self.flow(qp)
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        """Bound the stable steps of explicit Euler [rho]: 2 / ||W||^2, W with every row in it."""
+        system = KktSystem(qp, self.form)
+        system.evaluate(np.zeros(system.size) if state is None else state)
+        return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)
