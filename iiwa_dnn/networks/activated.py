@@ -57,7 +57,7 @@ class ActivatedNetwork(Network):
         def rates(state: Vector) -> Vector:
             result = inner(state)
             size = np.linalg.norm(result)
-            if size > 0.0:
+            if 0.0 < size < np.inf:
                 result = self.activation(np.array([size])) / size * result
             return result
 

@@ -21,17 +21,28 @@ from iiwa_dnn.qp.solution import Solution, Status
 
 
 class AdmmSolver(DNNSolver):
-    """OSQP with a warm start, stopped after so many iterations; its state is [x | y | z].
+    """OSQP, stopped after so many iterations and gone on with from there at the next program.
+
+    Its own iterates are the warm start: what is added to `warm_state`, [x | y | z], has no effect.
 
     Attributes:
         substeps: Iterations in each `advance`.
     """
 
     def __init__(self, substeps: int = 1, tol: float = 1e-9) -> None:
-        """Start from zero; raises InvalidInputError where `substeps` is below 1."""
+        """Start from zero.
+
+        Raises:
+            InvalidInputError: `substeps` is below 1.
+        """
         super().__init__(PrimalDualNetwork(), tol)
         self.substeps = checks.integer("substeps", substeps, 1)
         self._osqp: tuple[Sizes, Any] | None = None
+
+    def reset(self) -> None:
+        """Forget the warm start, OSQP's own iterates too."""
+        super().reset()
+        self._osqp = None
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Take the iterations for this program; the duration [s] is not used."""
@@ -48,7 +59,6 @@ class AdmmSolver(DNNSolver):
             self._osqp = (sizes, _prepared(n, len(rows), self.substeps))
         solver = self._osqp[1]
         solver.update(**changes)
-        solver.warm_start(x=state[:n], y=np.concatenate([state[n:], self._box(state, qp)]))
         result = solver.solve(raise_error=False)
         state[:] = np.concatenate([result.x, result.y[: p + m]])
         point = np.empty(2 * n + m + p)
@@ -57,13 +67,6 @@ class AdmmSolver(DNNSolver):
         if status is Status.ADVANCED:
             self._kept.append((self.network, sizes, state))
         return Solution(point, sizes, status, self.substeps, 0.0, *residuals)
-
-    def _box(self, state: Any, qp: QP) -> Any:
-        """Compute the bounds' multipliers that a state stands for."""
-        n, m, p = qp.sizes
-        point = np.empty(2 * n + m + p)
-        self.network.read(qp, state, point)
-        return point[-n:]
 
 
 def _prepared(n: int, rows: int, iterations: int) -> Any:
