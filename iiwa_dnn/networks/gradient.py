@@ -18,6 +18,7 @@ import numpy as np
 
 from iiwa_dnn.networks.base import Flow
 from iiwa_dnn.networks.kkt_system import KktSystem
+from iiwa_dnn.networks.primal_dual import coupling
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
@@ -48,7 +49,13 @@ class GradientNetwork(ZeroingNetwork):
         return self.flow(qp)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Bound the stable steps of explicit Euler [rho]: 2 / ||W||^2, W with every row in it."""
+        """Bound the stable steps of explicit Euler [rho]: 2 / ||W||^2, of a linear activation.
+
+        Without a state W is bounded over all active sets of the projected form, whose rows are
+        those of the whole KKT matrix or of the identity.
+        """
+        if state is None:
+            return 2.0 / (float(np.linalg.norm(coupling(qp), 2)) ** 2 + 1.0)
         system = KktSystem(qp, self.form)
-        system.evaluate(np.zeros(system.size) if state is None else state)
+        system.evaluate(state)
         return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)

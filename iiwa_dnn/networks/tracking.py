@@ -70,6 +70,8 @@ class TrackingSolver(DNNSolver):
     Attributes:
         formula: The formula.
         substeps: Steps of the formula in each `advance`; the program moves on linearly meanwhile.
+        rate: Rate of change of the last program's `QP.data` [1/s], (size,), for the next call; it
+            may be set, where it depends on the answer.
     """
 
     def __init__(
@@ -89,7 +91,7 @@ class TrackingSolver(DNNSolver):
         super().reset()
         self._states: list[Vector] = []
         self._programs: list[Vector] = []
-        self._rate: Vector = np.zeros(0)
+        self.rate: Vector = np.zeros(0)
 
     def advance(self, qp: QP, duration: float, rate: Vector | None = None) -> Solution:
         """Move on by `duration` from the last program to this one, and answer it.
@@ -112,8 +114,8 @@ class TrackingSolver(DNNSolver):
             self._follow(state, QP.from_data(self._programs[0], sizes), duration)
             steps = self.substeps
         self._programs = [qp.data.copy(), *self._programs[: self.formula.order - 1]]
-        self._rate = self._difference(duration) if rate is None else rate
-        check_size("rate", self._rate, qp.data.size)
+        self.rate = self._difference(duration) if rate is None else rate
+        check_size("rate", self.rate, qp.data.size)
         residuals = network.read(qp, state, point)
         status = Status.NOT_FINITE
         if np.isfinite(sum(residuals)):
@@ -133,7 +135,7 @@ class TrackingSolver(DNNSolver):
     def _follow(self, state: Vector, qp: QP, duration: float) -> None:
         """Advance the state in place, from a program to the end of the time [s]."""
         network, formula = self.network, self.formula
-        rate, step = self._rate, duration / self.substeps
+        rate, step = self.rate, duration / self.substeps
         moving = QP.from_data(network.rho * rate, qp.sizes)
         for i in range(self.substeps):
             now = QP.from_data(qp.data + i * step * rate, qp.sizes)
