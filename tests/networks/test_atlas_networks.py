@@ -9,6 +9,7 @@ from iiwa_dnn import (
     QP,
     DNNSolver,
     DualNetwork,
+    ExplicitEuler,
     ImplicitEuler,
     InvalidInputError,
     PrimalDualNetwork,
@@ -19,9 +20,11 @@ from iiwa_dnn.networks import (
     Network,
     OneLayerNetwork,
     SimplifiedDualNetwork,
+    ZeroingNetwork,
 )
 from iiwa_dnn.networks.activations import Activation, FixedTime, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
+from iiwa_dnn.networks.kkt_system import KktSystem
 from iiwa_dnn.networks.primal_dual import coupling, limits
 
 PLAIN = [SimplifiedDualNetwork(), OneLayerNetwork(), OneLayerNetwork(corrected=False)]
@@ -90,12 +93,22 @@ def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
     end = solve_ivp(lambda t, s: rates(s), (0, 3.0), start, rtol=1e-9, atol=1e-12).y[:, -1]
     expected = vectors @ (np.exp(-3.0 * values) * (vectors.T @ (start - rest)))
     np.testing.assert_allclose(end - rest, expected, atol=1e-6)
-    rng = np.random.default_rng(3)
-    bounded, x = known_qp(rng, 4, 1, 2, inequalities=1)
-    slow, step = np.zeros(network.state_size(bounded)), network.stable_step(bounded)
-    for _ in range(20000):
-        slow += 0.9 * step * network.rates(bounded, slow)
-    assert np.abs(slow[:4] - x).max() < 1e-3
+
+
+def test_the_gradient_network_lowers_its_energy_and_rests_at_kkt_points() -> None:
+    rng, network = np.random.default_rng(3), GradientNetwork(form="smooth")
+    for case in range(3):
+        qp, _ = known_qp(rng, 4, 1, case, inequalities=2)
+        state = np.zeros(network.state_size(qp))
+        ExplicitEuler(substeps=200).advance(ZeroingNetwork(form="smooth"), qp, state, 100.0)
+        assert np.abs(network.rates(qp, state)).max() < 1e-4
+        system, energy = KktSystem(qp, "smooth"), np.inf
+        state = state + rng.standard_normal(state.size)
+        for _ in range(200):
+            error, _ = system.evaluate(state)
+            assert error @ error < energy
+            energy = error @ error
+            state = state + 0.4 * network.stable_step(qp, state) * network.rates(qp, state)
 
 
 def settle_time(network: ActivatedNetwork, qp: QP, state: np.ndarray) -> float:
