@@ -265,7 +265,8 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     steps = round(DURATION / DT)
     data, targets = _program(plan), _targets(arm, q, steps)
     errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
-    noise = _noise(kind, rng, steps)
+    noise, point = _noise(kind, rng, steps), np.empty(sum(data.sizes) + data.sizes[0])
+    width = q.size if solver.network.carries_x else 0
     for k in range(steps):
         seen = q + (1e-4 * rng.standard_normal(q.size) if kind == "measurement" else 0.0)
         arm.update(q)
@@ -280,14 +281,15 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
         began = time.perf_counter()
         answer = solver.advance(data, DT)
         spent += time.perf_counter() - began
-        residuals[k] = answer.residuals.largest
+        residuals[k], x = answer.residuals.largest, answer.x
         state = solver.warm_state(data.sizes)
         if state is None:
             raise IiwaDnnError("the state is not finite")
-        if noise is not None:
-            width = q.size if solver.network.carries_x else state.size
-            state[:width] += noise[k, :width]
-        plan.last[:] = answer.x[: q.size]
+        if noise is not None:  # the network's rates have it too, before it is read
+            state[: width or state.size] += noise[k, : width or state.size]
+            residuals[k] = max(solver.network.read(data, state, point))
+            x = point
+        plan.last[:] = x[: q.size]
         q = q + DT * plan.last
     half = slice(steps // 2, None)
     return {

@@ -100,12 +100,12 @@ def judge(rows: Sequence[Row], claim: Claim) -> dict[str, Any]:
     sides = [find(rows, name, claim.disturbance) for name in (claim.better, claim.worse)]
     values = [side[claim.measure] for side in sides]
     better, worse = (
-        np.inf if side["lost"] else side["mean"][claim.measure] or 0.0 for side in sides
+        float(np.mean([np.inf if value is None else value for value in side])) for side in values
     )
-    sign = float(np.sign(better - worse)) if better != worse else 0.0
+    sign = 0 if better == worse else int(np.sign(better - worse))
     if np.isfinite([better, worse]).all() and len(values[0]) > 1:
         sign = paired_difference(values[0], values[1]).sign
-    verdict = {-1.0: "holds", 0.0: "undecided", 1.0: "does not hold"}[sign]
+    verdict = {-1: "holds", 0: "undecided", 1: "does not hold"}[sign]
     known = [value if np.isfinite(value) else None for value in (better, worse)]
     return {**claim._asdict(), "values": known, "verdict": verdict}
 
