@@ -30,11 +30,13 @@ class Activation(ABC):
     """An odd, increasing function of an error, entry by entry."""
 
     def __post_init__(self) -> None:
-        """Check the parameters: above 0, and powers named `power` below 1."""
+        """Check the parameters: above 0, `power` below 1 and `upper_power` above 1."""
         for field in fields(self):
             checks.positive(field.name, getattr(self, field.name))
         if not getattr(self, "power", 0.5) < 1.0:
             raise InvalidInputError("power", "must be below 1")
+        if not getattr(self, "upper_power", 2.0) > 1.0:
+            raise InvalidInputError("upper_power", "must be above 1")
 
     @abstractmethod
     def magnitude(self, size: Vector) -> Vector:
@@ -96,12 +98,6 @@ class FixedTime(Activation):
     upper_power: float = 2.0
     low: float = 1.0
     high: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        super().__post_init__()
-        if not self.upper_power > 1.0:
-            raise InvalidInputError("upper_power", "must be above 1")
 
     def magnitude(self, size: Vector) -> Vector:
         """Evaluate at sizes (k,)."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow
+from iiwa_dnn.networks.base import Flow, difference_jacobian
 from iiwa_dnn.networks.kkt_system import KktSystem
 from iiwa_dnn.networks.primal_dual import coupling
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
@@ -29,7 +29,7 @@ class GradientNetwork(ZeroingNetwork):
     """The gradient network; the zeroing network's activation and form, no integral, no growth."""
 
     def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative, exact at rest, for this program."""
+        """Make the right-hand side for this program; its derivative by differences."""
         system = KktSystem(qp, self.form)
 
         def rates(state: Vector) -> Vector:
@@ -37,12 +37,7 @@ class GradientNetwork(ZeroingNetwork):
             result: Vector = -system.matrix.T @ self.activation(error)
             return result
 
-        def jacobian(state: Vector) -> Vector:
-            system.evaluate(state)
-            result: Vector = -system.matrix.T @ system.matrix
-            return result
-
-        return Flow(rates, jacobian)
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
 
     def moving_flow(self, qp: QP, rate: QP) -> Flow:
         """Make the same right-hand side: the rate of the program is not used."""

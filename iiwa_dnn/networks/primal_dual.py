@@ -80,7 +80,7 @@ def coupling(qp: QP) -> Matrix:
 
 
 def limits(qp: QP) -> tuple[Vector, Vector]:
-    """Return the set Omega: lower and upper limits of the state."""
+    """Return the set Omega: lower and upper limits of the state, (n + p + m,) each."""
     _, m, p = qp.sizes
     free = np.full(p, np.inf)
     lower = np.concatenate([qp.lb, -free, np.zeros(m)])

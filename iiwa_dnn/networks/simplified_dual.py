@@ -20,7 +20,7 @@ from typing import ClassVar
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow, Network, read_point
+from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point
 from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
 
@@ -41,7 +41,7 @@ class SimplifiedDualNetwork(Network):
         return n + m
 
     def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
+        """Make the right-hand side for this program; its derivative by differences."""
         rows, M, offset = _reduced(qp)
         gram, base = rows @ M @ rows.T, rows @ offset
         lower = np.concatenate([np.full(qp.h.size, -np.inf), qp.lb])
@@ -52,13 +52,7 @@ class SimplifiedDualNetwork(Network):
             result: Vector = np.clip(values - state, lower, upper) - values
             return result
 
-        def jacobian(state: Vector) -> Matrix:
-            aim = gram @ state + base - state
-            inside = (aim > lower) & (aim < upper)
-            result: Matrix = np.where(inside[:, None], -np.eye(state.size), -gram)
-            return result
-
-        return Flow(rates, jacobian)
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
 
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -28,7 +28,7 @@ from iiwa_dnn.networks.activations import (
 )
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.gradient import GradientNetwork
-from iiwa_dnn.networks.integrators import SAFETY, ImplicitEuler, Integrator, Settled
+from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.simplified_dual import SimplifiedDualNetwork
 from iiwa_dnn.networks.solver import DNNSolver
@@ -62,53 +62,35 @@ the states that the seed draws; white, 0.01 rad/s a control period (the paper's)
 1e-4 rad on the joint positions; parameter, links 5 % longer or shorter than the controller's model,
 the tool's pose being measured.
 """
-SURE = ("none",)
-"""Disturbances without chance in them: one run each."""
 
 
 @dataclass(frozen=True)
-class Paced(Integrator):
-    """Explicit Euler by a number of steps, each as long as the network is stable with.
+class Paced(ExplicitEuler):
+    """Explicit Euler by `substeps` steps, each as long as the network is stable with.
 
     Attributes:
-        substeps: Steps in each `advance`, whatever its duration.
         base: Network whose stable step is taken; None takes that of the network itself.
     """
 
-    order: ClassVar[int] = 1
-    substeps: int = 1
     base: Network | None = None
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place; returns the steps taken."""
-        step = SAFETY * (self.base or network).stable_step(qp, state)
+        """Advance `state` (size,) in place, whatever the duration; returns the steps taken."""
+        step, count = SAFETY * (self.base or network).stable_step(qp, state), self.substeps or 1
         rates = network.flow(qp).rates
-        for _ in range(self.substeps):
+        for _ in range(count):
             state += step * rates(state)
-        return self.substeps
-
-    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
-        """Take the same number of steps; see `Integrator.settle`."""
-        taken = self.advance(network, qp, state, 0.0)
-        return (taken, 0.0, *network.read(qp, state, point))
+        return count
 
 
 @dataclass(frozen=True)
-class Newton(Integrator):
-    """Implicit Euler towards rest, cut off after a number of linear systems."""
-
-    order: ClassVar[int] = 1
-    substeps: int = 1
+class CutOff(ImplicitEuler):
+    """Implicit Euler towards rest, cut off after `max_steps` linear systems."""
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place; returns the linear systems solved."""
         n, m, p = qp.sizes
-        point = np.empty(2 * n + m + p)
-        return self.settle(network, qp, state, point, 1e-12)[0]
-
-    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
-        """Settle with the budget; see `Integrator.settle`."""
-        return ImplicitEuler(max_steps=self.substeps).settle(network, qp, state, point, tol)
+        return self.settle(network, qp, state, np.empty(2 * n + m + p), 1e-12)[0]
 
 
 class Entry(NamedTuple):
@@ -132,7 +114,7 @@ def activated(network: Network, activation: Any) -> Entry:
     """Return the entry of an activated network, with the steps of the network itself."""
     whole = ActivatedNetwork(network=network, activation=activation)
     systems = isinstance(network, SimplifiedDualNetwork)
-    return Entry(lambda count: DNNSolver(whole, follower=Paced(count, network)), systems)
+    return Entry(lambda count: DNNSolver(whole, follower=Paced(count, base=network)), systems)
 
 
 def zeroing(gain: float, formula: Formula = EULER, **options: Any) -> Entry:
@@ -172,7 +154,7 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, smooth": zeroing(1.0, form="smooth"),
     "projection, implicit Euler": Entry(
         lambda count: DNNSolver(
-            ProjectionNetwork(primal_projection=False), follower=Newton(substeps=count)
+            ProjectionNetwork(primal_projection=False), follower=CutOff(max_steps=count)
         ),
         systems=True,
     ),
@@ -186,12 +168,9 @@ MEASURES = ("rms_error_m", "max_error_m", "rms_residual", "advance_us")
 def cell(
     network: str, scheme: str, disturbance: str, evaluations: int, seeds: int
 ) -> dict[str, Any]:
-    """Return the settings of one cell: all seeds of a combination."""
-    count = 1 if disturbance in SURE else seeds
-    return {
-        "network": network, "scheme": scheme, "disturbance": disturbance,
-        "evaluations": evaluations, "seeds": count,
-    }  # fmt: skip
+    """Return the settings of one cell: all seeds of a combination, one where there is no chance."""
+    names = {"network": network, "scheme": scheme, "disturbance": disturbance}
+    return {**names, "evaluations": evaluations, "seeds": 1 if disturbance == "none" else seeds}
 
 
 def cells(
@@ -263,9 +242,12 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     q = np.array(paper.START)
     plan = Plan(robot, scheme, solver, DT, False, q)
     steps = round(DURATION / DT)
-    data, targets = _program(plan), _targets(arm, q, steps)
+    n, m, p = plan.sizes
+    data = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), plan.sizes)
+    heart = Heart(period=PERIOD).anchored(Configuration(arm.robot, q))
+    targets = heart.sample(DT * np.arange(steps)).data
     errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
-    noise, point = _noise(kind, rng, steps), np.empty(sum(data.sizes) + data.sizes[0])
+    noise, point = _noise(kind, rng, steps), np.empty(2 * n + m + p)
     width = q.size if solver.network.carries_x else 0
     for k in range(steps):
         seen = q + (1e-4 * rng.standard_normal(q.size) if kind == "measurement" else 0.0)
@@ -298,19 +280,6 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
         "rms_residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
         "advance_us": 1e6 * spent / steps,
     }
-
-
-def _program(plan: Plan) -> QP:
-    """Make the program that the loop writes into."""
-    n, m, p = plan.sizes
-    return QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), plan.sizes)
-
-
-def _targets(arm: Kinematics, q: Vector, steps: int) -> Matrix:
-    """Sample the heart from where the arm is, (steps, 18)."""
-    start = Configuration(arm.robot, q)
-    targets: Matrix = Heart(period=PERIOD).anchored(start).sample(DT * np.arange(steps)).data
-    return targets
 
 
 def _noise(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
