@@ -30,6 +30,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
 from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point, settings_of
 from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
@@ -71,7 +72,10 @@ class ZeroingNetwork(Network):
         return self._flow(KktSystem(qp, self.form))
 
     def moving_flow(self, qp: QP, rate: QP) -> Flow:
-        """Make the right-hand side for a program and its rate of change [1/rho]."""
+        """Make the right-hand side for a program and its rate of change [1/rho].
+
+        Its rates raise NoSolutionError where the KKT conditions' derivative is singular.
+        """
         return self._flow(KktSystem(qp, self.form, rate))
 
     def _flow(self, system: KktSystem) -> Flow:
@@ -87,7 +91,10 @@ class ZeroingNetwork(Network):
             if self.integral:
                 wanted += self.integral * state[size : 2 * size]
                 result[size : 2 * size] = error
-            result[:size] = -np.linalg.solve(system.matrix, wanted)
+            try:
+                result[:size] = -np.linalg.solve(system.matrix, wanted)
+            except np.linalg.LinAlgError:
+                raise NoSolutionError("the derivative of the KKT conditions is singular") from None
             return result
 
         if self.stable_step(system.qp) and not self.integral:

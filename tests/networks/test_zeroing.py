@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import iiwa_dnn
 from helpers_moving import MovingProgram
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, ExplicitEuler, InvalidInputError
+from iiwa_dnn import QP, DNNSolver, ExplicitEuler, InvalidInputError, NoSolutionError
 from iiwa_dnn.networks import ZeroingNetwork
 from iiwa_dnn.networks.activations import (
     Activation,
@@ -236,6 +237,25 @@ def test_a_program_of_another_shape_or_a_rate_of_the_wrong_size() -> None:
     assert solver.advance(other, 0.1).iterations == 0  # begins anew
     with pytest.raises(InvalidInputError, match="rate"):
         solver.advance(other, 0.1, np.zeros(3))
+
+
+def test_a_singular_program_is_told() -> None:
+    network, singular = ZeroingNetwork(), QP(np.zeros((2, 2)), [1.0, 1.0])
+    with pytest.raises(NoSolutionError, match="is singular"):
+        network.rates(singular, np.zeros(2))
+
+
+def test_drives_an_arm_and_its_record_names_it() -> None:
+    robot, q0 = iiwa_dnn.load_robot("iiwa7"), [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]
+    start = iiwa_dnn.Configuration(robot, q0)
+    network = ZeroingNetwork(rho=2e-3, activation=PowerSigmoid())
+    record = iiwa_dnn.simulate(
+        robot, iiwa_dnn.DoubleIndicator(), iiwa_dnn.Heart().anchored(start), q0, dt=1e-3,
+        duration=0.5, mode="continuous", solver=TrackingSolver(network),
+    )  # fmt: skip
+    error = np.linalg.norm(record.position - record.position_desired, axis=1)
+    assert error[-1] < 2e-5
+    assert "PowerSigmoid" in str(record.settings)
 
 
 @pytest.mark.parametrize(
