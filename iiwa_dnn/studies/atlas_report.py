@@ -161,6 +161,10 @@ def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> s
         ("network", *schemes),
         ([name, *(_shown(find(rows, name, "none", s)) for s in schemes)] for name in league),
     )
+    everywhere = markdown_table(
+        ("network", "combinations", "with a failed run", "median", "worst"),
+        (_summed(rows, name) for name in league),
+    )
     verdicts = markdown_table(
         ("claim", "disturbance", "measure", "ours", "beside", "verdict"),
         (
@@ -175,7 +179,9 @@ def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> s
     parts += [
         f"## League: RMS position error [m], {first}, {middle} evaluations a period of {DT:g} s",
         kinds, "A number in brackets counts runs that failed.",
-        "## Schemes: RMS position error [m], undisturbed", others, "## Verdicts", verdicts,
+        "## Schemes: RMS position error [m], undisturbed", others,
+        "## Every scheme with every disturbance: RMS position error [m]",
+        everywhere, "## Verdicts", verdicts,
     ]  # fmt: skip
     text = "\n\n".join(parts) + "\n"
     write_text(folder / "report.md", text)
@@ -188,6 +194,14 @@ def _rank(rows: Sequence[Row], name: str) -> float:
     if any(row["lost"] for row in found):
         return np.inf
     return float(np.mean([np.log(row["mean"]["rms_error_m"]) for row in found]))
+
+
+def _summed(rows: Sequence[Row], name: str) -> list[str]:
+    """Sum a network up over all schemes and disturbances at the middle budget."""
+    own = [r for r in rows if (r["network"], r["evaluations"]) == (name, rows[0]["evaluations"])]
+    errors = [r["mean"]["rms_error_m"] for r in own if not r["lost"]]
+    ends = [_number(float(of(errors)) if errors else None) for of in (np.median, np.max)]
+    return [name, str(len(own)), str(len(own) - len(errors)), *ends]
 
 
 def _shown(row: Row) -> str:
