@@ -12,10 +12,21 @@ from iiwa_dnn.errors import (
     NoSolutionError,
     NotFoundError,
 )
-from iiwa_dnn.networks import DualNetwork, Network, PrimalDualNetwork, ProjectionNetwork
+from iiwa_dnn.networks import (
+    ActivatedNetwork,
+    DualNetwork,
+    GradientNetwork,
+    Network,
+    OneLayerNetwork,
+    PrimalDualNetwork,
+    ProjectionNetwork,
+    SimplifiedDualNetwork,
+    ZeroingNetwork,
+)
 from iiwa_dnn.networks.batch import BatchSolution, solve_batch
 from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.networks.tracking import TrackingSolver
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.references import (
@@ -73,6 +84,7 @@ __version__ = version("iiwa-dnn")
 __all__ = [
     "QP",
     "AccelerationLimits",
+    "ActivatedNetwork",
     "AdaptiveRungeKutta",
     "Agreement",
     "AxisTask",
@@ -96,6 +108,7 @@ __all__ = [
     "ElbowAngleTask",
     "ExplicitEuler",
     "FileError",
+    "GradientNetwork",
     "HalfSpace",
     "Heart",
     "IiwaDnnError",
@@ -116,6 +129,7 @@ __all__ = [
     "NoSolutionError",
     "NotFoundError",
     "OnSurface",
+    "OneLayerNetwork",
     "OrientationTask",
     "PoseTask",
     "PositionTask",
@@ -130,6 +144,7 @@ __all__ = [
     "Residuals",
     "Robot",
     "Scheme",
+    "SimplifiedDualNetwork",
     "Simulation",
     "Solution",
     "Sphere",
@@ -138,8 +153,10 @@ __all__ = [
     "Target",
     "Task",
     "Tilting",
+    "TrackingSolver",
     "Trajectory",
     "Waypoints",
+    "ZeroingNetwork",
     "available_robots",
     "compute_metrics",
     "failures",

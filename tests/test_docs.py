@@ -24,9 +24,9 @@ ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
 WITH_CODE = (
-    "README.md", "collisions.md", "commands.md", "control_loop.md", "index.md", "networks.md",
-    "noise.md", "own_network.md", "own_reference.md", "own_scheme.md", "real_arm.md",
-    "robots.md", "theory.md",
+    "README.md", "atlas.md", "collisions.md", "commands.md", "control_loop.md", "index.md",
+    "networks.md", "noise.md", "own_network.md", "own_reference.md", "own_scheme.md",
+    "real_arm.md", "robots.md", "theory.md",
 )  # fmt: skip
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

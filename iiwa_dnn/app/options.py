@@ -37,6 +37,8 @@ _Angle = Annotated[float, arg(metavar="RAD")]
 _TipSpeed = Annotated[float, arg(metavar="M/S")]
 _Push = Annotated[_Numbers | None, arg(metavar="FX FY FZ", help_behavior_hint="")]
 _Angles = Annotated[_Numbers, arg(metavar="RAD", help_behavior_hint="")]
+_Schemes = Annotated[tuple[str, ...], arg(metavar="NAME", help_behavior_hint="")]
+_Counts = Annotated[tuple[int, ...], arg(metavar="N")]
 _Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
 _Limit = Annotated[str | None, arg(metavar="RAD", help_behavior_hint="")]
 _AnyLimit = Annotated[str | None, arg(metavar="X|robot", help_behavior_hint="")]
@@ -185,6 +187,23 @@ class NoiseOptions(RunOptions):
 
 
 @dataclass(frozen=True)
+class AtlasOptions(RunOptions):
+    """Compare the networks of the field at equal compute: tables, a figure and verdicts.
+
+    A sweep that was cut short goes on where it was.
+    """
+
+    command: ClassVar[str] = "atlas"
+    out: Folder = Path("runs/atlas")  # folder that the results are written to
+    seeds: Count = 100  # number of noises with the first scheme
+    other_seeds: Count = 10  # number of noises with the other schemes and budgets
+    schemes: _Schemes = ()  # names of the schemes (none: all)
+    evaluations: _Counts = (1, 2, 4, 8, 16)  # budgets: evaluations of a network a control period
+    workers: _AnyCount = None  # number of processes (one for each core)
+    plots: _Flag = True  # draw no figure
+
+
+@dataclass(frozen=True)
 class ViewOptions:
     """Replay a run in the browser, or drive the arm live, towards a target that is dragged."""
 
@@ -235,8 +254,8 @@ class CompletionOptions:
 COMMANDS: dict[str, type[Any]] = {
     kind.command: kind
     for kind in (
-        TrackOptions, PaperOptions, NoiseOptions, PhysicsOptions, ViewOptions, SolveOptions,
-        WarmUpOptions, CompletionOptions,
+        TrackOptions, PaperOptions, NoiseOptions, AtlasOptions, PhysicsOptions, ViewOptions,
+        SolveOptions, WarmUpOptions, CompletionOptions,
     )
 }  # fmt: skip
 """Options of each command by its name; the module of that name holds its function ``run``."""

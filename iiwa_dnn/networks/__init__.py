@@ -1,8 +1,24 @@
 """Dynamic neural networks: ODEs whose equilibria are the KKT points of a quadratic program."""
 
+from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.dual import DualNetwork
+from iiwa_dnn.networks.gradient import GradientNetwork
+from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.projection import ProjectionNetwork
+from iiwa_dnn.networks.simplified_dual import SimplifiedDualNetwork
+from iiwa_dnn.networks.zeroing import ZeroingNetwork
 
-__all__ = ["DualNetwork", "Flow", "Network", "PrimalDualNetwork", "ProjectionNetwork"]
+__all__ = [
+    "ActivatedNetwork",
+    "DualNetwork",
+    "Flow",
+    "GradientNetwork",
+    "Network",
+    "OneLayerNetwork",
+    "PrimalDualNetwork",
+    "ProjectionNetwork",
+    "SimplifiedDualNetwork",
+    "ZeroingNetwork",
+]

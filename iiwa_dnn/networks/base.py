@@ -62,6 +62,16 @@ class Network(ABC):
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""
 
+    def moving_flow(self, qp: QP, rate: QP) -> Flow:
+        """Make the right-hand side for this program while it changes.
+
+        Args:
+            qp: The program.
+            rate: Its rate of change [1/rho], field by field, zero where a field is infinite. A
+                network for a program that stands still leaves it out.
+        """
+        return self.flow(qp)
+
     @abstractmethod
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point ``[x | y | z | z_box]`` of a state (state_size,) into `point`.
@@ -103,6 +113,14 @@ def read_point(qp: QP, state: Vector, point: Vector, size: int) -> Triple:
     check_size("state", state, size)
     check_size("point", point, 2 * n + m + p)
     return kkt_point(qp.data, n, m, p, state, point)
+
+
+def difference_jacobian(rates: Callable[[Vector], Vector], state: Vector) -> Matrix:
+    """Differentiate rates at a state (size,) by central differences, (size, size)."""
+    steps = 1e-6 * np.maximum(1.0, np.abs(state)) * np.eye(state.size)
+    return np.array(
+        [(rates(state + step) - rates(state - step)) / (2.0 * step.max()) for step in steps]
+    ).T
 
 
 def settings_of(part: Any) -> dict[str, Any]:

@@ -42,7 +42,7 @@ class PrimalDualNetwork(Network):
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""
-        H, (lower, upper) = _coupling(qp), _limits(qp)
+        H, (lower, upper) = coupling(qp), limits(qp)
         constant = np.concatenate([qp.q, qp.b, qp.h])
         eye = np.eye(constant.size)
         outer = eye + H.T
@@ -66,11 +66,11 @@ class PrimalDualNetwork(Network):
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""
-        coupling = _coupling(qp)
-        return 2.0 / float(np.linalg.norm(np.eye(coupling.shape[0]) + coupling, 2)) ** 2
+        H = coupling(qp)
+        return 2.0 / float(np.linalg.norm(np.eye(len(H)) + H, 2)) ** 2
 
 
-def _coupling(qp: QP) -> Matrix:
+def coupling(qp: QP) -> Matrix:
     """Build H, of shape (n + p + m, n + p + m)."""
     n, m, p = qp.sizes
     H = np.zeros((n + p + m, n + p + m))
@@ -79,8 +79,8 @@ def _coupling(qp: QP) -> Matrix:
     return H
 
 
-def _limits(qp: QP) -> tuple[Vector, Vector]:
-    """Return the set Omega: lower and upper limits of the state."""
+def limits(qp: QP) -> tuple[Vector, Vector]:
+    """Return the set Omega: lower and upper limits of the state, (n + p + m,) each."""
     _, m, p = qp.sizes
     free = np.full(p, np.inf)
     lower = np.concatenate([qp.lb, -free, np.zeros(m)])

@@ -56,6 +56,14 @@ def test_a_second_paper(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "posture_obstacle.png").stat().st_size > 10_000
 
 
+def test_a_published_network(tmp_path: Path) -> None:
+    text = example(tmp_path, "faulty_joints.py", "0.05")
+    shares = re.search(r"bounds: (.*)", text)
+    assert shares is not None
+    assert 0.3 < max(map(float, shares[1].split())) < 0.62
+    assert number(r"(\S+) m at the end", text) < number(r"(\S+) m at first", text)
+
+
 def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
     text = example(tmp_path, "sweep_weight.py")
     drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]

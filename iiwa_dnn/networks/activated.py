@@ -1,0 +1,81 @@
+r"""A network whose clock runs by the size of its own rates: finite-, fixed-, predefined-time forms.
+
+Of a network :math:`\rho\,\dot s = F(s)` and an activation :math:`\Phi`,
+
+.. math::  \rho\,\dot s = \Phi(\|F(s)\|)\,\frac{F(s)}{\|F(s)\|} .
+
+The trajectories are those of the network, run through at another speed, so that the equilibria and
+the set from which it converges stay. Where :math:`\tfrac{d}{dt}\tfrac12\|s-s^*\|^2 \le
+-c\,\|F\|^2/\rho` and :math:`\|F\| \ge \kappa\,\|s-s^*\|` along the way, the error
+:math:`w = \kappa\,\|s - s^*\|` falls at least as :math:`\rho\,\dot w = -c\,\kappa^2\,\Phi(w)`: it
+settles within ``activation.settle_time(w) / (c kappa^2)`` [rho].
+
+Source: K. Garg, D. Panagou, "Fixed-time stable gradient flows: applications to continuous-time
+optimization", IEEE Transactions on Automatic Control 66 (2021), whose scaling by the norm is taken
+for every network here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn.networks.activations import Activation, SignBiPower
+from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, settings_of
+from iiwa_dnn.networks.dual import DualNetwork
+from iiwa_dnn.qp.layout import Triple, Vector
+from iiwa_dnn.qp.program import QP
+
+
+@dataclass(frozen=True)
+class ActivatedNetwork(Network):
+    """A network of the package or of one's own, with an activation of the norm of its rates.
+
+    Attributes:
+        network: The network; its own time constant is not used.
+        activation: Phi.
+    """
+
+    network: Network = field(default_factory=DualNetwork)
+    activation: Activation = field(default_factory=SignBiPower)
+
+    @property
+    def carries_x(self) -> bool:  # type: ignore[override]
+        """True if the network's state begins with x."""
+        return self.network.carries_x
+
+    def state_size(self, qp: QP) -> int:
+        """Count the network's states."""
+        return self.network.state_size(qp)
+
+    def flow(self, qp: QP) -> Flow:
+        """Make the right-hand side for this program; its derivative by differences."""
+        inner = self.network.flow(qp).rates
+
+        def rates(state: Vector) -> Vector:
+            result = inner(state)
+            size = np.linalg.norm(result)
+            if 0.0 < size < np.inf:
+                result = self.activation(np.array([size])) / size * result
+            return result
+
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
+
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
+        return self.network.read(qp, state, point)
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        """Bound the steps [rho] at this state; 0 without one: near rest none may be stable."""
+        if state is None:
+            return 0.0
+        size = float(np.linalg.norm(self.network.rates(qp, state)))
+        step = self.network.stable_step(qp, state)
+        return step * size / float(self.activation(np.array([size]))[0]) if size > 0.0 else step
+
+    def settings(self) -> dict[str, Any]:
+        """Return name and parameters, as values that JSON can hold."""
+        parts = {"network": self.network.settings(), "activation": settings_of(self.activation)}
+        return {**settings_of(self), **parts}

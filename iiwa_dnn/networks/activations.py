@@ -1,0 +1,156 @@
+r"""Activations of an error: odd, increasing functions that set how fast a network removes it.
+
+With :math:`\rho\,\dot e = -\Phi(e)` an error settles within :math:`\rho\int_0^{|e_0|} de/\Phi(e)`.
+Every bound below is that integral, or one that leaves out a part of :math:`\Phi`.
+
+Sources: Y. Zhang, D. Jiang, J. Wang, "A recurrent neural network for solving Sylvester equation
+with time-varying coefficients", IEEE Transactions on Neural Networks 13 (2002) (power-sigmoid);
+S. Li, S. Chen, B. Liu, "Accelerating a recurrent neural network to finite-time convergence for
+solving time-varying Sylvester equation by using a sign-bi-power activation function", Neural
+Processing Letters 37 (2013); A. Polyakov, "Nonlinear feedback design for fixed-time stabilization
+of linear control systems", IEEE Transactions on Automatic Control 57 (2012); J. D.
+Sanchez-Torres, E. N. Sanchez, A. G. Loukianov, "Predefined-time stability of dynamical systems
+with sliding modes", American Control Conference (2015).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.layout import Vector
+
+
+@dataclass(frozen=True)
+class Activation(ABC):
+    """An odd, increasing function of an error, entry by entry."""
+
+    def __post_init__(self) -> None:
+        """Check the parameters: above 0, `power` below 1 and `upper_power` above 1."""
+        for field in fields(self):
+            checks.positive(field.name, getattr(self, field.name))
+        if not getattr(self, "power", 0.5) < 1.0:
+            raise InvalidInputError("power", "must be below 1")
+        if not getattr(self, "upper_power", 2.0) > 1.0:
+            raise InvalidInputError("upper_power", "must be above 1")
+
+    @abstractmethod
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at errors of these sizes, (k,), at least 0."""
+
+    def __call__(self, error: Vector) -> Vector:
+        """Evaluate at errors (k,)."""
+        value: Vector = np.sign(error) * self.magnitude(np.abs(error))
+        return value
+
+    def settle_time(self, error: float) -> float:
+        """Bound the time [rho] in which an error of this size vanishes; inf where it never does."""
+        return np.inf
+
+
+@dataclass(frozen=True)
+class Linear(Activation):
+    """Phi(e) = e: the error decays like exp(-t / rho)."""
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Return the sizes, (k,)."""
+        return size
+
+
+@dataclass(frozen=True)
+class PowerSigmoid(Activation):
+    r"""A bipolar sigmoid for :math:`|e| < 1`, :math:`|e|^p` beyond: faster than linear both ways.
+
+    Attributes:
+        exponent: p, at least 1.
+        slope: Steepness xi of the sigmoid, normed to 1 at e = 1; its slope at 0 is above xi / 2.
+    """
+
+    exponent: float = 3.0
+    slope: float = 4.0
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (k,)."""
+        inside = np.tanh(0.5 * self.slope * np.minimum(size, 1.0)) / np.tanh(0.5 * self.slope)
+        value: Vector = np.where(size < 1.0, inside, size**self.exponent)
+        return value
+
+
+@dataclass(frozen=True)
+class FixedTime(Activation):
+    r"""Two powers, :math:`a\,|e|^r + b\,|e|^s` with r < 1 < s: settles in a fixed time.
+
+    Within :math:`1/(a(1-r)) + 1/(b(s-1))` from any start, and within
+    :math:`|e_0|^{1-r}/(a(1-r))` from :math:`e_0`.
+
+    Attributes:
+        power: r, above 0 and below 1.
+        upper_power: s, above 1.
+        low: a.
+        high: b.
+    """
+
+    power: float = 0.5
+    upper_power: float = 2.0
+    low: float = 1.0
+    high: float = 1.0
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (k,)."""
+        value: Vector = self.low * size**self.power + self.high * size**self.upper_power
+        return value
+
+    def settle_time(self, error: float) -> float:
+        """Return the smaller of the two bounds [rho]."""
+        below = 1.0 / (self.low * (1.0 - self.power))
+        beyond = 1.0 / (self.high * (self.upper_power - 1.0))
+        return float(min(below + beyond, below * abs(error) ** (1.0 - self.power)))
+
+
+@dataclass(frozen=True)
+class SignBiPower(Activation):
+    r"""Two powers, :math:`\tfrac12(|e|^r + |e|^{1/r})`: `FixedTime` with one parameter.
+
+    Published as finite-time, it settles in a fixed time too: at most 2 (1 + r) / (1 - r).
+
+    Attributes:
+        power: r, above 0 and below 1.
+    """
+
+    power: float = 0.5
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (k,)."""
+        value: Vector = 0.5 * (size**self.power + size ** (1.0 / self.power))
+        return value
+
+    def settle_time(self, error: float) -> float:
+        """Return the bound [rho] of the same two powers."""
+        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5).settle_time(error)
+
+
+@dataclass(frozen=True)
+class PredefinedTime(Activation):
+    r""":math:`\exp(|e|^p)\,|e|^{1-p}/(p\,T)`: settles in :math:`T(1 - e^{-|e_0|^p}) < T`.
+
+    Attributes:
+        time: T [rho].
+        power: p, above 0 and below 1.
+    """
+
+    time: float = 1.0
+    power: float = 0.5
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (k,); the exponent is cut at 300, lest it overflow."""
+        grown = np.exp(np.minimum(size**self.power, 300.0))
+        value: Vector = grown * size ** (1.0 - self.power) / (self.power * self.time)
+        return value
+
+    def settle_time(self, error: float) -> float:
+        """Return the settle time itself [rho]."""
+        return float(-self.time * np.expm1(-(abs(error) ** self.power)))

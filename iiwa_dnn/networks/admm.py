@@ -1,0 +1,84 @@
+"""A yardstick that is no network: OSQP's alternating direction method, some iterations a program.
+
+Each iteration is one backward substitution with a matrix that is factorised once a program.
+
+Source: B. Stellato, G. Banjac, P. Goulart, A. Bemporad, S. Boyd, "OSQP: an operator splitting
+solver for quadratic programs", Mathematical Programming Computation 12 (2020).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.layout import Sizes
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import Solution, Status
+
+
+class AdmmSolver(DNNSolver):
+    """OSQP, stopped after so many iterations and gone on with from there at the next program.
+
+    Its own iterates are the warm start: what is added to `warm_state`, [x | y | z], has no effect.
+
+    Attributes:
+        substeps: Iterations in each `advance`.
+    """
+
+    def __init__(self, substeps: int = 1, tol: float = 1e-9) -> None:
+        """Start from zero.
+
+        Raises:
+            InvalidInputError: `substeps` is below 1.
+        """
+        super().__init__(PrimalDualNetwork(), tol)
+        self.substeps = checks.integer("substeps", substeps, 1)
+        self._osqp: tuple[Sizes, Any] | None = None
+
+    def reset(self) -> None:
+        """Forget the warm start, OSQP's own iterates too."""
+        super().reset()
+        self._osqp = None
+
+    def advance(self, qp: QP, duration: float) -> Solution:
+        """Take the iterations for this program; the duration [s] is not used."""
+        n, m, p = sizes = qp.sizes
+        triangle = np.triu_indices(n)
+        rows = np.vstack([qp.A, qp.G, np.eye(n)])
+        lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
+        changes = {
+            "q": qp.q, "l": lower, "u": np.concatenate([qp.b, qp.h, qp.ub]),
+            "Px": qp.P[triangle][np.lexsort(triangle)], "Ax": rows.T.ravel(),
+        }  # fmt: skip
+        state = self._take(self.network, qp)
+        if self._osqp is None or self._osqp[0] != sizes:
+            self._osqp = (sizes, _prepared(n, len(rows), self.substeps))
+        solver = self._osqp[1]
+        solver.update(**changes)
+        result = solver.solve(raise_error=False)
+        state[:] = np.concatenate([result.x, result.y[: p + m]])
+        point = np.empty(2 * n + m + p)
+        residuals = self.network.read(qp, state, point)
+        status = Status.ADVANCED if np.isfinite(sum(residuals)) else Status.NOT_FINITE
+        if status is Status.ADVANCED:
+            self._kept.append((self.network, sizes, state))
+        return Solution(point, sizes, status, self.substeps, 0.0, *residuals)
+
+
+def _prepared(n: int, rows: int, iterations: int) -> Any:
+    """Set OSQP up for dense programs of n variables."""
+    import osqp
+    from scipy import sparse
+
+    solver = osqp.OSQP()
+    full = sparse.csc_matrix(np.ones((rows, n)))
+    solver.setup(
+        sparse.csc_matrix(np.triu(np.ones((n, n)) + n * np.eye(n))), np.zeros(n), full,
+        np.full(rows, -1.0), np.full(rows, 1.0), verbose=False, max_iter=iterations, scaling=0,
+        check_termination=0, adaptive_rho=False, polishing=False,
+    )  # fmt: skip
+    return solver

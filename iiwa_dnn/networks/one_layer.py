@@ -1,0 +1,68 @@
+r"""The one-layer projection network of a linear variational inequality.
+
+With H, c and :math:`\Omega` of `iiwa_dnn.networks.primal_dual` and :math:`u = [x; y; z]`,
+
+.. math::
+
+    \rho\,\dot u = \Pi_\Omega\bigl(u - \alpha (H u + c)\bigr) - u
+        \quad \Bigl( +\, \alpha\,\bigl[(H u + c) - (H v + c)\bigr],
+        \quad v = \Pi_\Omega(u - \alpha (H u + c)) \Bigr).
+
+The part in brackets, the correction, makes it converge from anywhere for every monotone H with
+:math:`\alpha\,\|H\| < 1`: :math:`\tfrac{d}{dt}\tfrac12\|u-u^*\|^2 \le
+-(1-\alpha\|H\|)\,\|v - u\|^2/\rho`. Without it this is the simplified primal-dual network, the
+paper's without its second multipliers of the bounds: it is proved for symmetric H, which that of a
+program with rows is not.
+
+Sources: Y. Xia, J. Wang, "A general projection neural network for solving monotone variational
+inequalities and related optimization problems", IEEE Transactions on Neural Networks 15 (2004);
+the correction is that of P. Tseng, "A modified forward-backward splitting method for maximal
+monotone mappings", SIAM Journal on Control and Optimization 38 (2000), as a flow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.base import Flow, difference_jacobian
+from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, coupling, limits
+from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.program import QP
+
+
+@dataclass(frozen=True)
+class OneLayerNetwork(PrimalDualNetwork):
+    """The one-layer network, with n + p + m states.
+
+    Attributes:
+        share: Share of alpha ||H||, above 0 and below 1.
+        corrected: True for the convergent form, two products with H for each evaluation.
+    """
+
+    share: float = 0.5
+    corrected: bool = True
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        super().__post_init__()
+        if not 0.0 < self.share < 1.0:
+            raise InvalidInputError("share", f"must be in (0, 1), not {self.share}")
+
+    def flow(self, qp: QP) -> Flow:
+        """Make the right-hand side for this program; its derivative by differences."""
+        H, (lower, upper) = coupling(qp), limits(qp)
+        constant = np.concatenate([qp.q, qp.b, qp.h])
+        alpha = self.share / float(np.linalg.norm(H, 2))
+
+        def rates(state: Vector) -> Vector:
+            step: Vector = np.clip(state - alpha * (H @ state + constant), lower, upper) - state
+            return step - alpha * (H @ step) if self.corrected else step
+
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        """Bound the steps [rho] that get nearer to every solution, of the corrected form."""
+        return 2.0 * (1.0 - self.share) / (1.0 + self.share) ** 2

@@ -1,0 +1,151 @@
+r"""Discrete-time forms: a network that is ahead of its program by one control period.
+
+A state at time t + tau is computed from the program, its rate and the states up to time t, so an
+answer is there the moment its program is known:
+
+.. math::  s_{k+1} = c\,\tau\,\dot s_k + \sum_i a_i\, s_{k-i}
+
+From a formula of order r with rates that are exact to order r - 1, the residual of an answer is of
+order :math:`\tau^r`. The more states a formula takes, the smaller is the largest gain
+:math:`h = \tau/\rho` with which it is stable (`Formula.limit`): order is paid for with gain.
+
+Sources: D. Guo, Z. Nie, L. Yan, "Novel discrete-time Zhang neural network for time-varying matrix
+inversion", IEEE Transactions on Systems, Man, and Cybernetics: Systems 47 (2017) (three steps); the
+coefficients of all were derived anew from Taylor's series, and are tested for order and stability.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.networks.base import Network
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.layout import Vector, check_size
+from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.solution import Solution, Status
+
+
+class Formula(NamedTuple):
+    """An explicit formula for the next state.
+
+    Attributes:
+        rate: Coefficient c of the rate.
+        past: Coefficients a of the states, the newest first.
+        order: Order of the residual that remains, in tau.
+        limit: Largest stable gain tau / rho of a linear error.
+    """
+
+    rate: float
+    past: tuple[float, ...]
+    order: int
+    limit: float
+
+
+EULER = Formula(1.0, (1.0,), 2, 2.0)
+TAYLOR3 = Formula(1.0, (1.5, -1.0, 0.5), 3, 1.0)
+"""Three steps: from (2 x[k+1] - 3 x[k] + 2 x[k-1] - x[k-2]) / (2 tau)."""
+FIFD = Formula(1.6, (0.6, 0.2, 0.2), 3, 1.0)
+"""Five-instant finite differences: from (5 x[k+1] - 3 x[k] - x[k-1] - x[k-2]) / (8 tau)."""
+TAYLOR4 = Formula(2.25, (-0.125, 0.75, 0.625, -0.25), 4, 0.28)
+"""Four steps: from (8 x[k+1] + x[k] - 6 x[k-1] - 5 x[k-2] + 2 x[k-3]) / (18 tau)."""
+TAYLOR5 = Formula(2.0, (5 / 24, 12 / 24, 6 / 24, 4 / 24, -3 / 24), 4, 1 / 3)
+"""Five steps: from (24 x[k+1] - 5 x[k] - 12 x[k-1] - 6 x[k-2] - 4 x[k-3] + 3 x[k-4]) / (48 tau)."""
+
+_BACKWARD = (
+    (1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3),
+)  # fmt: skip
+"""Backward differences of orders 1 to 3, the newest program first."""
+
+
+class TrackingSolver(DNNSolver):
+    """A network that is advanced by a formula, and gets its program's rate of change.
+
+    `advance` answers a program with the state that was computed from the programs before it. The
+    rate comes from backward differences of the last programs, or is given. `solve` is that of
+    `DNNSolver`.
+
+    Attributes:
+        formula: The formula.
+        substeps: Steps of the formula in each `advance`; the program moves on linearly meanwhile.
+        rate: Rate of change of the last program's `QP.data` [1/s], (size,), for the next call; it
+            may be set, where it depends on the answer.
+    """
+
+    def __init__(
+        self, network: Network, formula: Formula = EULER, substeps: int = 1, tol: float = 1e-9
+    ) -> None:
+        """Start from the network's initial state.
+
+        Raises:
+            InvalidInputError: `substeps` is below 1 or `tol` is not a positive number.
+        """
+        super().__init__(network, tol)
+        self.formula, self.substeps = formula, checks.integer("substeps", substeps, 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget states and programs: the next call starts from the network's initial state."""
+        super().reset()
+        self._states: list[Vector] = []
+        self._programs: list[Vector] = []
+        self.rate: Vector = np.zeros(0)
+
+    def advance(self, qp: QP, duration: float, rate: Vector | None = None) -> Solution:
+        """Move on by `duration` from the last program to this one, and answer it.
+
+        Args:
+            qp: The program at the end of the time.
+            duration: Time since the last program [s], the same in all calls.
+            rate: Rate of change of `QP.data` at this program [1/s], (size,), for the next call;
+                None takes backward differences.
+
+        Returns:
+            The point that the state stands for, with status ``ADVANCED`` and its residuals.
+        """
+        n, m, p = sizes = qp.sizes
+        network, point = self.network, np.empty(2 * n + m + p)
+        if self.warm_state(sizes) is None:
+            self.reset()
+        state, steps = self._take(network, qp), 0
+        if self._programs:
+            self._follow(state, QP.from_data(self._programs[0], sizes), duration)
+            steps = self.substeps
+        self._programs = [qp.data.copy(), *self._programs[: self.formula.order - 1]]
+        self.rate = self._difference(duration) if rate is None else rate
+        check_size("rate", self.rate, qp.data.size)
+        residuals = network.read(qp, state, point)
+        status = Status.NOT_FINITE
+        if np.isfinite(sum(residuals)):
+            status = Status.ADVANCED
+            self._kept.append((network, sizes, state))
+        return Solution(point, sizes, status, steps, duration / network.rho, *residuals)
+
+    def _difference(self, duration: float) -> Vector:
+        """Estimate the rate of change of the program [1/s] at the newest one."""
+        known = self._programs[: self.formula.order]
+        if len(known) < 2:
+            return np.zeros(known[0].size)
+        finite = np.nan_to_num(np.array(known), posinf=0.0, neginf=0.0)
+        rate: Vector = np.array(_BACKWARD[len(known) - 2]) @ finite / duration
+        return rate
+
+    def _follow(self, state: Vector, qp: QP, duration: float) -> None:
+        """Advance the state in place, from a program to the end of the time [s]."""
+        network, formula = self.network, self.formula
+        rate, step = self.rate, duration / self.substeps
+        moving = QP.from_data(network.rho * rate, qp.sizes)
+        for i in range(self.substeps):
+            now = QP.from_data(qp.data + i * step * rate, qp.sizes)
+            change = step / network.rho * network.moving_flow(now, moving).rates(state)
+            before, ready = state.copy(), len(self._states) >= len(formula.past) - 1
+            if ready:
+                state *= formula.past[0]
+                state += formula.rate * change
+                for share, old in zip(formula.past[1:], self._states, strict=False):
+                    state += share * old
+            else:
+                state += change
+            self._states = [before, *self._states[: max(0, len(formula.past) - 2)]]

@@ -1,0 +1,118 @@
+r"""The zeroing network: it follows a program that moves.
+
+The residual E(s, t) of the KKT conditions (`iiwa_dnn.networks.kkt_system`) is to vanish along
+:math:`\rho\,\dot E = -\Phi(E)`. With W its derivative in s and :math:`\partial_t E` the program's
+part of its rate, each evaluation solves one linear system:
+
+.. math::
+
+    \rho\,\dot s = -W^{-1}\Bigl((1 + (t/\rho)^{k})\,\Phi(E)
+        + \kappa \int E\,\tfrac{dt}{\rho} + \rho\,\partial_t E\Bigr)
+
+For a program that is known with its rate, E decays at the activation's rate though the program
+moves; no other network here does so. The integral rejects a constant disturbance of
+:math:`\dot E` and leaves :math:`\rho^2 c / \kappa` of a ramp c t. The power k makes the gain grow.
+
+Sources: Y. Zhang, S. S. Ge, "Design and analysis of a general recurrent neural network model for
+time-varying matrix inversion", IEEE Transactions on Neural Networks 16 (2005); L. Jin, Y. Zhang,
+S. Li, "Integration-enhanced Zhang neural network for real-time-varying matrix inversion in the
+presence of various kinds of noises", IEEE Transactions on Neural Networks and Learning Systems 27
+(2016); Z. Zhang et al., "A varying-parameter convergent-differential neural network for solving
+joint-angular-drift problems of redundant robot manipulators", IEEE/ASME Transactions on
+Mechatronics 23 (2018).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import NoSolutionError
+from iiwa_dnn.networks.activations import Activation, Linear
+from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point, settings_of
+from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
+from iiwa_dnn.qp.layout import Triple, Vector, check_size
+from iiwa_dnn.qp.program import QP
+
+
+@dataclass(frozen=True)
+class ZeroingNetwork(Network):
+    """The zeroing network, with n + p + m states, and as many again with the integral.
+
+    Attributes:
+        rho: Time constant [s]; the literature's gain gamma is 1 / rho.
+        activation: Phi.
+        form: ``"projected"`` or ``"smooth"`` complementarity; the latter has 2 n states more.
+        integral: kappa, the gain of the integral in units of 1 / rho^2; 0 for none.
+        growth: k, the power of the growing gain; 0 for a constant gain.
+    """
+
+    rho: float = 1e-2
+    activation: Activation = field(default_factory=Linear)
+    form: Form = "projected"
+    integral: float = 0.0
+    growth: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        super().__post_init__()
+        checks.one_of("form", self.form, FORMS)
+        checks.not_negative("integral", self.integral)
+        checks.not_negative("growth", self.growth)
+
+    def state_size(self, qp: QP) -> int:
+        """Count the states: unknowns, their integrals, and a clock for the growing gain."""
+        return system_size(qp, self.form) * (1 + (self.integral > 0.0)) + (self.growth > 0.0)
+
+    def flow(self, qp: QP) -> Flow:
+        """Make the right-hand side for a program that stands still."""
+        return self._flow(KktSystem(qp, self.form))
+
+    def moving_flow(self, qp: QP, rate: QP) -> Flow:
+        """Make the right-hand side for a program and its rate of change [1/rho].
+
+        Its rates raise NoSolutionError where the KKT conditions' derivative is singular.
+        """
+        return self._flow(KktSystem(qp, self.form, rate))
+
+    def _flow(self, system: KktSystem) -> Flow:
+        size = system.size
+
+        def rates(state: Vector) -> Vector:
+            error, drift = system.evaluate(state[:size])
+            wanted = self.activation(error)
+            if self.growth:
+                wanted = (1.0 + abs(state[-1]) ** self.growth) * wanted
+            wanted += drift
+            result = np.ones(state.size)
+            if self.integral:
+                wanted += self.integral * state[size : 2 * size]
+                result[size : 2 * size] = error
+            try:
+                result[:size] = -np.linalg.solve(system.matrix, wanted)
+            except np.linalg.LinAlgError:
+                raise NoSolutionError("the derivative of the KKT conditions is singular") from None
+            return result
+
+        if self.stable_step(system.qp) and not self.integral:
+            # Exact at rest; elsewhere it makes of a long implicit step Newton's.
+            return Flow(rates, lambda state: -np.eye(size))
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
+
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
+        check_size("state", state, self.state_size(qp))
+        return read_point(qp, state, point, state.size)
+
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known."""
+        if self.growth or not isinstance(self.activation, Linear):
+            return 0.0
+        return min(2.0, 1.0 / self.integral) if self.integral else 2.0
+
+    def settings(self) -> dict[str, Any]:
+        """Return name and parameters, as values that JSON can hold."""
+        return {**settings_of(self), "activation": settings_of(self.activation)}

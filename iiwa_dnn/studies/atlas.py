@@ -1,0 +1,308 @@
+"""The atlas: networks, schemes and disturbances compared at equal compute, paired by seed.
+
+Every network drives the paper's arm along a heart, in a loop that gives it so many evaluations a
+control period: right-hand sides, or linear systems where it solves them. Each one's time constant
+is as short as its discretisation is stable with, so that none is slowed down by a choice of ours.
+A network of one's own is one line in `NETWORKS`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from iiwa_dnn.control.plan import Plan
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
+from iiwa_dnn.networks import DualNetwork, Network, PrimalDualNetwork, ProjectionNetwork
+from iiwa_dnn.networks.activated import ActivatedNetwork
+from iiwa_dnn.networks.activations import (
+    FixedTime,
+    PowerSigmoid,
+    PredefinedTime,
+    SignBiPower,
+)
+from iiwa_dnn.networks.admm import AdmmSolver
+from iiwa_dnn.networks.gradient import GradientNetwork
+from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler
+from iiwa_dnn.networks.one_layer import OneLayerNetwork
+from iiwa_dnn.networks.simplified_dual import SimplifiedDualNetwork
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.networks.tracking import (
+    EULER,
+    FIFD,
+    TAYLOR3,
+    TAYLOR4,
+    TAYLOR5,
+    Formula,
+    TrackingSolver,
+)
+from iiwa_dnn.networks.zeroing import ZeroingNetwork
+from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.references import Heart
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.atlas_schemes import SCHEMES
+from iiwa_dnn.studies.runs import paper_robot
+from iiwa_dnn.studies.sweeps import Outcome
+
+DT, DURATION, PERIOD = 2e-3, 1.0, 2.0
+"""Control period, length of a run and time of a whole heart [s]."""
+
+DISTURBANCES = ("none", "constant", "ramp", "sinusoid", "white", "measurement", "parameter")
+"""The first five but none disturb the network's rates, the others the loop around it:
+
+constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
+the states that the seed draws; white, 0.01 rad/s a control period (the paper's); measurement,
+1e-4 rad on the joint positions; parameter, links 5 % longer or shorter than the controller's model,
+the tool's pose being measured.
+"""
+
+
+@dataclass(frozen=True)
+class Paced(ExplicitEuler):
+    """Explicit Euler by `substeps` steps, each as long as the network is stable with.
+
+    Attributes:
+        base: Network whose stable step is taken; None takes that of the network itself.
+    """
+
+    base: Network | None = None
+
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
+        """Advance `state` (size,) in place, whatever the duration; returns the steps taken."""
+        step, count = SAFETY * (self.base or network).stable_step(qp, state), self.substeps or 1
+        rates = network.flow(qp).rates
+        for _ in range(count):
+            state += step * rates(state)
+        return count
+
+
+@dataclass(frozen=True)
+class CutOff(ImplicitEuler):
+    """Implicit Euler towards rest, cut off after `max_steps` linear systems."""
+
+    def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
+        """Advance `state` (size,) in place; returns the linear systems solved."""
+        n, m, p = qp.sizes
+        return self.settle(network, qp, state, np.empty(2 * n + m + p), 1e-12)[0]
+
+
+class Entry(NamedTuple):
+    """A network of the atlas.
+
+    Attributes:
+        make: Makes its solver from the evaluations a control period.
+        systems: Whether an evaluation solves a linear system.
+    """
+
+    make: Callable[[int], DNNSolver]
+    systems: bool = False
+
+
+def still(network: Network, systems: bool = False) -> Entry:
+    """Return the entry of a network for a program that stands still."""
+    return Entry(lambda count: DNNSolver(network, follower=Paced(count)), systems)
+
+
+def activated(network: Network, activation: Any) -> Entry:
+    """Return the entry of an activated network, with the steps of the network itself."""
+    whole = ActivatedNetwork(network=network, activation=activation)
+    systems = isinstance(network, SimplifiedDualNetwork)
+    return Entry(lambda count: DNNSolver(whole, follower=Paced(count, base=network)), systems)
+
+
+def zeroing(gain: float, formula: Formula = EULER, **options: Any) -> Entry:
+    """Return the entry of a zeroing network with a gain tau / rho."""
+
+    def make(count: int) -> DNNSolver:
+        network = ZeroingNetwork(rho=DT / count / gain, **options)
+        return TrackingSolver(network, formula, count)
+
+    return Entry(make, systems=True)
+
+
+NETWORKS: dict[str, Entry] = {
+    "projection (the paper's)": still(ProjectionNetwork()),
+    "projection, bounds by multipliers only": still(ProjectionNetwork(primal_projection=False)),
+    "one-layer": still(OneLayerNetwork(corrected=False)),
+    "one-layer, corrected": still(OneLayerNetwork()),
+    "dual": still(DualNetwork()),
+    "simplified dual": still(SimplifiedDualNetwork(), systems=True),
+    "primal-dual": still(PrimalDualNetwork()),
+    "gradient": still(GradientNetwork()),
+    "dual, finite time": activated(DualNetwork(), SignBiPower()),
+    "dual, fixed time": activated(DualNetwork(), FixedTime()),
+    "primal-dual, fixed time": activated(PrimalDualNetwork(), FixedTime()),
+    "simplified dual, predefined time": activated(SimplifiedDualNetwork(), PredefinedTime()),
+    "zeroing, Euler": zeroing(1.0),
+    "zeroing, Taylor 3": zeroing(0.24, TAYLOR3),
+    "zeroing, FIFD": zeroing(0.59, FIFD),
+    "zeroing, Taylor 4": zeroing(0.074, TAYLOR4),
+    "zeroing, Taylor 5": zeroing(0.16, TAYLOR5),
+    "zeroing, power-sigmoid": zeroing(0.3, activation=PowerSigmoid()),
+    "zeroing, sign-bi-power": zeroing(0.3, activation=SignBiPower()),
+    "zeroing, fixed time": zeroing(0.3, activation=FixedTime()),
+    "zeroing, predefined time": zeroing(0.1, activation=PredefinedTime()),
+    "zeroing, noise-tolerant": zeroing(0.5, integral=0.25),
+    "zeroing, growing gain": zeroing(0.05, growth=0.5),
+    "zeroing, smooth": zeroing(1.0, form="smooth"),
+    "projection, implicit Euler": Entry(
+        lambda count: DNNSolver(
+            ProjectionNetwork(primal_projection=False), follower=CutOff(max_steps=count)
+        ),
+        systems=True,
+    ),
+    "ADMM (OSQP)": Entry(AdmmSolver, systems=True),
+}
+"""Networks of the atlas by name, and the yardstick."""
+
+MEASURES = ("rms_error_m", "max_error_m", "rms_residual", "advance_us")
+
+
+def cell(
+    network: str, scheme: str, disturbance: str, evaluations: int, seeds: int
+) -> dict[str, Any]:
+    """Return the settings of one cell: all seeds of a combination, one where there is no chance."""
+    names = {"network": network, "scheme": scheme, "disturbance": disturbance}
+    return {**names, "evaluations": evaluations, "seeds": 1 if disturbance == "none" else seeds}
+
+
+def cells(
+    seeds: int, others: int, evaluations: Sequence[int], schemes: Sequence[str] = tuple(SCHEMES)
+) -> list[dict[str, Any]]:
+    """List the cells: every network with every scheme and disturbance, and the budgets.
+
+    Args:
+        seeds: Runs of each cell with chance in it, with the first scheme.
+        others: Runs of each cell with chance in it, with another scheme or budget.
+        evaluations: Evaluations a control period: all of them with the first scheme, undisturbed
+            and with white noise; the middle one with everything.
+        schemes: Names of the schemes.
+
+    Raises:
+        InvalidInputError: A scheme is not one of `SCHEMES`, or there is none.
+    """
+    for name in schemes or [""]:
+        if name not in SCHEMES:
+            raise InvalidInputError("schemes", f"must be of {', '.join(SCHEMES)}, not {name!r}")
+    middle = evaluations[len(evaluations) // 2]
+    whole = [
+        cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
+        for scheme in schemes
+        for network in NETWORKS
+        for kind in DISTURBANCES
+    ]
+    budgets = [
+        cell(network, schemes[0], kind, count, others)
+        for network in NETWORKS
+        for kind in ("none", "white")
+        for count in evaluations
+        if count != middle
+    ]
+    first = len(NETWORKS) * len(DISTURBANCES)
+    return whole[:first] + budgets + whole[first:]
+
+
+def measure(settings: Mapping[str, Any]) -> Outcome:
+    """Carry out the runs of one cell.
+
+    Args:
+        settings: One of `cells`.
+
+    Returns:
+        For each of `MEASURES` a list with a number for each seed, None where the run failed: the
+        tool's position error over the second half of the run [m], its largest value, the KKT
+        residual of the answers over that half, and the time of an answer [us]; ``failures``, the
+        reasons.
+    """
+    runs, failures = [], []
+    for seed in range(settings["seeds"]):
+        try:
+            with np.errstate(all="ignore"):  # a network that diverges ends its run
+                runs.append(_run(settings, seed))
+        except (IiwaDnnError, np.linalg.LinAlgError) as error:
+            runs.append(dict.fromkeys(MEASURES))
+            failures.append(str(error))
+    values: dict[str, Any] = {name: [run[name] for run in runs] for name in MEASURES}
+    return Outcome({**values, "failures": sorted(set(failures))})
+
+
+def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
+    """Drive the arm once."""
+    kind, rng = settings["disturbance"], np.random.default_rng(seed)
+    robot, scheme = paper_robot(), SCHEMES[settings["scheme"]]()
+    solver = NETWORKS[settings["network"]].make(settings["evaluations"])
+    arm = Kinematics(_other_arm(robot, rng) if kind == "parameter" else robot)
+    q = np.array(paper.START)
+    plan = Plan(robot, scheme, solver, DT, False, q)
+    steps = round(DURATION / DT)
+    n, m, p = plan.sizes
+    data = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), plan.sizes)
+    heart = Heart(period=PERIOD).anchored(Configuration(arm.robot, q))
+    targets = heart.sample(DT * np.arange(steps)).data
+    errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
+    noise, point = _noise(kind, rng, steps), np.empty(2 * n + m + p)
+    width = q.size if solver.network.carries_x else 0
+    for k in range(steps):
+        seen = q + (1e-4 * rng.standard_normal(q.size) if kind == "measurement" else 0.0)
+        arm.update(q)
+        tool, target = arm.placements[arm.frame_ids[0]], targets[k].copy()
+        errors[k] = np.linalg.norm(target[:3] - tool[9:])
+        if not errors[k] < 1.0:
+            raise IiwaDnnError(f"the tool is {errors[k]:.2g} m away")
+        plan.update(seen)
+        if kind == "parameter":
+            _as_measured(target, tool, plan.kinematics.placements[robot.tip_id])
+        plan.build(data.data, target, k * DT)
+        began = time.perf_counter()
+        answer = solver.advance(data, DT)
+        spent += time.perf_counter() - began
+        residuals[k], x = answer.residuals.largest, answer.x
+        state = solver.warm_state(data.sizes)
+        if state is None:
+            raise IiwaDnnError("the state is not finite")
+        if noise is not None:  # the network's rates have it too, before it is read
+            state[: width or state.size] += noise[k, : width or state.size]
+            residuals[k] = max(solver.network.read(data, state, point))
+            x = point
+        plan.last[:] = x[: q.size]
+        q = q + DT * plan.last
+    half = slice(steps // 2, None)
+    return {
+        "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),
+        "max_error_m": float(errors[half].max()),
+        "rms_residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
+        "advance_us": 1e6 * spent / steps,
+    }
+
+
+def _noise(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
+    """Draw what is added to the states after each step, (steps, 100)."""
+    direction, t = rng.standard_normal(100) / np.sqrt(7.0), DT * np.arange(steps)
+    shapes = {"constant": np.ones(steps), "ramp": t, "sinusoid": np.sin(10.0 * np.pi * t)}
+    if kind in shapes:
+        return DT * np.outer(shapes[kind], direction)
+    return 0.01 * rng.standard_normal((steps, 100)) if kind == "white" else None
+
+
+def _other_arm(robot: Robot, rng: np.random.Generator) -> Robot:
+    """Return an arm whose links are 5 % longer or shorter."""
+    model = pin.Model(robot.model)
+    for i, sign in enumerate(rng.choice([-1.0, 1.0], robot.dof)):
+        place = model.jointPlacements[i + 1]
+        place.translation = (1.0 + 0.05 * sign) * place.translation
+        model.jointPlacements[i + 1] = place
+    return replace(robot, model=model)
+
+
+def _as_measured(target: Vector, tool: Vector, believed: Vector) -> None:
+    """Move a target (18,) so that the model's error from it is the one that was measured."""
+    target[:3] += believed[9:] - tool[9:]
+    turn = tool[:9].reshape(3, 3) @ believed[:9].reshape(3, 3).T  # both by columns
+    target[3:12] = (target[3:12].reshape(3, 3) @ turn).ravel()

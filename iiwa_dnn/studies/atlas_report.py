@@ -1,0 +1,213 @@
+"""The atlas's tables, verdicts, figure and report, out of the numbers of its cells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.files import write_text
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
+from iiwa_dnn.results.report import markdown_table
+from iiwa_dnn.studies.atlas import DISTURBANCES, DT, MEASURES, NETWORKS
+from iiwa_dnn.studies.statistics import paired_difference
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Row = Mapping[str, Any]
+PAPER = "projection (the paper's)"
+
+
+class Claim(NamedTuple):
+    """A claim that one network is better than another, as papers make it.
+
+    Attributes:
+        text: The claim.
+        better: Name of the network that should be better.
+        worse: Name of the other.
+        disturbance: Disturbance under which.
+        measure: Measure by which.
+    """
+
+    text: str
+    better: str
+    worse: str
+    disturbance: str = "none"
+    measure: str = "rms_residual"
+
+
+CLAIMS = (
+    Claim("A zeroing network follows where a gradient network lags", "zeroing, Euler", "gradient"),
+    Claim("Three Taylor steps are more exact than Euler", "zeroing, Taylor 3", "zeroing, Euler"),
+    Claim("Four Taylor steps are more exact than three", "zeroing, Taylor 4", "zeroing, Taylor 3"),
+    Claim("The FIFD formula is more exact than Euler", "zeroing, FIFD", "zeroing, Euler"),
+    Claim(
+        "A sign-bi-power activation is more exact than a linear one",
+        "zeroing, sign-bi-power", "zeroing, Euler",
+    ),
+    Claim(
+        "A power-sigmoid activation is more exact than a linear one",
+        "zeroing, power-sigmoid", "zeroing, Euler",
+    ),
+    Claim(
+        "A predefined-time activation is more exact than a linear one",
+        "zeroing, predefined time", "zeroing, Euler",
+    ),
+    Claim("A growing gain is more exact", "zeroing, growing gain", "zeroing, Euler"),
+    Claim(
+        "The integral rejects a constant disturbance",
+        "zeroing, noise-tolerant", "zeroing, Euler", "constant",
+    ),
+    Claim("The integral bounds a ramp", "zeroing, noise-tolerant", "zeroing, Euler", "ramp"),
+    Claim("A finite-time dual network beats the dual", "dual, finite time", "dual"),
+    Claim("A fixed-time dual network beats the dual", "dual, fixed time", "dual"),
+    Claim("A dual network needs fewer states and is no worse", "simplified dual", "dual"),
+    Claim("The paper's network beats the dual", PAPER, "dual", measure="rms_error_m"),
+    Claim("The paper's network beats the primal-dual", PAPER, "primal-dual", "none", "rms_error_m"),
+    Claim("A network beats a plain numerical method", PAPER, "ADMM (OSQP)", "none", "rms_error_m"),
+)  # fmt: skip
+
+
+def tabulate(cells: Sequence[Row], results: Sequence[Row]) -> list[dict[str, Any]]:
+    """Lay out a row for each cell: its settings, its runs' numbers, and means of those completed.
+
+    Args:
+        cells: `iiwa_dnn.studies.atlas.cells`.
+        results: Their numbers, in that order.
+    """
+    rows = []
+    for cell, result in zip(cells, results, strict=True):
+        means = {}
+        for name in MEASURES:
+            known = [value for value in result[name] if value is not None]
+            means[name] = float(np.mean(known)) if known else None
+        lost = sum(value is None for value in result["rms_error_m"])
+        rows.append({**cell, "lost": lost, "mean": means, **result})
+    return rows
+
+
+def judge(rows: Sequence[Row], claim: Claim) -> dict[str, Any]:
+    """Judge a claim by pairs of runs with the first scheme at the middle budget.
+
+    Returns:
+        The claim, both means and the verdict: ``holds`` or ``does not hold`` where the whole
+        interval of the difference says so or a network lost runs, else ``undecided``.
+    """
+    sides = [find(rows, name, claim.disturbance) for name in (claim.better, claim.worse)]
+    values = [side[claim.measure] for side in sides]
+    better, worse = (
+        float(np.mean([np.inf if value is None else value for value in side])) for side in values
+    )
+    sign = 0 if better == worse else int(np.sign(better - worse))
+    if np.isfinite([better, worse]).all() and len(values[0]) > 1:
+        sign = paired_difference(values[0], values[1]).sign
+    verdict = {-1: "holds", 0: "undecided", 1: "does not hold"}[sign]
+    known = [value if np.isfinite(value) else None for value in (better, worse)]
+    return {**claim._asdict(), "values": known, "verdict": verdict}
+
+
+def find(rows: Sequence[Row], network: str, disturbance: str, scheme: str = "") -> Row:
+    """Find the row of a network at the middle budget; the first scheme by default."""
+    first = rows[0]
+    wanted = (network, disturbance, scheme or first["scheme"], first["evaluations"])
+    names = ("network", "disturbance", "scheme", "evaluations")
+    return next(row for row in rows if tuple(row[name] for name in names) == wanted)
+
+
+def figure(rows: Sequence[Row]) -> Figure:
+    """Draw error against evaluations, a curve a network: undisturbed, and with white noise."""
+    drawn = new_figure(DOUBLE_COLUMN, 4.6)
+    axes = drawn.subplots(1, 2, sharey=True)
+    scheme, names = rows[0]["scheme"], list(NETWORKS)
+    for axis, kind in zip(axes, ("none", "white"), strict=True):
+        for i, name in enumerate(names):
+            found = [
+                (row["evaluations"], row["mean"]["rms_error_m"])
+                for row in rows
+                if (row["network"], row["scheme"], row["disturbance"]) == (name, scheme, kind)
+                and row["mean"]["rms_error_m"] is not None
+            ]
+            if found:
+                style = "-" if NETWORKS[name].systems else "--"
+                colour = f"C{i % 10}" if name != PAPER else "black"
+                marker = "osv^D*"[i // 10 + 3 * NETWORKS[name].systems]
+                axis.loglog(
+                    *zip(*sorted(found), strict=True), style, color=colour, marker=marker,
+                    markersize=3, linewidth=2.0 if name == PAPER else 0.9, label=name,
+                )  # fmt: skip
+        axis.set_title(f"disturbance: {kind}")
+        axis.set_xlabel("evaluations a control period")
+    axes[0].set_ylabel("RMS position error [m]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    drawn.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=5.5)
+    return drawn
+
+
+def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> str:
+    """Write ``report.md`` and, where asked for, the figure; returns the text."""
+    first, middle = rows[0]["scheme"], rows[0]["evaluations"]
+    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+    league = sorted(NETWORKS, key=lambda name: _rank(rows, name))
+    kinds = markdown_table(
+        ("network", "evaluation", *DISTURBANCES),
+        ([name, "system" if NETWORKS[name].systems else "product",
+          *(_shown(find(rows, name, kind)) for kind in DISTURBANCES)] for name in league),
+    )  # fmt: skip
+    others = markdown_table(
+        ("network", *schemes),
+        ([name, *(_shown(find(rows, name, "none", s)) for s in schemes)] for name in league),
+    )
+    everywhere = markdown_table(
+        ("network", "combinations", "with a failed run", "median", "worst"),
+        (_summed(rows, name) for name in league),
+    )
+    verdicts = markdown_table(
+        ("claim", "disturbance", "measure", "ours", "beside", "verdict"),
+        (
+            [v["text"], v["disturbance"], v["measure"], *map(_number, v["values"]), v["verdict"]]
+            for v in (judge(rows, claim) for claim in CLAIMS)
+        ),
+    )
+    parts = ["# Atlas of neurodynamic control", head]
+    if plots:
+        write_figures({"atlas": partial(figure, rows)}, folder)
+        parts.append("![Error against evaluations; dashed: products, solid: systems](atlas.png)")
+    parts += [
+        f"## League: RMS position error [m], {first}, {middle} evaluations a period of {DT:g} s",
+        kinds, "A number in brackets counts runs that failed.",
+        "## Schemes: RMS position error [m], undisturbed", others,
+        "## Every scheme with every disturbance: RMS position error [m]",
+        everywhere, "## Verdicts", verdicts,
+    ]  # fmt: skip
+    text = "\n\n".join(parts) + "\n"
+    write_text(folder / "report.md", text)
+    return text
+
+
+def _rank(rows: Sequence[Row], name: str) -> float:
+    """Mean logarithm of the error over the disturbances; inf where a run was lost."""
+    found = [find(rows, name, kind) for kind in DISTURBANCES]
+    if any(row["lost"] for row in found):
+        return np.inf
+    return float(np.mean([np.log(row["mean"]["rms_error_m"]) for row in found]))
+
+
+def _summed(rows: Sequence[Row], name: str) -> list[str]:
+    """Sum a network up over all schemes and disturbances at the middle budget."""
+    own = [r for r in rows if (r["network"], r["evaluations"]) == (name, rows[0]["evaluations"])]
+    errors = [r["mean"]["rms_error_m"] for r in own if not r["lost"]]
+    ends = [_number(float(of(errors)) if errors else None) for of in (np.median, np.max)]
+    return [name, str(len(own)), str(len(own) - len(errors)), *ends]
+
+
+def _shown(row: Row) -> str:
+    lost = f" ({row['lost']} of {row['seeds']})" if row["lost"] else ""
+    return _number(row["mean"]["rms_error_m"]) + lost
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2e}"

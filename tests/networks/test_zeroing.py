@@ -1,0 +1,275 @@
+"""The zeroing network's theorems: rate, settle time, noise, moving programs, discrete formulas."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import iiwa_dnn
+from helpers_moving import MovingProgram
+from helpers_qp import known_qp
+from iiwa_dnn import QP, DNNSolver, ExplicitEuler, InvalidInputError, NoSolutionError
+from iiwa_dnn.networks import ZeroingNetwork
+from iiwa_dnn.networks.activations import (
+    Activation,
+    FixedTime,
+    Linear,
+    PowerSigmoid,
+    PredefinedTime,
+    SignBiPower,
+)
+from iiwa_dnn.networks.kkt_system import KktSystem
+from iiwa_dnn.networks.tracking import EULER, FIFD, TAYLOR3, TAYLOR4, TAYLOR5, TrackingSolver
+
+SETTLING = [
+    SignBiPower(), SignBiPower(0.3), FixedTime(), FixedTime(0.4, 1.7, 2.0, 0.5),
+    PredefinedTime(), PredefinedTime(3.0, 0.3),
+]  # fmt: skip
+FORMULAS = [EULER, TAYLOR3, FIFD, TAYLOR4, TAYLOR5]
+# Equality rows only: E is linear in the state, and the theorems hold entry by entry.
+LINEAR = QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
+
+
+def error_of(qp: QP, state: np.ndarray) -> np.ndarray:
+    """The KKT residual of equality rows, written out."""
+    x, y = state[: qp.q.size], state[qp.q.size :][: qp.b.size]
+    return np.concatenate([qp.P @ x + qp.q + qp.A.T @ y, qp.A @ x - qp.b])
+
+
+def time_to_settle(network: ZeroingNetwork, qp: QP, start: np.ndarray) -> float:
+    """Time [rho] until the error is 1e-7, by midpoint steps that take 3 % of the error away."""
+    rates, state, time = network.flow(qp).rates, start, 0.0
+    while (error := np.abs(error_of(qp, state)).max()) > 1e-7:
+        step = 0.03 * error / network.activation(np.array([error]))[0]
+        state = state + step * rates(state + 0.5 * step * rates(state))
+        time += step
+    return time
+
+
+def integrate(network: ZeroingNetwork, qp: QP, start: np.ndarray, time: float) -> np.ndarray:
+    rates = network.flow(qp).rates
+    options = {"rtol": 1e-9, "atol": 1e-13, "method": "LSODA"}
+    return solve_ivp(lambda t, s: rates(s), (0, time), start, **options).y[:, -1]
+
+
+@pytest.mark.parametrize("activation", [*SETTLING, Linear(), PowerSigmoid()], ids=repr)
+def test_activations_are_odd_and_increasing(activation: Activation) -> None:
+    e = np.linspace(-3.0, 3.0, 601)
+    value = activation(e)
+    np.testing.assert_allclose(value, -value[::-1], atol=1e-12)
+    assert (np.diff(value) > 0.0).all()
+    assert value[300] == 0.0
+    assert (activation.settle_time(1.0) < np.inf) == (activation in SETTLING)
+
+
+def test_the_power_sigmoid_is_faster_than_linear_everywhere() -> None:
+    e = np.concatenate([np.linspace(1e-6, 1.0, 100)[:-1], np.linspace(1.0 + 1e-9, 9.0, 100)])
+    assert (PowerSigmoid()(e) > e).all()
+
+
+@pytest.mark.parametrize("activation", SETTLING, ids=repr)
+def test_settle_time_is_the_integral_of_one_over_phi_or_above(activation: Activation) -> None:
+    # The substitution e = v^k with k = 1 / (1 - r) removes the singularity at 0.
+    for start in (1e-3, 0.3, 1.0, 4.0):
+        v = np.linspace(0.0, start**0.25, 20001)
+        v = 0.5 * (v[1:] + v[:-1])
+        exact = (4.0 * v**3 / activation(v**4)).sum() * start**0.25 / v.size
+        assert exact <= 1.002 * activation.settle_time(start)
+        if isinstance(activation, PredefinedTime):
+            assert exact == pytest.approx(activation.settle_time(start), rel=2e-3)
+            assert activation.settle_time(1e9) <= activation.time
+
+
+@pytest.mark.parametrize("activation", SETTLING, ids=repr)
+def test_settles_below_its_bound_from_random_starts(activation: Activation) -> None:
+    rng, network = np.random.default_rng(0), ZeroingNetwork(activation=activation)
+    for _ in range(3):
+        start = 10.0 ** rng.uniform(-2, 1) * rng.standard_normal(4)
+        largest = np.abs(error_of(LINEAR, start)).max()
+        assert time_to_settle(network, LINEAR, start) <= 1.001 * activation.settle_time(largest)
+
+
+@pytest.mark.parametrize("activation", [Linear(), PowerSigmoid()], ids=repr)
+def test_decays_at_the_rate_gamma(activation: Activation) -> None:
+    start = np.array([0.3, -0.2, 0.1, 0.4])
+    network = ZeroingNetwork(activation=activation)
+    before = error_of(LINEAR, start)
+    after = error_of(LINEAR, integrate(network, LINEAR, start, 2.0))
+    if isinstance(activation, Linear):
+        np.testing.assert_allclose(after, before * np.exp(-2.0), rtol=1e-5)
+    else:
+        assert (np.abs(after) < np.abs(before) * np.exp(-2.0)).all()
+
+
+@pytest.mark.parametrize("form", ["projected", "smooth"])
+def test_derivatives_and_drift_by_finite_differences(form: str) -> None:
+    rng = np.random.default_rng(1)
+    for case in range(10):
+        (qp, _), (other, _) = (known_qp(rng, 5, 2, case % 5, inequalities=3) for _ in range(2))
+        qp.lb[0], other.lb[0] = -np.inf, -np.inf
+        move = np.nan_to_num(other.data, neginf=0.0) - np.nan_to_num(qp.data, neginf=0.0)
+        rate = QP.from_data(move, qp.sizes)
+        system = KktSystem(qp, form, rate)
+        state = rng.standard_normal(system.size)
+        _, drift = system.evaluate(state)
+        matrix, step = system.matrix.copy(), 1e-6
+        for i, unit in enumerate(np.eye(system.size)):
+            ahead, behind = (system.evaluate(state + s * unit)[0] for s in (step, -step))
+            np.testing.assert_allclose(matrix[:, i], (ahead - behind) / (2 * step), atol=1e-5)
+        ahead, behind = (
+            KktSystem(QP.from_data(qp.data + s * move, qp.sizes), form).evaluate(state)[0]
+            for s in (step, -step)
+        )
+        np.testing.assert_allclose(drift, (ahead - behind) / (2 * step), atol=1e-5)
+
+
+@pytest.mark.parametrize("form", ["projected", "smooth"])
+def test_settles_with_bounds_and_inequalities(form: str) -> None:
+    rng = np.random.default_rng(2)
+    for case in range(5):
+        qp, x = known_qp(rng, 6, 2, case, inequalities=3)
+        # The projected form is Newton's method on a system with kinks: it needs a start nearby.
+        network, known = ZeroingNetwork(form=form), DNNSolver().solve(qp)
+        state = np.zeros(network.state_size(qp))
+        if form == "projected":
+            state += known.point[: state.size] + 1e-3 * rng.standard_normal(state.size)
+        ExplicitEuler(substeps=200).advance(network, qp, state, 100.0)
+        point = np.empty(known.point.size)
+        assert max(network.read(qp, state, point)) < 1e-5
+        assert np.abs(point[: x.size] - x).max() < 1e-3
+
+
+def disturbed_error(integral: float, noise: object, time: float) -> np.ndarray:
+    """Largest error at the end, where W ds/dt gets a noise of the time [rho]."""
+    network = ZeroingNetwork(integral=integral)
+    matrix = np.block([[LINEAR.P, LINEAR.A.T], [LINEAR.A, np.zeros((1, 1))]])
+    rates = network.flow(LINEAR).rates
+
+    def disturbed(t: float, s: np.ndarray) -> np.ndarray:
+        result = rates(s)
+        result[:4] += np.linalg.solve(matrix, noise(t))
+        return result
+
+    start = np.zeros(network.state_size(LINEAR))
+    end = solve_ivp(disturbed, (0, time), start, rtol=1e-9, atol=1e-12).y[:, -1]
+    return error_of(LINEAR, end)
+
+
+def test_the_integral_rejects_constant_noise_and_bounds_that_of_a_ramp() -> None:
+    direction = np.array([0.5, -1.0, 0.2, 0.3])
+    plain, kappa = disturbed_error(0.0, lambda t: direction, 40.0), 0.5
+    np.testing.assert_allclose(plain, direction, rtol=1e-6)  # noise / gamma stays
+    assert np.abs(disturbed_error(kappa, lambda t: direction, 60.0)).max() < 1e-6
+    ramp = disturbed_error(kappa, lambda t: direction * t, 80.0)
+    np.testing.assert_allclose(ramp, direction / kappa, rtol=1e-5)
+    growing = disturbed_error(0.0, lambda t: direction * t, 80.0)
+    np.testing.assert_allclose(growing, 79.0 * direction, rtol=1e-3)
+
+
+def test_a_growing_gain_is_faster_than_any_rate() -> None:
+    network, start = ZeroingNetwork(growth=2.0), np.array([0.3, -0.2, 0.1, 0.4, 0.0])
+    end = integrate(network, LINEAR, start, 3.0)
+    assert end[-1] == pytest.approx(3.0)
+    # The integral of the gain 1 + t^2 from 0 to 3 is 12.
+    expected = error_of(LINEAR, start) * np.exp(-12.0)
+    np.testing.assert_allclose(error_of(LINEAR, end), expected, rtol=1e-2, atol=1e-10)
+
+
+@pytest.mark.parametrize("formula", FORMULAS)
+def test_formulas_are_consistent_stable_and_of_their_order(formula) -> None:
+    nodes = -np.arange(len(formula.past))
+    for power in range(formula.order):  # exact for polynomials below the order
+        value = formula.past @ nodes.astype(float) ** power
+        assert value + formula.rate * (power == 1) == pytest.approx(1.0)
+
+    def radius(h: float) -> float:
+        polynomial = np.array([1.0, *(-a for a in formula.past)])
+        polynomial[1] += formula.rate * h
+        return np.abs(np.roots(polynomial)).max()
+
+    roots = np.sort(np.abs(np.roots([1.0, *(-a for a in formula.past)])))
+    assert roots[-1] == pytest.approx(1.0)
+    assert formula.limit > 0.0
+    assert (roots[:-1] < 0.95).all()
+    assert radius(0.99 * formula.limit) < 1.0
+    assert radius(1.01 * formula.limit) > 1.0
+
+
+@pytest.mark.parametrize(
+    ("formula", "exact"), [*((f, True) for f in FORMULAS), (TAYLOR3, False), (TAYLOR4, False)]
+)
+def test_the_residual_is_of_the_declared_order(formula, exact: bool) -> None:
+    program, periods, largest = MovingProgram(), [], []
+    for count in (250, 500, 1000):
+        tau = 2.0 / count
+        network = ZeroingNetwork(rho=tau / (0.4 * formula.limit))
+        solver, worst = TrackingSolver(network, formula), 0.0
+        for k in range(count):
+            rate = program.rate(k * tau) if exact else None
+            solver.advance(program.at(k * tau), tau, rate)
+            if k > 0.75 * count:
+                worst = max(worst, np.abs(error_of(program.at(k * tau), solver.state)).max())
+        periods.append(tau)
+        largest.append(worst)
+    slope = np.polyfit(np.log(periods), np.log(largest), 1)[0]
+    assert slope == pytest.approx(formula.order, abs=0.1)
+
+
+def test_a_moving_program_leaves_no_error_where_another_network_lags() -> None:
+    program, network = MovingProgram(), ZeroingNetwork(rho=0.05)
+    solver, blind = TrackingSolver(network), TrackingSolver(network)
+    blind.network = type("Blind", (ZeroingNetwork,), {"moving_flow": lambda s, q, r: s.flow(q)})(
+        rho=0.05
+    )
+    for k in range(1000):
+        for one in (solver, blind):
+            one.advance(program.at(1e-3 * k), 1e-3, program.rate(1e-3 * k))
+    last = program.at(1e-3 * 999)
+    ours, lag = (np.abs(error_of(last, one.state)).max() for one in (solver, blind))
+    assert ours < 1e-3
+    assert lag > 100.0 * ours
+
+
+def test_a_program_of_another_shape_or_a_rate_of_the_wrong_size() -> None:
+    solver = TrackingSolver(ZeroingNetwork())
+    program = MovingProgram()
+    solver.advance(program.at(0.0), 0.1)
+    other = QP(np.eye(2), [1.0, 1.0])
+    assert solver.advance(other, 0.1).iterations == 0  # begins anew
+    with pytest.raises(InvalidInputError, match="rate"):
+        solver.advance(other, 0.1, np.zeros(3))
+
+
+def test_a_singular_program_is_told() -> None:
+    network, singular = ZeroingNetwork(), QP(np.zeros((2, 2)), [1.0, 1.0])
+    with pytest.raises(NoSolutionError, match="is singular"):
+        network.rates(singular, np.zeros(2))
+
+
+def test_drives_an_arm_and_its_record_names_it() -> None:
+    robot, q0 = iiwa_dnn.load_robot("iiwa7"), [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]
+    start = iiwa_dnn.Configuration(robot, q0)
+    network = ZeroingNetwork(rho=2e-3, activation=PowerSigmoid())
+    record = iiwa_dnn.simulate(
+        robot, iiwa_dnn.DoubleIndicator(), iiwa_dnn.Heart().anchored(start), q0, dt=1e-3,
+        duration=0.5, mode="continuous", solver=TrackingSolver(network),
+    )  # fmt: skip
+    error = np.linalg.norm(record.position - record.position_desired, axis=1)
+    assert error[-1] < 2e-5
+    assert "PowerSigmoid" in str(record.settings)
+
+
+@pytest.mark.parametrize(
+    ("change", "name"),
+    [({"form": "other"}, "form"), ({"integral": -1.0}, "integral"), ({"growth": -1}, "growth")],
+)
+def test_wrong_parameters_are_named(change: dict, name: str) -> None:
+    with pytest.raises(InvalidInputError, match=name):
+        ZeroingNetwork(**change)
+
+
+@pytest.mark.parametrize(
+    "make", [lambda: SignBiPower(1.0), lambda: FixedTime(upper_power=1.0), lambda: Linear(1)]
+)
+def test_wrong_activations_are_refused(make) -> None:
+    with pytest.raises((InvalidInputError, TypeError)):
+        make()
