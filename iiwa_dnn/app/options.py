@@ -93,8 +93,7 @@ class TrackOptions(RunOptions):
     q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
     reference: _Path = "heart"
-    """path: heart, circle, line, lissajous, cone, tilting-circle, plane-heart, sphere-heart, or a
-    CSV file of points or poses in [s] and [m]"""
+    """path: heart, circle, line, lissajous, cone, tilting-circle, plane-heart, sphere-heart, CSV"""
     scale: _Length = Heart.scale  # factor a of the hearts, whose width is 32 a [m]
     radius: _Length = 0.05  # radius of the circles [m]
     angle: _Angle = TILT  # tilt of the tool on the cone and the tilting circle [rad]
