@@ -11,7 +11,7 @@ from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.qp import Vector
 
-SIZE = 64
+SIZE = 256
 """Steps whose programs and answers share one array."""
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -178,19 +179,25 @@ class DNNSolver:
             and not state.any()
         ):  # fmt: skip
             return barrier.settle(qp, state, point, self.tol, settler.max_steps)
+        if type(settler) is ImplicitEuler and network.compiled is not None:
+            # The rest of the budget is for a second try.
+            settler = replace(settler, max_steps=(settler.max_steps + 1) // 2)
         return settler.settle(network, qp, state, point, self.tol)
 
     def _second_try(
         self, network: Network, qp: QP, state: Vector, point: Vector, settled: Settled
     ) -> Settled:
-        """Start again through the barrier, with the budget once more, and take the better point."""
+        """Start again through the barrier, with the rest of the budget; take the better point."""
         settler = self.settler
         if type(settler) is not ImplicitEuler or network.compiled is None or qp.sizes[0] >= LARGE:
             return settled
         other = point.copy()
-        again = barrier.settle(qp, state, other, self.tol, settler.max_steps)
-        if not max(again[2:]) < max(settled[2:]):
+        left = settler.max_steps - settled[0]
+        if left <= 0:
             return settled
+        again = barrier.settle(qp, state, other, self.tol, left)
+        if not max(again[2:]) < max(settled[2:]):
+            return again[0] + settled[0], *settled[1:]
         point[:] = other
         return again[0] + settled[0], again[1] + settled[1], *again[2:]
 

@@ -58,13 +58,13 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
     Works in numpy and LAPACK: it is meant for large programs and for those that are left over.
     """
     run = _Run(qp, state, point, tol)
+    run.limit = max_systems
     # Overflows end an attempt: they show in its residuals.
     with np.errstate(all="ignore"):
         for attempt in ATTEMPTS:
-            if run.systems >= max_systems or run.attempt(*attempt, max_systems):
+            if run.systems >= max_systems or run.attempt(*attempt):
                 break
-    kkt_point(qp.data, *qp.sizes, state, point)
-    return run.systems, run.time, *run.residuals
+    return run.systems, run.time, *kkt_point(qp.data, *qp.sizes, state, point)
 
 
 class _Run:
@@ -72,7 +72,7 @@ class _Run:
 
     def __init__(self, qp: QP, state: Vector, point: Vector, tol: float) -> None:
         self.qp, self.state, self.point, self.tol = qp, state, point, tol
-        self.systems, self.time, self.best = 0, 0.0, np.inf
+        self.systems, self.limit, self.time, self.best = 0, 0, 0.0, np.inf
         self.residuals = (np.inf, np.inf, np.inf)
         limited, self.fixed = np.isfinite(qp.h), np.flatnonzero(qp.lb == qp.ub)
         self.rows = np.flatnonzero(limited)
@@ -137,7 +137,7 @@ class _Run:
         diagonal[self.upper] += weights[first:second]
         diagonal[self.lower] += weights[second:]
         self.eps = EPS / self.delta
-        while self.eps < 1.0:
+        while self.eps < 1.0 and self.systems < self.limit:
             self.systems += 1
             K = self.H.copy()
             K.flat[:: len(K) + 1] += self.eps
@@ -222,11 +222,11 @@ class _Run:
         dmu = W * (self.times(dx) + t)
         return dx, dy, dmu, (target - s * dmu) / mu
 
-    def attempt(self, delta: float, share: float, fall: float, max_systems: int) -> bool:
+    def attempt(self, delta: float, share: float, fall: float) -> bool:
         """Follow the smoothed flow from its start; returns whether the point was found."""
         k, stalled, best, nearest = max(len(self.chi), 1), 0, np.inf, np.inf
         x, y, mu, s = kept = self.start(delta)
-        last = min(max_systems, self.systems + MOST)
+        last = min(self.limit, self.systems + MOST)
         while self.systems < last:
             rd = self.P @ x + self.q + self.A.T @ y + self.transposed(mu)
             rates = rd, self.A @ x - self.b, self.times(x) + s - self.chi
@@ -264,7 +264,8 @@ class _Run:
         """Take linearly implicit steps of the projection network; returns whether it settled."""
         mu, delta = np.where(active, mu, 0.0), self.delta
         for _ in range(NETWORK_STEPS):
-            if not self.factor(np.where(active, 1.0 / delta, 0.0)):
+            full = self.systems >= self.limit
+            if full or not self.factor(np.where(active, 1.0 / delta, 0.0)):
                 break
             slack = self.times(x) - self.chi
             rd = self.P @ x + self.q + self.A.T @ y + self.transposed(mu)

@@ -52,7 +52,7 @@ class ImplicitEuler(Integrator):
 
     order: ClassVar[int] = 1
     step: float = 1.0
-    long_step: float = 1e7
+    long_step: float = 1e8
     max_steps: int = 1000
 
     def __post_init__(self) -> None:
