@@ -211,6 +211,8 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
+        if view == "path":
+            self._camera.distance *= max(1.0, height / width)  # its angle is that of the height
         turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
         sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
         self._behind = 2e-3 * self._camera.distance * sight

@@ -28,8 +28,7 @@ STYLE = Path(__file__).with_name("style.mplstyle")
 BUCKETS = 700
 """Stretches that a curve is cut into: one for each pixel across a column at 200 dots an inch."""
 
-_ROUGH, _COARSE = 40.0, 60
-"""Ups and downs of a rough curve, as multiples of its largest value; its number of stretches."""
+_ROUGH, _COARSE = 40.0, 60  # ups and downs of a rough curve over its largest value; its stretches
 
 _JOINTS = {
     "q": (r"$q_{}$", "Joint angle [rad]"),
@@ -213,7 +212,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
     The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them, the
-    third as a share of each joint's limit, linear up to 1 % and logarithmic beyond it.
+    third as a share of each joint's limit, linear up to 1 % and logarithmic beyond.
     """
     import matplotlib
 
@@ -243,17 +242,17 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
 
 
 def _draw_curve(
-    axes: Axes, t: FloatArray, curve: FloatArray, buckets: int = BUCKETS, **line: Any
-) -> None:
+    axes: Axes, t: FloatArray, curve: FloatArray, buckets: int = BUCKETS, band: bool = True,
+    **line: Any,
+) -> None:  # fmt: skip
     """Draw the mean of each stretch as a line in a pale band of its extremes.
 
-    A smooth curve's band is as thin as its line; a noisy one stays readable among others.
+    A band thinner than the line is left out; a noisy curve stays readable among others.
     """
     curve = np.where(np.isfinite(curve), curve, np.nan)  # a gap in the line
     times, mean, least, greatest = envelope(t, curve, buckets)
     axes.plot(times, mean, **line)
-    # A band thinner than the line would only make the PDF larger.
-    if len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
+    if band and len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
         colour = line["color"]
         axes.fill_between(times, least, greatest, color=colour, alpha=0.25, linewidth=0.3)
 
@@ -285,11 +284,10 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     rough = bool(np.abs(np.diff(mean)).sum() > _ROUGH * mean.max(initial=0.0))
     buckets = _COARSE if rough else BUCKETS
     for (label, colour, dashes), curve in zip(styles, error.T, strict=True):
-        line: dict[str, Any] = {"color": colour, "linestyle": dashes, "label": label}
-        if rough:  # four bands would hide each other
-            axes.plot(*envelope(record.t, curve / scale, buckets)[:2], **line)
-        else:
-            _draw_curve(axes, record.t, curve / scale, **line)
+        _draw_curve(
+            axes, record.t, curve / scale, buckets, not rough,  # four bands would hide each other
+            color=colour, linestyle=dashes, label=label,
+        )  # fmt: skip
     _draw_curve(axes, record.t, norm / scale, buckets, color="0.0", label=r"$\|e\|$")
     time_axis(axes, record)
     if largest:
