@@ -54,8 +54,8 @@ def run(*arguments):
 def arm(records, index=-1, face_on=True):
     """Draw the arm near the end of a run, and the path face on beside it."""
     record, robot = records[index]
-    widths = (340, 200) if face_on else (540,)
-    sheet = Image.new("RGB", (540, 340))
+    widths = (340, 340) if face_on else (540,)
+    sheet = Image.new("RGB", (sum(widths), 340))
     for left, width, view in zip((0, 340), widths, ("arm", "path"), strict=False):
         with ArmRenderer(robot, record, width, 340, view) as renderer:
             sheet.paste(Image.fromarray(renderer.draw(round(0.93 * record.steps))), (left, 0))
