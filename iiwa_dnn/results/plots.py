@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iiwa_dnn.files import prepare_folder, write_atomically
+from iiwa_dnn.results.envelope import BUCKETS, envelope
 from iiwa_dnn.results.metrics import limits, orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
 
 COLUMN, DOUBLE_COLUMN = 3.5, 7.0  # widths in a two-column journal [in]
 STYLE = Path(__file__).with_name("style.mplstyle")
-
-BUCKETS = 700
-"""Stretches that a curve is cut into: one for each pixel across a column at 200 dots an inch."""
 
 _ROUGH, _COARSE = 40.0, 60  # ups and downs of a rough curve over its largest value; its stretches
 
@@ -156,22 +154,6 @@ def _single(draw: Callable[..., None], record: Record, **options: Any) -> Figure
     figure = new_figure(COLUMN, 2.6)
     draw(figure.add_subplot(), record, **options)
     return figure
-
-
-def envelope(
-    t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
-
-    Returns:
-        Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
-    """
-    if len(curve) <= buckets:
-        return t, curve, curve, curve
-    starts = np.linspace(0, len(curve), buckets, endpoint=False).astype(int)
-    counts = np.diff(starts, append=len(curve))
-    times, mean = (np.add.reduceat(values, starts) / counts for values in (t, curve))
-    return times, mean, np.minimum.reduceat(curve, starts), np.maximum.reduceat(curve, starts)
 
 
 def plane_of(position: FloatArray) -> tuple[int, int] | None:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.files import one_line, percent, plain, write_atomically, write_text
+from iiwa_dnn.files import one_line, percent, plain, write_atomically
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -211,22 +211,6 @@ class Record:
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
-
-    def save_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write joints and tip over time as a CSV file with a header, all digits kept, atomically.
-
-        The columns are ``t,q1,...,dq1,...,x,y,z,x_desired,y_desired,z_desired`` in [s], [rad],
-        [rad/s] and [m]; the last sample has no velocity (``nan``).
-
-        Raises:
-            FileError: If the file cannot be written.
-        """
-        joints = [f"{name}{i + 1}" for name in ("q", "dq") for i in range(self.dof)]
-        head = ["t", *joints, *"xyz", *(f"{axis}_desired" for axis in "xyz")]
-        dq = np.vstack([self.dq, np.full(self.dof, np.nan)])
-        table = np.column_stack([self.t, self.q, dq, self.position, self.position_desired])
-        lines = (",".join(map(repr, row)) for row in table.tolist())
-        write_text(path, "\n".join([",".join(head), *lines]) + "\n")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Record:

@@ -15,6 +15,7 @@ from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.table import save_csv
 
 ARRAYS = [
     field.name
@@ -155,7 +156,7 @@ def test_a_record_prints_one_line():
 
 
 def test_a_csv_file_holds_every_digit(heart, tmp_path):
-    heart.save_csv(tmp_path / "heart.csv")
+    save_csv(heart, tmp_path / "heart.csv")
     head = (tmp_path / "heart.csv").read_text().splitlines()[0].split(",")
     assert head[:2] + head[8:9] + head[-6:] == [
         "t", "q1", "dq1", "x", "y", "z", "x_desired", "y_desired", "z_desired",

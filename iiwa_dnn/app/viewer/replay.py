@@ -10,8 +10,8 @@ import numpy as np
 from iiwa_dnn.app.viewer import readout
 from iiwa_dnn.app.viewer.stage import Stage
 from iiwa_dnn.references import Target
+from iiwa_dnn.results.envelope import envelope
 from iiwa_dnn.results.metrics import orientation_error, position_error
-from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.results.scenery import obstacles_of
 
