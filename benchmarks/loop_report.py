@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from benchmarks.report import table
 from iiwa_dnn.files import write_json, write_text
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -161,15 +161,15 @@ def steps_figure(rows: list[dict[str, Any]]) -> Figure:
     for key, label, marker in (
         ("median_us", "median", "o"), ("p99_us", "p99", "s"), ("p999_us", "p99.9", "^"),
     ):  # fmt: skip
-        axes.plot([row[key] for row in rows], places, marker, label=label)
+        axes.plot([row[key] for row in rows], places, marker, linestyle="", label=label)
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("time of a step [µs]")
+    axes.set_xlabel("Time of a step [µs]")
     axes.set_yticks(places, [row["name"] for row in rows])
     axes.invert_yaxis()
-    axes.legend(fontsize="x-small")
+    legend_above(axes, columns=3)
     return figure
 
 

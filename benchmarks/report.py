@@ -10,8 +10,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import matplotlib
+import numpy as np
+
 from iiwa_dnn.files import write_json, write_text
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -139,16 +142,20 @@ def times_figure(streams: Sequence[Mapping[str, Any]]) -> Figure:
     figure = new_figure(DOUBLE_COLUMN, 3.2)
     axes = figure.add_subplot()
     names = [row["solver"] for row in streams[0]["rows"]]
-    width = 0.8 / len(names)
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.15, 0.9, len(names)))
     for i, name in enumerate(names):
-        heights = [stream["rows"][i]["median_us"] for stream in streams]
-        places = [k + (i - 0.5 * (len(names) - 1)) * width for k in range(len(streams))]
-        axes.bar(places, heights, width, label=name, color=f"C{i}")
+        times = [stream["rows"][i]["median_us"] for stream in streams]
+        places = [k + 0.08 * (i - 0.5 * (len(names) - 1)) for k in range(len(streams))]
+        colour = shades[i] if i else "0.0"  # the network's own
+        axes.plot(places, times, "os^Dv<>PX"[i % 9], color=colour, markersize=4, label=name)
+    for edge in range(1, len(streams)):
+        axes.axvline(edge - 0.5, color="0.8", linewidth=0.6)
+    axes.grid(visible=False, axis="x")
     axes.set_yscale("log")
-    axes.set_ylabel("median time [µs]")
+    axes.set_ylabel("Median time [µs]")
     labels = [stream["name"].replace(", ", ",\n") for stream in streams]
     axes.set_xticks(range(len(streams)), labels)
-    axes.legend(fontsize="x-small", ncols=3)
+    legend_above(axes, columns=5)
     return figure
 
 

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 
 from iiwa_dnn.results.metrics import orientation_error, position_error
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 from iiwa_dnn.studies.singular import stretched_run, tilted_run
 
 
@@ -15,14 +15,22 @@ def draw(vertical, stretched):
     left, middle, right = figure.subplots(1, 3)
     for name, record in vertical.items():
         left.semilogy(record.t[1:], orientation_error(record)[1:], label=name)
-    for name, record in stretched.items():
-        middle.plot(record.t, np.linalg.norm(position_error(record), axis=1), label=name)
-        right.plot(record.t[1:], np.abs(record.dq).max(axis=1), label=name, linewidth=0.6)
-    left.set(title="Tool vertical", xlabel="t [s]", ylabel="orientation error [rad]")
-    middle.set(title="Arm stretched", xlabel="t [s]", ylabel="position error [m]")
-    right.set(title="Arm stretched", xlabel="t [s]", ylabel="fastest joint [rad/s]")
-    for axes in (left, middle, right):
-        axes.legend()
+    # Wide and pale under thin and dark: both stay visible where they coincide.
+    for (name, record), width, colour in zip(
+        stretched.items(), (3.2, 1.0), ("0.72", "0.0"), strict=True
+    ):
+        line = {"label": name, "linewidth": width, "color": colour, "linestyle": "-"}
+        middle.plot(record.t, np.linalg.norm(position_error(record), axis=1), **line)
+        right.plot(record.t[1:], np.abs(record.dq).max(axis=1), **line)
+    for axes, quantity, about in (
+        (left, "Orientation error [rad]", "tool vertical"),
+        (middle, "Position error [m]", "arm stretched"),
+        (right, "Fastest joint [rad/s]", "arm stretched"),
+    ):
+        axes.set(xlabel=f"Time [s]\n({about})", ylabel=quantity)
+        axes.margins(x=0.0)
+        axes.set_xlim(left=0.0)
+        legend_above(axes, columns=2)
     return figure
 
 

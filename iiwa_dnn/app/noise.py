@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from iiwa_dnn import checks
@@ -11,6 +12,7 @@ from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import write_json, write_text
+from iiwa_dnn.results.plots import write_figures
 from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.studies import noise_study
 from iiwa_dnn.studies.sweeps import Sweep
@@ -38,6 +40,7 @@ def run(options: NoiseOptions) -> int:
     rows = noise_study.tabulate(seeds, duration, results)
     save_settings(options, folder)
     write_json(folder / "noise.json", rows)
+    write_figures({"noise": partial(noise_study.noise_figure, rows)}, folder)
     text = _report(rows, seeds, duration)
     write_text(folder / "report.md", text)
     if not options.quiet:
@@ -56,6 +59,7 @@ def _report(rows: Sequence[Mapping[str, Any]], seeds: int, duration: float) -> s
         f"{noise_study.GAIN:g} 1/s in place of 10.2 1/s. Roughness: total variation of the "
         "network's answer, and of the velocity that moved the robot, a second and joint.",
     ]
+    parts += ["![Error and roughness of every countermeasure](noise.png)"]
     for kind in noise_study.DISTURBANCES:
         cells = [_cells(row) for row in rows if row["disturbance"] == kind]
         parts += [f"## {kind}", markdown_table(_HEAD, cells)]

@@ -40,7 +40,7 @@ MOMENTS = 5
 FRAME_RATE = 25
 """Pictures in a second of the video, which runs in real time."""
 
-WIDTH, HEIGHT, INSET = 960, 540, 208  # of the video [pixel]
+WIDTH, HEIGHT, SIDE = 960, 540, 420  # of the video, and of the path on its right [pixel]
 _MARGIN = 12
 
 DESIRED_COLOUR = (0.2, 0.25, 0.35, 1.0)
@@ -148,16 +148,15 @@ def frame_times(record: Record) -> list[float]:
 
 
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
-    """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, in a corner the path, the time."""
+    """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, beside it the path, the time."""
     with ExitStack() as stack:
-        arm = stack.enter_context(ArmRenderer(robot, record, WIDTH, HEIGHT, "arm", smooth=False))
-        path = stack.enter_context(ArmRenderer(robot, record, INSET, INSET, "path"))
+        left = WIDTH - SIDE
+        arm = stack.enter_context(ArmRenderer(robot, record, left, HEIGHT, "arm", smooth=False))
+        path = stack.enter_context(ArmRenderer(robot, record, SIDE, HEIGHT, "path"))
         for t in frame_times(record):
             sample = sample_at(record, t)
-            frame = arm.draw(sample).copy()
-            top, right = _MARGIN, WIDTH - _MARGIN
-            frame[top - 1 : top + INSET + 1, right - INSET - 1 : right + 1] = 96  # its border
-            frame[top : top + INSET, right - INSET : right] = path.draw(sample)
+            frame = np.hstack([arm.draw(sample), path.draw(sample)])
+            frame[:, left : left + 2] = 160  # a border
             yield _captioned(frame, f"t = {t:5.2f} s")
 
 
@@ -185,8 +184,9 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
     ) -> None:
         """Lay out the scene around the arm and the record's path.
 
-        Pictures are `width` by `height` [pixel] and show ``"arm"``, all of it, or ``"path"``, face
-        on under a translucent arm. Smooth edges double the time in software.
+        Pictures are `width` by `height` [pixel] and show ``"arm"``, all of it with the paths of all
+        tracked frames, or ``"path"``, the tip's alone and face on. Smooth edges double the time in
+        software.
 
         Raises:
             MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -197,7 +197,11 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._record, self._width, self._height, self._view = record, width, height, view
         # Both paths may have 100,000 samples.
         self._corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
-        self._desired = record.position_desired[self._corners]
+        self._paths = [(record.position_desired[self._corners], record.position)]
+        if view == "arm" and record.frame_position is not None:
+            wished, drawn = record.frame_position_desired, record.frame_position
+            assert wished is not None
+            self._paths += [(wished[self._corners, f], drawn[:, f]) for f in range(drawn.shape[1])]
         spec = build_spec(robot)
         spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
         spec.visual.quality.offsamples = 4 if smooth else 0
@@ -207,15 +211,17 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
+        if view == "path":
+            self._camera.distance *= max(1.0, height / width)  # its angle is that of the height
         turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
         sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
         self._behind = 2e-3 * self._camera.distance * sight
         self._options = mj.MjvOption()
         self._options.geomgroup[:] = 0
-        self._options.geomgroup[[VISUAL_GROUP, SCENERY_GROUP]] = 1
-        self._options.sitegroup[:] = 0
-        self._options.flags[mj.mjtVisFlag.mjVIS_TRANSPARENT] = view == "path"
-        self._scene = mj.MjvScene(self._model, maxgeom=self._model.ngeom + 2 * _PIECES + 10)
+        self._options.geomgroup[SCENERY_GROUP], self._options.sitegroup[:] = 1, 0
+        self._options.geomgroup[VISUAL_GROUP] = view == "arm"
+        most = self._model.ngeom + 2 * _PIECES * len(self._paths) + 10
+        self._scene = mj.MjvScene(self._model, maxgeom=most)
         self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
         # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
         self._opengl = open_context(width, height)
@@ -242,10 +248,11 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         )  # fmt: skip
         wide = max(3.0, self._height / 130.0)
         # A little farther off than what is drawn, so that it never shows through that.
-        self._line(self._desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
         passed = [*self._corners[self._corners < sample], sample]
-        self._line(self._record.position[passed], wide, DRAWN_COLOUR)
-        if self._view == "path":  # a dot at the tip, since the arm is translucent
+        for desired, drawn in self._paths:
+            self._line(desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
+            self._line(drawn[passed], wide, DRAWN_COLOUR)
+        if self._view == "path":  # a dot for the tip
             size, at = 0.008 * self._camera.distance, self._record.position[sample]
             self._geom(mj.mjtGeom.mjGEOM_SPHERE, (0.0, 0.0, 0.0, 1.0), size, at)
         frame = mj.MjrRect(0, 0, self._width, self._height)
@@ -281,10 +288,10 @@ def _arm_camera(mj: Any, record: Record) -> Any:
     path = record.position_desired.mean(axis=0)
     reach = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
     camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * reach])
-    camera.distance = 1.95 * reach
+    camera.distance = 1.8 * reach
     # MuJoCo's azimuth is the direction of sight.
     camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
-    camera.elevation = -30.0
+    camera.elevation = -38.0
     return camera
 
 

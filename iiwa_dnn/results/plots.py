@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from iiwa_dnn.files import prepare_folder, write_atomically
-from iiwa_dnn.results.metrics import orientation_error, position_error
+from iiwa_dnn.results.envelope import BUCKETS, envelope
+from iiwa_dnn.results.metrics import limits, orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
 if TYPE_CHECKING:
@@ -25,13 +26,12 @@ if TYPE_CHECKING:
 COLUMN, DOUBLE_COLUMN = 3.5, 7.0  # widths in a two-column journal [in]
 STYLE = Path(__file__).with_name("style.mplstyle")
 
-BUCKETS = 700
-"""Stretches that a curve is cut into: one for each pixel across a column at 200 dots an inch."""
+_ROUGH, _COARSE = 40.0, 60  # ups and downs of a rough curve over its largest value; its stretches
 
 _JOINTS = {
     "q": (r"$q_{}$", "Joint angle [rad]"),
     "dq": (r"$\dot{{q}}_{}$", "Joint velocity [rad/s]"),
-    "torque": (r"$\tau_{}$", "Joint torque [N m]"),
+    "torque": (r"$\tau_{}$", "Joint torque [% of its limit]"),
 }
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
@@ -156,22 +156,6 @@ def _single(draw: Callable[..., None], record: Record, **options: Any) -> Figure
     return figure
 
 
-def envelope(
-    t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
-
-    Returns:
-        Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
-    """
-    if len(curve) <= buckets:
-        return t, curve, curve, curve
-    starts = np.linspace(0, len(curve), buckets, endpoint=False).astype(int)
-    counts = np.diff(starts, append=len(curve))
-    times, mean = (np.add.reduceat(values, starts) / counts for values in (t, curve))
-    return times, mean, np.minimum.reduceat(curve, starts), np.maximum.reduceat(curve, starts)
-
-
 def plane_of(position: FloatArray) -> tuple[int, int] | None:
     """Return the two axes that a path (N, 3) [m] spans, None for three or for a single point."""
     spread = np.ptp(position, axis=0)
@@ -209,11 +193,16 @@ def draw_path(axes: Any, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
-    The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them.
+    The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them, the
+    third as a share of each joint's limit, linear up to 1 % and logarithmic beyond.
     """
     import matplotlib
 
     values, (label, quantity) = getattr(record, name), _JOINTS[name]
+    if name == "torque":
+        values = 100.0 * values / limits(record, "torque_max")
+        axes.set_yscale("symlog", linthresh=1.0, subs=(2.0, 5.0))
+        axes.yaxis.set_major_formatter("{x:g}")
     t, joints = record.t[: len(values)], record.dof
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, joints))
     every = max(min(len(t), BUCKETS) // 7, 1)
@@ -234,16 +223,18 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     legend_above(axes, columns=4)
 
 
-def _draw_curve(axes: Axes, t: FloatArray, curve: FloatArray, **line: Any) -> None:
+def _draw_curve(
+    axes: Axes, t: FloatArray, curve: FloatArray, buckets: int = BUCKETS, band: bool = True,
+    **line: Any,
+) -> None:  # fmt: skip
     """Draw the mean of each stretch as a line in a pale band of its extremes.
 
-    A smooth curve's band is as thin as its line; a noisy one stays readable among others.
+    A band thinner than the line is left out; a noisy curve stays readable among others.
     """
     curve = np.where(np.isfinite(curve), curve, np.nan)  # a gap in the line
-    times, mean, least, greatest = envelope(t, curve)
+    times, mean, least, greatest = envelope(t, curve, buckets)
     axes.plot(times, mean, **line)
-    # A band thinner than the line would only make the PDF larger.
-    if len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
+    if band and len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
         colour = line["color"]
         axes.fill_between(times, least, greatest, color=colour, alpha=0.25, linewidth=0.3)
 
@@ -261,7 +252,8 @@ def _draw_limits(axes: Axes, limits: list[float | None]) -> None:
 def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None:
     """Draw the position error's components and norm over time, in the unit that suits its size.
 
-    With `largest` [m] the unit and the axis suit that size instead: panels to be compared.
+    With `largest` [m] the unit and the axis suit that size instead: panels to be compared. A rough
+    error, as under noise, is shown by the means of longer stretches, and the norm's range.
     """
     error = position_error(record)
     norm = np.linalg.norm(error, axis=1)
@@ -269,9 +261,16 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     fits = (pair for pair in _LENGTH_UNITS if size >= pair[1])
     unit, scale = next(fits, _LENGTH_UNITS[0] if size == 0.0 else _LENGTH_UNITS[-1])
     styles = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
+    mean = envelope(record.t, norm)[1]
+    mean = mean[np.isfinite(mean)]
+    rough = bool(np.abs(np.diff(mean)).sum() > _ROUGH * mean.max(initial=0.0))
+    buckets = _COARSE if rough else BUCKETS
     for (label, colour, dashes), curve in zip(styles, error.T, strict=True):
-        _draw_curve(axes, record.t, curve / scale, color=colour, linestyle=dashes, label=label)
-    _draw_curve(axes, record.t, norm / scale, color="0.0", linestyle="-", label=r"$\|e\|$")
+        _draw_curve(
+            axes, record.t, curve / scale, buckets, not rough,  # four bands would hide each other
+            color=colour, linestyle=dashes, label=label,
+        )  # fmt: skip
+    _draw_curve(axes, record.t, norm / scale, buckets, color="0.0", label=r"$\|e\|$")
     time_axis(axes, record)
     if largest:
         axes.set_ylim(-1.05 * largest / scale, 1.05 * largest / scale)

@@ -44,7 +44,6 @@ def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
     visual.headlight.ambient[:] = 0.4
     visual.headlight.diffuse[:] = 0.3
     visual.headlight.specular[:] = 0.1
-    visual.map.alpha = 0.07  # of the arm where it is translucent
     spec.stat.center, spec.stat.extent = [0.0, 0.0, 0.4], 1.2
     spec.add_texture(
         name="sky", type=mj.mjtTexture.mjTEXTURE_SKYBOX, builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,

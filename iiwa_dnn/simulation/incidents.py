@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.results.failures import describe
 from iiwa_dnn.robot import Robot
+
+PATIENCE = 100
+"""Consecutive fallbacks to the reference solver after which a run warns."""
 
 
 class Incidents:
@@ -28,7 +32,7 @@ class Incidents:
             robot: The robot, n joints, with its limits.
             rows: Names of the inequality rows (`Layout.row_names`).
         """
-        self.pending = False
+        self.pending, self._series = False, 0
         self._steps, self._robot, self._rows = steps, robot, rows
         self._arrays: dict[str, NDArray[Any]] = {}
 
@@ -46,9 +50,18 @@ class Incidents:
             self._array("blocking_rows", resolution.rows.shape, np.int8)[k] = resolution.rows
 
     def act(self, k: int, action: Action) -> None:
-        """Note what was done at step k in place of the network's answer."""
+        """Note what was done at step k in place of the network's answer; warn of a long series."""
         self.pending = True
-        self._array("action", (), np.int8)[k] = action
+        actions = self._array("action", (), np.int8)
+        actions[k] = action
+        went_on = self._series if actions[k - 1] == Action.FALLBACK else 0
+        self._series = went_on + 1 if action is Action.FALLBACK else 0
+        if self._series == PATIENCE:
+            warnings.warn(
+                f"step {k}: the network did not settle in {PATIENCE} steps in a row, and the "
+                "reference solver answered in its place",
+                stacklevel=2,
+            )
 
     def clip(self, k: int, clipped: NDArray[np.int8]) -> None:
         """Note which joints' commands were clipped at step k, (n,)."""

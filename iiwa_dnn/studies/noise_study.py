@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import islice, product
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from iiwa_dnn.control.feedback import noise_gain
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart
 from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure
 from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -25,6 +26,9 @@ from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.statistics import estimate, paired_difference
 from iiwa_dnn.studies.sweeps import Outcome
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ENCODER_NOISE = 1e-4
 """Standard deviation of the measured angles [rad] where they are noisy."""
@@ -155,6 +159,28 @@ def tabulate(
         row["mse"] = estimate(mse).to_json() if by_chance else None
         rows.append(row)
     return rows
+
+
+def noise_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
+    """Draw the mean squared error and the command's roughness of every row of `tabulate`."""
+    figure = new_figure(DOUBLE_COLUMN, 3.4)
+    panels, places = figure.subplots(1, 2, sharey=True), range(len(COUNTERMEASURES))
+    for axes, name, label in (
+        (panels[0], "mse_m2", "Mean squared error [m²]"),
+        (panels[1], "command_roughness", "Roughness of the command [rad/s²]"),
+    ):
+        for i, kind in enumerate(DISTURBANCES):
+            values = [row[name] for row in rows if row["disturbance"] == kind]
+            # A little apart, so that none hides another.
+            heights = [place + 0.1 * (i - 2.5) for place in places]
+            axes.plot(values, heights, "o^sDvX"[i], linestyle="", label=kind)
+        axes.set_xscale("log")
+        axes.set_xlabel(label)
+    panels[0].set_yticks(places, list(COUNTERMEASURES))
+    panels[0].invert_yaxis()
+    handles, names = panels[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside upper center", ncols=len(names))
+    return figure
 
 
 def _runs(kind: str, seeds: int) -> int:

@@ -79,7 +79,7 @@ def tables_figure(tables: Mapping[str, Table]) -> Figure:
     _draw_row(panels[1], tables["table1"], "joint_drift_rad", "Joint drift [rad]")
     _draw_filter(panels[2], tables["table2"])
     _draw_substeps(panels[3], tables["ablation"])
-    for axes, letter, columns in zip(panels, "abcd", (3, 3, 4, 3), strict=True):
+    for axes, letter, columns in zip(panels, "abcd", (3, 3, 2, 3), strict=True):
         axes.set_xlabel(f"{axes.get_xlabel()}\n({letter})")
         legend_above(axes, columns)
     return figure
@@ -128,6 +128,8 @@ def _draw_filter(axes: Axes, table: Table) -> None:
     axes.set_yticks(range(len(names)), [f"{mode.split(',')[0]},\n{entry}" for mode, entry in names])
     axes.set_ylim(len(names) - 0.5, -0.5)
     axes.set_xlabel("Change by the filter [%]")
+    low, high = axes.get_xlim()
+    axes.set_xlim(low, high + 0.25 * (high - low))  # room beside the zero line for those far off
 
 
 def _draw_substeps(axes: Axes, table: Table) -> None:

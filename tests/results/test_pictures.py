@@ -110,7 +110,7 @@ def test_the_video(robot, record, tmp_path):
     assert facts["fps"] == pictures.FRAME_RATE
     assert facts["duration"] == pytest.approx(2.0, abs=0.1)
     assert len(images) == len(seen) == len(pictures.frame_times(short)) == 51
-    counts = [red(image[:220, -220:]).sum() for image in images]
+    counts = [red(image[:, -pictures.SIDE :]).sum() for image in images]
     assert all(image.std() > 20.0 and orange(image).sum() > 1000 for image in images)
     assert counts[0] == 0
     assert counts[-1] > 60

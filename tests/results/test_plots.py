@@ -16,10 +16,10 @@ from matplotlib import image
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError
+from iiwa_dnn.results.envelope import envelope
 from iiwa_dnn.results.plots import (
     FIGURES,
     convergence_figure,
-    envelope,
     overview_figure,
     path_figure,
     save_figures,

@@ -15,6 +15,7 @@ from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.table import save_csv
 
 ARRAYS = [
     field.name
@@ -152,6 +153,21 @@ def test_a_record_prints_one_line():
     stuck = make_record(action=np.full(10, 2), fraction=np.full(10, 1e-5))
     assert "completed, path completed 0.0 %, position error" in repr(stuck)
     assert stuck.path_time == pytest.approx(1e-5)
+
+
+def test_a_csv_file_holds_every_digit(heart, tmp_path):
+    save_csv(heart, tmp_path / "heart.csv")
+    head = (tmp_path / "heart.csv").read_text().splitlines()[0].split(",")
+    assert head[:2] + head[8:9] + head[-6:] == [
+        "t", "q1", "dq1", "x", "y", "z", "x_desired", "y_desired", "z_desired",
+    ]  # fmt: skip
+    table = np.genfromtxt(tmp_path / "heart.csv", delimiter=",", names=True)
+    for name, values in {
+        "t": heart.t, "q7": heart.q[:, 6], "y": heart.position[:, 1],
+        "z_desired": heart.position_desired[:, 2],
+    }.items():  # fmt: skip
+        np.testing.assert_array_equal(table[name], values)
+    np.testing.assert_array_equal(table["dq3"], [*heart.dq[:, 2], np.nan])
 
 
 def test_a_share_below_one_is_never_shown_as_all_of_it():

@@ -12,6 +12,7 @@ from iiwa_dnn.app.viewer import readout
 from iiwa_dnn.app.viewer.follower import Follower, FollowerState
 from iiwa_dnn.app.viewer.stage import Stage, wxyz
 from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.references import Target
 
 _MOST_STEPS = 40  # of one tick: a slow machine shows slow motion and does not fall behind for ever
 _SLIDERS = {
@@ -79,6 +80,8 @@ class LivePanel:
         for _ in range(min(max(steps, 1), _MOST_STEPS)):
             state = self.follower.step(position, rotation)
         self._stage.show(state.q)
+        apart = state.position_error > 1e-3 or state.orientation_error > 1e-2
+        self._stage.ghost(Target(position, rotation) if apart else None)
         if self._since_readout >= readout.PERIOD:
             self._since_readout = 0.0
             self._read_out(state)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import json
 import socket
 import time
 from collections.abc import Callable
@@ -13,7 +15,7 @@ from typing import Any
 from iiwa_dnn.app.viewer.follower import Follower
 from iiwa_dnn.app.viewer.live import LivePanel
 from iiwa_dnn.app.viewer.replay import ReplayPanel
-from iiwa_dnn.app.viewer.stage import Stage
+from iiwa_dnn.app.viewer.stage import VIEWS, Stage
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import Record
@@ -22,6 +24,8 @@ from iiwa_dnn.schemes import DoubleIndicator
 
 TICK = 1.0 / 30.0
 """Time between two pictures [s]."""
+
+_MODES = ("replay", "live")
 
 
 class Page:
@@ -60,9 +64,12 @@ class Page:
         follower = Follower(robot, q0, scheme)
         self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
         self.stage = Stage(self.server, robot)
+        view: Any = self.server.gui.add_button_group("view", VIEWS)
+        view.on_click(lambda event: self.stage.turn_to(event.client.camera, event.target.value))
         if record is not None:
-            mode: Any = self.server.gui.add_button_group("mode", ("replay", "live"))
-            mode.on_click(lambda event: self.set_mode(str(event.target.value)))
+            self._mode: Any = self.server.gui.add_button_group("mode", _MODES)
+            self._mode.on_click(lambda event: self.set_mode(str(event.target.value).strip("● ")))
+            self._mark("replay")
         self.replay = None if record is None else ReplayPanel(self.stage, record)
         self.live = LivePanel(self.stage, follower)
         if record is None:
@@ -82,6 +89,11 @@ class Page:
         if self.replay is not None:
             self.live.set_active(mode == "live")
             self.replay.set_visible(mode == "replay")
+            self._mark(mode)
+
+    def _mark(self, active: str) -> None:
+        """Mark the active mode's button."""
+        self._mode.options = tuple(f"● {mode}" if mode == active else mode for mode in _MODES)
 
     def tick(self, elapsed: float) -> None:
         """Let `elapsed` seconds pass."""
@@ -120,6 +132,9 @@ def _open_server(title: str, host: str, port: int) -> Any:
         control_width="large", show_logo=False, show_share_button=False, brand_color=(255, 102, 0)
     )
     server.gui.set_panel_label(title)
+    # The window's title can only be set from within the page.
+    script = html.escape(f"document.title = {json.dumps(title)}")
+    server.gui.add_html(f'<img src="data:," style="display:none" onerror="{script}">')
     server.scene.set_up_direction("+z")
     return server
 

@@ -9,14 +9,16 @@ import numpy as np
 
 from iiwa_dnn.app.viewer import readout
 from iiwa_dnn.app.viewer.stage import Stage
+from iiwa_dnn.references import Target
+from iiwa_dnn.results.envelope import envelope
 from iiwa_dnn.results.metrics import orientation_error, position_error
-from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.results.scenery import obstacles_of
 
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
 _DESIRED_COLOUR, _DRAWN_COLOUR = (70, 80, 100), (220, 0, 30)
 _CURVE_POINTS = 300
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass
@@ -73,6 +75,7 @@ class ReplayPanel:
         self._error = np.linalg.norm(position_error(record), axis=1)
         self._turn = orientation_error(record)
         self._shown: tuple[float, bool] | None = None
+        self._curves: list[tuple[_Curve, Any]] = []
         self._since_readout = np.inf
         stage.line("desired", record.position_desired, _DESIRED_COLOUR, 2.0)
         stage.add_obstacles(obstacles_of(record))
@@ -89,9 +92,9 @@ class ReplayPanel:
             self._facts = gui.add_html("")
             self._bars = gui.add_html("")
         with self._folders[2]:
-            self._curve(record.t, self._error, "log₁₀ of the position error [m]", "#d6001c")
+            self._curve(record.t, self._error, "position error [m]", "#d6001c")
             gap = record.crosscheck_gap
-            self._curve(record.t[:-1], gap, "log₁₀ of the cross-check gap [rad/s]", "#1c7ed6")
+            self._curve(record.t[:-1], gap, "cross-check gap [rad/s]", "#1c7ed6")
         self._play.on_click(lambda _: self.playback.toggle())
         self._slider.on_update(self._on_slider)
         self._speed.on_update(self._on_speed)
@@ -106,6 +109,9 @@ class ReplayPanel:
             return
         k = self.sample
         self._stage.show(self.record.q[k], float(self.record.t[k]))
+        target = Target(self.record.position_desired[k], self.record.rotation_desired[k])
+        apart = self._error[k] > 1e-3 or self._turn[k] > 1e-2  # else it would flicker in the arm
+        self._stage.ghost(target if apart else None)
         if k > 0:
             self._stage.line("drawn", self.record.position[: k + 1], _DRAWN_COLOUR, 4.0)
         self._stage.set_line_visible("drawn", k > 0)
@@ -121,6 +127,7 @@ class ReplayPanel:
             folder.visible = visible
         for name in ("desired", "drawn"):
             self._stage.set_line_visible(name, visible)
+        self._stage.ghost(None)
         self.playback.playing = False
         self._shown = None
 
@@ -148,6 +155,8 @@ class ReplayPanel:
             if record.torque is not None:
                 values["largest torque"] = f"{np.abs(record.torque[step]).max():.1f} N m"
         self._facts.content = readout.facts(values)
+        for curve, handle in self._curves:
+            handle.data = curve.at(self.playback.time)
         robot = self._stage.robot
         self._bars.content = readout.joint_bars(record.q[k], robot.q_lower, robot.q_upper)
 
@@ -168,10 +177,49 @@ class ReplayPanel:
         from viser import uplot  # of an extra
 
         times, _, _, greatest = envelope(t[good], values[good], _CURVE_POINTS)
-        self._stage.server.gui.add_uplot(
-            (np.ascontiguousarray(times), np.log10(greatest)),
-            (uplot.Series(label="t [s]"), uplot.Series(label=title, stroke=colour, width=1)),
+        low, high = np.floor(np.log10(greatest.min())), np.ceil(np.log10(greatest.max()))
+        powers = np.arange(low, max(high, low + 1.0) + 1.0, max(1.0, (high - low) // 5))
+        curve = _Curve(times, greatest, float(10.0**low), float(10.0 ** max(high, low + 1.0)))
+        handle = self._stage.server.gui.add_uplot(
+            curve.at(times[0]),
+            (
+                uplot.Series(label="t [s]"),
+                uplot.Series(label=title, stroke=colour, width=1),
+                uplot.Series(label="now", stroke="#444", width=1, points={"show": False}),
+            ),
             title=title,
-            scales={"x": uplot.Scale(time=False)},
-            height=170,
+            scales={
+                "x": uplot.Scale(time=False),
+                "y": uplot.Scale(distr=3, log=10, range=(curve.low, curve.high)),
+            },
+            axes=(
+                uplot.Axis(),
+                uplot.Axis(
+                    splits=tuple((10.0**powers).tolist()),
+                    values=tuple("10" + f"{k:.0f}".translate(_RAISED) for k in powers),
+                ),
+            ),
+            legend=uplot.Legend(show=False),
+            height=190,
+            padding=(12, 8, 0, 0),  # room for half a number above the axis
         )
+        self._curves.append((curve, handle))
+
+
+@dataclass
+class _Curve:
+    """A curve over times (M,) [s] between two powers of ten, and the line of the present time."""
+
+    times: FloatArray
+    values: FloatArray
+    low: float
+    high: float
+
+    def at(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return times, curve and a line that is at the bottom but at the present time."""
+        k = int(np.searchsorted(self.times, time))
+        times = np.insert(self.times, k, 3 * [np.clip(time, self.times[0], self.times[-1])])
+        line = np.full(len(times), self.low)
+        line[k + 1] = self.high
+        there = self.values[min(k, len(self.values) - 1)]
+        return times, np.insert(self.values, k, 3 * [there]), line

@@ -8,11 +8,15 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.results.scenery import OBSTACLE_COLOUR
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, outline
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
+from iiwa_dnn.robot.shapes import Shape, joint_poses, visual_shapes
+
+VIEWS = ("arm", "top", "side", "tool")
+"""Directions from which the camera looks: at the whole arm, or at the tip from near by."""
 
 _PIECES = 400  # straight pieces that a path is drawn with, at most
 
@@ -37,19 +41,12 @@ class Stage:
         self._joints = [
             scene.add_frame(f"/robot/{i}", show_axes=False) for i in range(robot.model.njoints)
         ]
+        self._ghost = scene.add_frame("/ghost", show_axes=False, visible=False)
+        last = robot.model.frames[robot.tip_id].parentJoint
         for number, shape in enumerate(visual_shapes(robot)):
-            place: dict[str, Any] = {
-                "name": f"/robot/{shape.joint}/shape_{number}",
-                "color": tuple(round(255 * part) for part in shape.colour),
-                "position": shape.position,
-                "wxyz": wxyz(shape.rotation),
-            }
-            if shape.kind == "cylinder":
-                scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **place)
-            elif shape.kind == "sphere":
-                scene.add_icosphere(radius=shape.size[0], subdivisions=4, **place)
-            else:
-                scene.add_box(dimensions=shape.size, **place)
+            self._add(shape, f"/robot/{shape.joint}/shape_{number}")
+            if shape.joint == last:
+                self._add(shape, f"/ghost/shape_{number}", opacity=0.35)
         self._lines: dict[str, Any] = {}
         self._obstacles: list[tuple[Any, Obstacle]] = []
 
@@ -61,6 +58,30 @@ class Stage:
                 name, outside = f"/obstacle_{number}", outline(obstacle)
                 node = self.server.scene.add_mesh_simple(name, *outside, color=colour)
                 self._obstacles.append((node, obstacle))
+
+    def _add(self, shape: Shape, name: str, **options: Any) -> None:
+        """Put a shape on the page, under the frame that its name begins with."""
+        scene, place = self.server.scene, {
+            "name": name,
+            "color": tuple(round(255 * part) for part in shape.colour),
+            "position": shape.position,
+            "wxyz": wxyz(shape.rotation),
+            **options,
+        }  # fmt: skip
+        if shape.kind == "cylinder":
+            scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **place)
+        elif shape.kind == "sphere":
+            scene.add_icosphere(radius=shape.size[0], subdivisions=4, **place)
+        else:
+            scene.add_box(dimensions=shape.size, **place)
+
+    def ghost(self, target: Target | None) -> None:
+        """Show the last link, translucent, where it is at a target; None hides it."""
+        self._ghost.visible = target is not None
+        if target is not None:
+            frame = self.robot.model.frames[self.robot.tip_id]
+            pose = pin.SE3(target.rotation, target.position) * frame.placement.inverse()
+            self._ghost.position, self._ghost.wxyz = pose.translation, wxyz(pose.rotation)
 
     def show(self, q: FloatArray, t: float = 0.0) -> None:
         """Move the robot to joint positions (n,) [rad], and obstacles to where they are then."""
@@ -91,8 +112,8 @@ class Stage:
 
     def look_at(self, point: FloatArray) -> None:
         """Let the camera of a new page look at the arm and at a point [m], (3,)."""
-        side = np.array([point[1], -point[0], 0.0])
-        side /= max(float(np.linalg.norm(side)), 1e-9)
+        self._point = point
+        side = _beside(point)
         middle = 0.5 * point + np.array([0.0, 0.0, 0.25])
         away = 0.95 * side + 0.35 * point + np.array([0.0, 0.0, 0.55])
         right = np.cross([0.0, 0.0, 1.0], away)
@@ -100,6 +121,22 @@ class Stage:
         camera = self.server.initial_camera
         camera.look_at, camera.position = tuple(middle), tuple(middle + away)
         camera.fov = 0.95  # rad, from top to bottom
+
+    def turn_to(self, camera: Any, view: str) -> None:
+        """Let one browser's camera look as one of ``VIEWS`` says."""
+        side, up = _beside(self._point), np.array([0.0, 0.0, 1.0])
+        away = {"top": 0.7 * up + 1e-3 * side, "side": 0.7 * side, "tool": 0.25 * (side + up)}
+        first = self.server.initial_camera
+        middle = self._point if view in away else np.array(first.look_at)
+        position = self._point + away[view] if view in away else np.array(first.position)
+        camera.position = tuple(position)  # takes the point looked at along
+        camera.look_at = tuple(middle)
+
+
+def _beside(point: FloatArray) -> FloatArray:
+    """Return the horizontal direction (3,) across the way from the base to a point."""
+    side = np.array([point[1], -point[0], 0.0])
+    return np.asarray(side / max(float(np.linalg.norm(side)), 1e-9))
 
 
 def wxyz(rotation: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ import pytest
 
 from helpers_browser import needs_browser, open_browser, picture, requested, wait_for
 from helpers_physics import START, heart_without_physics, papers_robot
-from iiwa_dnn import InvalidInputError
+from iiwa_dnn import Configuration, InvalidInputError, Target
 from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.robot.shapes import joint_poses
 
@@ -107,6 +107,62 @@ def test_it_loads_from_this_machine_alone_and_is_not_blank(browser, page):
 
 
 @needs_browser
+def test_the_title_and_the_active_mode_are_told(browser, page):
+    wait_for(lambda: browser.title == "iiwa7 · iiwa_dnn", "the window's title")
+    assert buttons(browser, "● replay")
+    assert not buttons(browser, "● live")
+
+
+@needs_browser
+def test_views_turn_the_camera_of_this_browser(browser, page):
+    camera = next(iter(page.server.get_clients().values())).camera
+    tip = page.replay.record.position_desired.mean(axis=0)
+    first = np.array([camera.position, camera.look_at])
+    for view, direction in (("top", [0.0, 0.0, 1.0]), ("side", [tip[1], -tip[0], 0.0])):
+        click(browser, view)
+        unit = np.array(direction) / np.linalg.norm(direction)
+
+        def looks(unit=unit) -> bool:
+            sight = np.array(camera.position) - tip
+            return bool(sight @ unit > 0.99 * np.linalg.norm(sight) > 0.1)
+
+        wait_for(looks, f"the view {view!r}")
+    click(browser, "arm")
+    wait_for(
+        lambda: np.allclose([camera.position, camera.look_at], first, atol=1e-3), "the first view"
+    )
+
+
+@needs_browser
+def test_curves_have_powers_of_ten_and_a_line_at_the_present_time(browser, page):
+    curve, handle = page.replay._curves[0]
+    page.replay.playback.seek(4.0)
+    wait_for(lambda: handle.data[0][np.argmax(handle.data[2])] == 4.0, "the line")
+    times, values, line = handle.data
+    assert (np.diff(times) >= 0.0).all()
+    assert (line == curve.low).sum() == len(line) - 1
+    assert np.isin(values, curve.values).all()
+    assert all(tick.startswith("10") for tick in handle.axes[1]["values"])
+    assert np.log10(handle.axes[1]["splits"]) == pytest.approx(
+        np.round(np.log10(handle.axes[1]["splits"]))
+    )
+
+
+def test_the_ghost_stands_where_the_last_link_has_to_be(page):
+    q = np.array([0.3, -0.5, 0.2, 1.1, -0.4, 0.6, 0.9])
+    at = Configuration(page.stage.robot, q)
+    page.stage.ghost(Target(at.position, at.rotation))
+    last = joint_poses(page.stage.robot, q)[-1]
+    ghost = page.stage._ghost
+    assert ghost.visible
+    np.testing.assert_allclose(ghost.position, last.translation, atol=1e-12)
+    turned = pin.Quaternion(*map(float, ghost.wxyz)).matrix()
+    np.testing.assert_allclose(turned, last.rotation, atol=1e-12)
+    page.stage.ghost(None)
+    assert not ghost.visible
+
+
+@needs_browser
 def test_the_slider_moves_the_arm(browser, page):
     sliders(browser)[0].send_keys(Keys.HOME)
     wait_for(lambda: page.replay.playback.time == 0.0, "the start")
@@ -172,6 +228,7 @@ def test_live_the_arm_follows_the_dragged_target(browser, page):
         lambda: np.linalg.norm(follower.configuration.position - moved) < 1e-3,
         "the arm to follow",
     )
+    assert buttons(browser, "● live")
     before = follower.scheme.weight
     sliders(browser)[0].send_keys(Keys.ARROW_RIGHT)
     wait_for(lambda: follower.scheme.weight > before, "the weight to change")
