@@ -232,11 +232,8 @@ class Controller:
         """
         if self.reference is None:
             raise InvalidInputError("reference", "is missing: give one, or a target to each step")
-        given: Mapping[str, Reference]
-        if isinstance(self.reference, Reference):
-            given = {self.robot.tip: self.reference}
-        else:
-            given = self.reference
+        one = self.reference
+        given = {self.robot.tip: one} if isinstance(one, Reference) else one
         for name in self.plan.frames:
             if name not in given:
                 raise InvalidInputError("reference", f"is missing for frame {name!r}")
@@ -275,11 +272,8 @@ class Controller:
         if plan.asks:
             plan.build(answers.program(index), answers.targets[index], t)
         state = self.solver.warm_state(plan.sizes)
-        if (
-            state is not None
-            and plan.network is not None
-            and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0)
-        ):
+        ready = state is not None and plan.network is not None
+        if ready and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0):
             answers.count = index + 1
             return
         # Where tasks yield to acceleration limits that is quicker found out than proven.
@@ -306,7 +300,7 @@ class Controller:
         codes, work, jacobian, placements = plan.compiled
         model, data, tip, others = plan.pinocchio
         plan.q[:] = q
-        moving, index = plan.q, first
+        moving = plan.q
         for index in range(first, first + count):
             computeJointJacobians(model, data, moving)
             updateFramePlacement(model, data, tip)
