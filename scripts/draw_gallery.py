@@ -22,7 +22,7 @@ from iiwa_dnn.results import plots
 from iiwa_dnn.results.pictures import ArmRenderer
 
 HERE = Path(__file__).parent
-TILE, COLUMNS = (256, 184), 5  # size of a picture on the sheet [pixel], pictures in a row
+TILE, COLUMNS = (256, 184), 4  # size of a picture on the sheet [pixel], pictures in a row
 CSV = "t,x,y,z\n0,0,0,0\n2,0.06,0,0.04\n4,0.06,0.08,0\n6,0,0.08,0.04\n8,0,0,0\n"
 
 
@@ -134,6 +134,7 @@ def scenes(csv):
         ("heart", arm, lambda: run("track")),
         ("csv", arm, lambda: run("track", "--reference", csv)),
         ("turning", partial(figure, turned), lambda: example("own_orientation.py")),
+        ("obstacle", partial(arm, face_on=False), lambda: example("avoid_obstacle.py")),
         ("clearance", partial(figure, elbow), lambda: example("own_parts.py")),
         ("two_arms", partial(arm, index=0, face_on=False), lambda: example("two_arms.py")),
         ("network", partial(figure, residual), lambda: example("own_network.py", "1000")),
