@@ -23,8 +23,9 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import FloatArray
 from iiwa_dnn.robot.configuration import Configuration
+from iiwa_dnn.robot.obstacles import Sphere
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.schemes import CollisionAvoidance, DoubleIndicator, Limit
 
 TIP_SPEED, TIP_RATE = 0.25, 1.0
 """What the tip may do: [m/s] and [rad/s]. 0.25 m/s is what robots may do beside people."""
@@ -63,7 +64,10 @@ class Follower:
     Attributes:
         robot: The robot, n joints, with the limits that are kept.
         dt: Control period [s].
+        obstacle: The ball that is avoided, where it began; None: none.
     """
+
+    obstacle: Sphere | None
 
     def __init__(
         self, robot: Robot, q0: ArrayLike, scheme: DoubleIndicator | None = None, dt: float = 5e-3
@@ -91,6 +95,7 @@ class Follower:
         self._controller = Controller(robot, scheme.anchored(start), dt=dt, policy="stop")
         self._command: Command | None = None
         self._level = 0  # which share of the error to try first
+        self._shift, self.obstacle = np.zeros(3), None
 
     @property
     def scheme(self) -> DoubleIndicator:
@@ -116,6 +121,32 @@ class Follower:
                 raise InvalidInputError(name, most, parameters[name])
         self._controller.scheme = replace(self.scheme, **parameters)  # type: ignore[arg-type]
 
+    def avoid(self, obstacle: Sphere | None) -> None:
+        """Keep away from a ball, which `move_obstacle` moves; None: from nothing."""
+        limits: tuple[Limit, ...] = ()
+        if obstacle is not None:
+            obstacle = replace(obstacle, motion=lambda _: self._shift, speed=TIP_SPEED)
+            limits = (CollisionAvoidance([obstacle], self_collision=False),)
+        self._shift, self.obstacle = np.zeros(3), obstacle
+        self._controller.scheme = replace(self.scheme, extra_limits=limits)
+        # The arm gives way: where both do not go together, its tip leaves the target.
+        self._controller.policy = "stop" if obstacle is None else "relax"
+
+    def move_obstacle(self, place: ArrayLike) -> FloatArray:
+        """Move the ball towards a place (3,) [m] for one period, at `TIP_SPEED` at most.
+
+        Returns:
+            Where it is afterwards, (3,) [m].
+        """
+        if self.obstacle is None:
+            raise InvalidInputError("obstacle", "is missing: avoid one first")
+        center = np.asarray(self.obstacle.center)
+        way = np.asarray(place) - center - self._shift
+        length = float(np.linalg.norm(way))
+        most = TIP_SPEED * self.dt
+        self._shift = self._shift + way * (most / length if length > most else 1.0)
+        return center + self._shift
+
     def step(self, position: FloatArray, rotation: FloatArray) -> FollowerState:
         """Move towards a target for one control period.
 
@@ -140,13 +171,15 @@ class Follower:
             target = Target(conf.position + share * shift, near, _AT_REST, _AT_REST)
             command = self._controller.step(self._q, 0.0, target)
             residual = command.solution.residuals.largest
-            if not command.ok:
+            given_way = share == 0.0 and self.obstacle is not None
+            if not command.ok and not given_way:
                 # The multipliers of a program without a solution grow and grow: a bad start.
                 self._controller.solver.reset()
                 continue
             self._command = command
             q = conf.q + self.dt * command.dq
-            if self._stays_clear(conf, Configuration(self.robot, q, self._scratch)):
+            after = Configuration(self.robot, q, self._scratch)
+            if given_way or self._stays_clear(conf, after):
                 self._q, asked = q, share
                 # The next step begins one share higher: at the edge, few programs are in vain.
                 self._level = max(0, level - 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from queue import SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,10 @@ from iiwa_dnn.app.viewer.follower import Follower, FollowerState
 from iiwa_dnn.app.viewer.stage import Stage, wxyz
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Target
+from iiwa_dnn.robot.obstacles import Sphere
 
+BALL_RADIUS = 0.08
+"""Radius of the ball that is dragged against the arm [m]."""
 _MOST_STEPS = 40  # of one tick: a slow machine shows slow motion and does not fall behind for ever
 _SLIDERS = {
     "weight": ("ξ weight", 1.0, 0.01),
@@ -37,6 +41,7 @@ class LivePanel:
         self.follower, self.active = follower, False
         self._stage, self._check = stage, CrossCheck()
         self._left_over, self._since_readout = 0.0, np.inf
+        self._wanted: SimpleQueue[bool] = SimpleQueue()
         self._start = start = follower.configuration
         self.target = stage.server.scene.add_transform_controls(
             "/target", scale=0.2, depth_test=False, position=start.position,
@@ -51,9 +56,17 @@ class LivePanel:
                 slider = gui.add_slider(label, 0.0, most, step, value)
                 slider.on_update(partial(self._tune, name))
             home = gui.add_button("Target back to the start")
+            ball = gui.add_checkbox("Ball to push the arm with", False)
             self._facts = gui.add_html("")
             self._bars = gui.add_html("")
         home.on_click(lambda _: self.target_home())
+        ball.on_update(lambda _: self.set_ball(ball.value))
+        scene = stage.server.scene
+        self.ball = scene.add_transform_controls(
+            "/ball", scale=0.15, depth_test=False, disable_rotations=True, visible=False
+        )
+        scene.add_icosphere("/ball/shape", BALL_RADIUS, color=(60, 110, 200), opacity=0.3)
+        self._shown = scene.add_icosphere("/ball_now", BALL_RADIUS, (60, 110, 200), visible=False)
 
     def set_active(self, active: bool) -> None:
         """Turn the live mode on or off; it goes on from its last state."""
@@ -67,8 +80,20 @@ class LivePanel:
         """Put the target back to the start of the arm."""
         self.target.position, self.target.wxyz = self._start.position, wxyz(self._start.rotation)
 
+    def set_ball(self, there: bool) -> None:
+        """Put a ball that the arm avoids beside it, or take it away, at the next tick."""
+        self._wanted.put(there)  # not amid a step: the page's buttons have a thread of their own
+
+    def _place_ball(self, there: bool) -> None:
+        place = self.follower.configuration.position + np.array([0.0, 0.0, 0.35])
+        self.follower.avoid(Sphere(place.tolist(), BALL_RADIUS) if there else None)
+        self.ball.position = self._shown.position = place
+        self.ball.visible = self._shown.visible = there
+
     def tick(self, elapsed: float) -> None:
         """Let the arm follow for `elapsed` seconds and show it."""
+        while not self._wanted.empty():
+            self._place_ball(self._wanted.get())
         self._left_over += elapsed
         self._since_readout += elapsed
         dt = self.follower.dt
@@ -78,6 +103,8 @@ class LivePanel:
         w, x, y, z = np.array(self.target.wxyz, dtype=np.float64)
         rotation = pin.Quaternion(w, x, y, z).normalized().matrix()
         for _ in range(min(max(steps, 1), _MOST_STEPS)):
+            if self.follower.obstacle is not None:
+                self._shown.position = self.follower.move_obstacle(self.ball.position)
             state = self.follower.step(position, rotation)
         self._stage.show(state.q)
         apart = state.position_error > 1e-3 or state.orientation_error > 1e-2

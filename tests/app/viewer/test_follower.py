@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from helpers_physics import START, papers_robot
-from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, InvalidInputError
+from iiwa_dnn import (
+    Configuration,
+    CrossCheck,
+    DoubleIndicator,
+    InvalidInputError,
+    Sphere,
+    load_robot,
+)
 from iiwa_dnn.app.viewer.follower import TIP_RATE, TIP_SPEED, Follower
 from iiwa_dnn.app.viewer.live import describe
 
@@ -104,3 +112,34 @@ def test_a_gain_of_zero_holds_still(robot):
 
 def test_nobody_has_been_asked_before_the_first_step(robot):
     assert np.isnan(Follower(robot, START).check(CrossCheck()))
+
+
+@pytest.mark.parametrize("side", [(0.0, -0.3, 0.0), (0.0, 0.0, 0.3)])
+def test_an_arm_gives_way_to_a_ball_that_is_pushed_against_it(
+    side: tuple[float, float, float],
+) -> None:
+    robot = load_robot("iiwa7")
+    follower = Follower(robot, robot.start_posture())
+    start = follower.configuration
+    elbow, away = start.frame("iiwa7_link_4").position, np.array(side)
+    follower.avoid(Sphere((elbow + away).tolist(), 0.08))
+    bodies = pin.buildGeomFromUrdf(robot.model, str(robot.path), pin.GeometryType.COLLISION)
+    data, ball, least = robot.model.createData(), coal.Sphere(0.08), np.inf
+    placed, request = pin.GeometryData(bodies), coal.DistanceRequest()
+    for _ in range(260):  # to where the elbow was, and on
+        where = coal.Transform3s(np.eye(3), follower.move_obstacle(elbow - 0.1 * away))
+        q = follower.step(start.position, start.rotation).q
+        pin.updateGeometryPlacements(robot.model, data, bodies, placed, q)
+        for body, at in zip(bodies.geometryObjects, placed.oMg, strict=True):
+            if body.parentJoint > 2:
+                pose, found = (
+                    coal.Transform3s(at.rotation, at.translation),
+                    coal.DistanceResult(),
+                )
+                coal.distance(body.geometry, pose, ball, where, request, found)
+                least = min(least, found.min_distance)
+    assert np.abs(q - start.q).max() > 0.5
+    assert least > 0.0199
+    follower.avoid(None)
+    with pytest.raises(InvalidInputError, match=r"^obstacle"):
+        follower.move_obstacle(elbow)

@@ -238,6 +238,21 @@ def test_live_the_arm_follows_the_dragged_target(browser, page):
     wait_for(lambda: not page.live.active and buttons(browser, "Play"), "the replay again")
 
 
+@needs_browser
+def test_live_the_arm_gives_way_to_a_dragged_ball(browser, page):
+    follower = page.live.follower
+    page.set_mode("live")
+    page.live.set_ball(True)
+    wait_for(lambda: follower.obstacle is not None, "the ball")
+    elbow = follower.configuration.frame("iiwa7_link_4").position
+    q = follower.configuration.q
+    page.live.ball.position = elbow
+    wait_for(lambda: np.abs(follower.configuration.q - q).max() > 0.05, "the arm to give way")
+    page.live.set_ball(False)
+    wait_for(lambda: follower.obstacle is None, "the ball to be gone")
+    page.set_mode("replay")
+
+
 def drag(browser, page: Page, metres: float) -> None:
     """Take the handle of one of the target's axes with the mouse and pull it."""
     camera = next(iter(page.server.get_clients().values())).camera
