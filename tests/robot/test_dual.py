@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from helpers_kinematics import dh_pose
 from iiwa_dnn.errors import FileError
-from iiwa_dnn.references import Heart
+from iiwa_dnn.references import Heart, Line
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.robot import Configuration, load_robot
+from iiwa_dnn.robot import Configuration, load_robot, urdf
 from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.schemes import (
+    CollisionAvoidance,
     CyclicMotion,
     JointLimits,
     KineticEnergy,
@@ -69,6 +72,30 @@ def test_an_object_carried_by_both_arms_keeps_its_grasp() -> None:
         conf = Configuration(robot, q)
         now = np.linalg.inv(conf.frame(LEFT).pose) @ conf.frame(RIGHT).pose
         np.testing.assert_allclose(now, grasp, rtol=0, atol=1e-6)
+
+
+def test_two_arms_that_are_driven_into_each_other_do_not_touch() -> None:
+    robot = load_robot("iiwa7_dual")
+    start = Configuration(robot, robot.start_posture())
+    ways = {LEFT: [0.0, -0.28, 0.0], RIGHT: [0.0, 0.28, 0.0]}
+    paths = {name: Line(way, 2.0).anchored(start.frame(name)) for name, way in ways.items()}
+    tasks = [PositionTask(frame=name) for name in paths]
+    scheme = Scheme(COSTS, tasks, [JointLimits(), CollisionAvoidance(self_collision=True)])
+    record = simulate(robot, scheme, paths, start.q, dt=2e-3, duration=1.2)
+    assert record.path_completed < 0.9  # the paths yield
+    assert robot.path is not None
+    bodies = pin.buildGeomFromUrdfString(
+        robot.model, urdf.text_of(urdf.read(robot.path)), pin.GeometryType.COLLISION
+    )
+    names = [body.name for body in bodies.geometryObjects]
+    left = [i for i, name in enumerate(names) if name.startswith("left")]
+    right = [i for i, name in enumerate(names) if name.startswith("right")]
+    for i, j in itertools.product(left, right):
+        bodies.addCollisionPair(pin.CollisionPair(i, j))
+    data, judge = robot.model.createData(), pin.GeometryData(bodies)
+    for q in record.q[::20]:
+        pin.computeDistances(robot.model, data, bodies, judge, q)
+        assert min(result.min_distance for result in judge.distanceResults) > 0.0199
 
 
 def test_a_missing_and_a_nested_include_are_named(tmp_path: Path) -> None:
