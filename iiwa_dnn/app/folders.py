@@ -85,7 +85,7 @@ def _values_in(folder: Path, options: RunOptions) -> dict[str, Any] | None:
 
 
 def _same(there: dict[str, Any] | None, here: dict[str, Any]) -> bool:
-    """Whether two sets of values describe the same run."""
+    """Tell whether two sets of values describe the same run."""
     if there is None:
         return False
     return all(there.get(key) == here.get(key) for key in {*there, *here} - _NOT_COMPARED)

@@ -30,7 +30,7 @@ Sides = NDArray[np.int8]
 
 
 class Reach(NamedTuple):
-    """How far the limits let a program's task go.
+    """Largest part of a program's task that the limits allow.
 
     Attributes:
         fraction: Largest feasible share of b, in [0, 1]; NaN where not even 0 is feasible.

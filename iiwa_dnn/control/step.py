@@ -61,27 +61,16 @@ def control_step(
         inertia, targets = work[at_network + NETWORK :], figures[FIGURES + PLACE + dof :]
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
         assemble(
-            data,
-            codes,
-            constants,
-            q,
-            jacobian,
-            placements,
-            inertia,
-            targets,
-            work[0],
+            data, codes, constants, q, jacobian, placements, inertia, targets, work[0],
             work[1 : 1 + 2 * dof],
-        )
+        )  # fmt: skip
     before = state.copy()
     if network[3] > 0.0:
         count = int(network[5])
         if count == 0:
-            active = np.empty(m + 2 * n)
-            field(data, n, m, p, network[4] != 0.0, state, np.empty(state.size), active)
-            stable = network[6] * stable_step(data, n, m, p, active)
-            if not stable > 0.0:
+            count = substeps(data, n, m, p, network, state)
+            if count == 0:
                 return False
-            count = max(1, int(np.ceil(network[3] / stable)))
         explicit_euler(data, n, m, p, network[4] != 0.0, state, network[3] / count, count, -1.0)
         iterations, time = count, network[3]
         primal, dual, gap = kkt_point(data, n, m, p, state, point)
@@ -105,6 +94,18 @@ def control_step(
             # Rounded as numpy would: the record's q[k + 1] is q[k] + dt dq[k] to the last bit.
             q[i] = move(q[i], motion, point[i])
     return True
+
+
+@compiled
+def substeps(data: Vector, n: int, m: int, p: int, network: Vector, state: Vector) -> int:
+    """Count the explicit sub-steps that stability needs from a state (size,); 0: none are stable.
+
+    `network` (7,) is as in `control_step`.
+    """
+    active = np.empty(m + 2 * n)
+    field(data, n, m, p, network[4] != 0.0, state, np.empty(state.size), active)
+    stable = network[6] * stable_step(data, n, m, p, active)
+    return max(1, int(np.ceil(network[3] / stable))) if stable > 0.0 else 0
 
 
 # fastmath=False: left out, it would be inherited from the caller.

@@ -63,7 +63,10 @@ class CheckPool:
             self._executor.shutdown(wait=False, kill_workers=True)
 
     def submit(self, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool = False) -> None:
-        """Take the next block: N programs of one shape, and the answers to be judged, (N, n)."""
+        """Take the next block: N programs of one shape, and the answers to be judged, (N, n).
+
+        `by_cost` is as in `CrossCheck.check_block`.
+        """
         number, job = self._count, (programs, sizes, x, by_cost)
         self._count += 1
         self._collect(only_done=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -78,9 +79,9 @@ class _OnPath(Reference):
     def duration(self) -> float:
         return self.along.duration
 
+    @abstractmethod
     def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
         """Move and turn targets; see `Reference.path`."""
-        raise NotImplementedError
 
 
 @njit(cache=True, error_model="numpy")

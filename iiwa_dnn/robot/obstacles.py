@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -19,7 +20,7 @@ Motion = Callable[[float], ArrayLike]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Obstacle:
+class Obstacle(ABC):
     """A convex shape that stands still or is moved without being turned.
 
     Attributes:
@@ -48,13 +49,13 @@ class Obstacle:
 
     @property
     def moves(self) -> bool:
-        """Whether the obstacle ever moves."""
+        """True if the obstacle ever moves."""
         return self.motion is not None or any(self.velocity)
 
     @property
+    @abstractmethod
     def points(self) -> Matrix:
         """Points whose convex hull, grown by `thickness`, is the shape at time 0 [m], (k, 3)."""
-        raise NotImplementedError
 
     @property
     def thickness(self) -> float:

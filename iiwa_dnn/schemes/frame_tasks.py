@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
@@ -173,7 +174,7 @@ class RelativePoseTask(FeedbackTask):
         if self.pose is None:
             pose[:3, :3], pose[:3, 3] = turn, place
         J1, J2 = base.jacobian, here.jacobian
-        linear = J2[:3] - J1[:3] + _cross(apart) @ J1[3:]
+        linear = J2[:3] - J1[:3] + pin.skew(apart) @ J1[3:]
         A = np.concatenate([back @ linear, back @ (J2[3:] - J1[3:])])
         error = np.empty(3)
         rotation_log(np.ascontiguousarray(pose[:3, :3] @ turn.T), error)
@@ -213,7 +214,7 @@ class RemoteCentreTask(FeedbackTask):
         """Return A (2, n) and b (2,)."""
         here, normals = step.frame(self.frame), _normals(self.axis)
         apart, back = self.point - here.position, (here.rotation @ normals).T
-        A = back @ (here.jacobian[:3] - _cross(apart) @ here.jacobian[3:])
+        A = back @ (here.jacobian[:3] - pin.skew(apart) @ here.jacobian[3:])
         return A, self.feedback(step) * (back @ apart)
 
 
@@ -222,12 +223,6 @@ def _log(desired: Matrix, here: Any) -> Vector:
     error = np.empty(3)
     rotation_log(desired @ here.rotation.T, error)
     return error
-
-
-def _cross(v: Vector) -> Matrix:
-    """Return the matrix of the cross product with v (3,), (3, 3)."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _unit(name: str, value: Sequence[float]) -> Vector3:

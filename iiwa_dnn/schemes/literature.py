@@ -24,8 +24,8 @@ SMALLEST = 1e-3
 
 
 @dataclass(frozen=True)
-class LargestSpeed(Cost):
-    r"""Square of the largest joint speed, the scheme's last (slack) variable s: w s^2 / 2.
+class _Weighted(Cost):
+    """Base of costs with one weight w.
 
     Attributes:
         weight: w, at least 0.
@@ -36,6 +36,10 @@ class LargestSpeed(Cost):
     def __post_init__(self) -> None:
         """Check the weight; raises InvalidInputError."""
         checks.not_negative("weight", self.weight)
+
+
+class LargestSpeed(_Weighted):
+    r"""Square of the largest joint speed, the scheme's last (slack) variable s: w s^2 / 2."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n + 1, n + 1) and q (n + 1,) of a scheme with one slack variable."""
@@ -57,19 +61,8 @@ class SpeedsBelowSlack(Limit):
         return self._G, np.zeros(self.rows)
 
 
-@dataclass(frozen=True)
-class VelocityChange(Cost):
-    r"""Change from the last command: :math:`\tfrac12 w \|\dot q - \dot q_-\|^2`.
-
-    Attributes:
-        weight: w, at least 0.
-    """
-
-    weight: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Check the weight; raises InvalidInputError."""
-        checks.not_negative("weight", self.weight)
+class VelocityChange(_Weighted):
+    r"""Change from the last command: :math:`\tfrac12 w \|\dot q - \dot q_-\|^2`."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""

@@ -93,8 +93,7 @@ def make_scene(
         parameters: The first four of `Scene.numbers`.
 
     Raises:
-        InvalidInputError: The robot has no URDF file, a joint no velocity limit, or there is no
-            pair.
+        InvalidInputError: There is no URDF file, no velocity limit of a joint, or no pair.
         FileError: The collision geometry of the robot cannot be read.
     """
     for name, fastest in zip(robot.joint_names, robot.dq_max, strict=True):
@@ -146,13 +145,10 @@ def make_scene(
          np.ravel(rows), *map(np.ravel, points)]
     )  # fmt: skip
     needed = dict.fromkeys(c.link for c, j in zip(model.capsules, joints, strict=True) if j)
-    moving = [
-        (obstacle, begin + start, at)
-        for obstacle, start, at in zip(obstacles, starts, points, strict=False)
-        if obstacle.moves
-    ]
-    speeds = np.array([row[8] + row[12] for row in rows])
-    return Scene(robot, pairs, tuple(needed), moving, speeds, numbers)
+    placed = zip(obstacles, starts, points, strict=False)
+    moving = [(each, begin + start, at) for each, start, at in placed if each.moves]
+    speeds = [row[8] + row[12] for row in rows]
+    return Scene(robot, pairs, tuple(needed), moving, np.array(speeds), numbers)
 
 
 @compiled

@@ -1,4 +1,4 @@
-r"""How the robot moves in one control step of length dt.
+r"""Methods that integrate the robot's motion over one control step of length dt.
 
 Tracking is the ODE :math:`\dot q = w(q, t)`, w being the controller's answer. Each method gives
 the mean velocity of the step, so that the robot moves to ``q + dt * mean`` whatever happens to
@@ -69,7 +69,7 @@ class Method(NamedTuple):
 
     @property
     def stages(self) -> int:
-        """How often it asks in one step."""
+        """Number of velocities that it asks for in one step."""
         return len(self.nodes)
 
 

@@ -259,7 +259,7 @@ class Simulation:
         return command
 
     def _record(self, steps: int, status: str, agreement: Agreement, wall_time: float) -> Record:
-        """What was recorded, cut to the steps that were taken."""
+        """Make the record of the steps that were taken."""
         t, history = self._dt * np.arange(steps + 1, dtype=np.float64), self._history
         return Record(
             t=t,

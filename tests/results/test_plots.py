@@ -189,6 +189,7 @@ def odd_records():
 @pytest.mark.filterwarnings("error::UserWarning", "error::RuntimeWarning")
 def test_odd_records_are_drawn_too(record, name, tmp_path):
     FIGURES[name](record).savefig(tmp_path / "x.png")
+    assert (tmp_path / "x.png").stat().st_size > 10_000  # axes and labels, not a blank page
 
 
 def test_a_folder_that_cannot_be_written(tmp_path):

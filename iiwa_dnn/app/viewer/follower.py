@@ -105,7 +105,7 @@ class Follower:
 
     @property
     def configuration(self) -> Configuration:
-        """Where the arm is."""
+        """Configuration of the arm."""
         return Configuration(self.robot, self._q)
 
     def tune(self, **parameters: float) -> None:
@@ -187,7 +187,7 @@ class Follower:
         return FollowerState(self._q, distance, angle, residual, asked)
 
     def _stays_clear(self, now: Configuration, then: Configuration) -> bool:
-        """Whether a step does not lead the arm into, or deeper into, a singular posture."""
+        """Tell whether a step leads the arm neither into nor deeper into a singular posture."""
         rows = 3 if self.scheme.orientation == "none" else 6
         least = [np.linalg.svd(conf.jacobian[:rows], compute_uv=False)[-1] for conf in (now, then)]
         return bool(least[1] >= min(LEAST_SINGULAR_VALUE, least[0]))
@@ -205,6 +205,6 @@ class Follower:
 
 
 def _share(size: float, fastest: float, gain: float) -> float:
-    """How much of an error may be fed back, so that gain times it is no faster than allowed."""
+    """Compute the share of an error that may be fed back: gain times it is at most `fastest`."""
     speed = gain * size
     return 1.0 if speed <= fastest else fastest / speed

@@ -126,9 +126,9 @@ def test_views_turn_the_camera_of_this_browser(browser, page):
             sight = np.array(camera.position) - tip
             return bool(sight @ unit > 0.99 * np.linalg.norm(sight) > 0.1)
 
-        wait_for(looks, f"the view {view!r}")
+        assert wait_for(looks, f"the view {view!r}")
     click(browser, "arm")
-    wait_for(
+    assert wait_for(
         lambda: np.allclose([camera.position, camera.look_at], first, atol=1e-3), "the first view"
     )
 
@@ -247,7 +247,9 @@ def test_live_the_arm_gives_way_to_a_dragged_ball(browser, page):
     elbow = follower.configuration.frame("iiwa7_link_4").position
     q = follower.configuration.q
     page.live.ball.position = elbow
-    wait_for(lambda: np.abs(follower.configuration.q - q).max() > 0.05, "the arm to give way")
+    assert wait_for(
+        lambda: np.abs(follower.configuration.q - q).max() > 0.05, "the arm to give way"
+    )
     page.live.set_ball(False)
     wait_for(lambda: follower.obstacle is None, "the ball to be gone")
     page.set_mode("replay")
