@@ -13,6 +13,7 @@ from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.networks.batch import solve_batch
 from iiwa_dnn.networks.solver import solve_problem
 from iiwa_dnn.qp import QP
+from iiwa_dnn.qp.compiling import WATCH
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Waypoints
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
@@ -25,7 +26,7 @@ MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 def run(options: WarmUpOptions) -> int:
     """Take a few steps of every kind of run, solve a program and a batch; return 0."""
-    began = time.perf_counter()
+    began, WATCH.quiet = time.perf_counter(), True
     robot = load_robot("iiwa7")
     q0 = robot.start_posture()
     reference = Heart().anchored(Configuration(robot, q0))

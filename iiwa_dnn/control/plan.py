@@ -10,16 +10,17 @@ from numba.core.dispatcher import Dispatcher
 
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.control.policies import Resolution
-from iiwa_dnn.control.step import NETWORK, control_step
+from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step
 from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.integrators.implicit import SETTLE
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
-from iiwa_dnn.schemes.assembly import assemble
+from iiwa_dnn.schemes.assembly import ASSEMBLE, assemble
 
 _BUDGET = 60.0
 
@@ -81,7 +82,7 @@ class Plan:
         if layout is None:
             self.kinematics = Kinematics(robot)
             self.sizes = _sizes_of(scheme, Configuration(robot, q))
-            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0], dtype=np.int64)
+            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0, 0, 0], dtype=np.int64)
         else:
             self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
             self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
@@ -121,6 +122,7 @@ class Plan:
         self.pinocchio = self.kinematics.pinocchio
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
+        codes[7:9] = ASSEMBLE.address, (SETTLE if converged else FOLLOW).address
         self.step: Callable[..., bool] = control_step
         if isinstance(control_step, Dispatcher):
             given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)

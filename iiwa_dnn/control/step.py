@@ -11,16 +11,43 @@ from numba import njit
 
 from iiwa_dnn.control.answers import FIGURES, PLACE
 from iiwa_dnn.networks.integrators.explicit import explicit_euler
-from iiwa_dnn.networks.integrators.implicit import settle_implicit
+from iiwa_dnn.networks.integrators.implicit import SETTLE
 from iiwa_dnn.networks.projection import field, stable_step
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.compiling import Apart
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.qp.residuals import kkt_point, within
-from iiwa_dnn.schemes.assembly import assemble
+from iiwa_dnn.schemes.assembly import ASSEMBLE
 from iiwa_dnn.schemes.parts import Codes
 
 NETWORK = 7
 """Numbers of a network, `DNNSolver.numbers`."""
+
+
+@compiled
+def follow(
+    data: Vector, n: int, m: int, p: int, state: Vector, point: Vector, network: Vector
+) -> tuple[int, float, float, float, float]:
+    """Advance the network by its time, with explicit steps; `network` (7,) is `control_step`'s.
+
+    Returns:
+        As `settle_implicit`: sub-steps, 0 where none are stable, time, and the residuals.
+    """
+    count, project = int(network[5]), network[4] != 0.0
+    if count == 0:
+        active = np.empty(m + 2 * n)
+        field(data, n, m, p, project, state, np.empty(state.size), active)
+        stable = network[6] * stable_step(data, n, m, p, active)
+        if not stable > 0.0:
+            return 0, 0.0, np.inf, np.inf, np.inf
+        count = max(1, int(np.ceil(network[3] / stable)))
+    explicit_euler(data, n, m, p, project, state, network[3] / count, count, -1.0)
+    primal, dual, gap = kkt_point(data, n, m, p, state, point)
+    return count, network[3], primal, dual, gap
+
+
+FOLLOW = Apart(follow, "Tuple((i8, f8, f8, f8, f8))(V, i8, i8, i8, V, V, V)")
+_enter_assemble, _enter_settle, _enter_follow = ASSEMBLE.enter, SETTLE.enter, FOLLOW.enter
 
 
 @compiled
@@ -33,7 +60,7 @@ def control_step(
     Args:
         rows: `Answers.rows`; the row ends with the step's targets.
         index: Number of the row.
-        codes: `Layout.codes`.
+        codes: `Layout.codes`, with the addresses of `assemble` and of the answering function.
         work: ``[1 / dt | last command (dof) | the one before (dof) | joint positions (dof) |
             network (7) | inertia matrix (dof dof, or none) | constants]``: the commands are
             written; the network's numbers are those of `DNNSolver.numbers` (tolerance, budget and
@@ -60,24 +87,29 @@ def control_step(
     if not built:
         inertia, targets = work[at_network + NETWORK :], figures[FIGURES + PLACE + dof :]
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
-        assemble(
-            data, codes, constants, q, jacobian, placements, inertia, targets, work[0],
-            work[1 : 1 + 2 * dof],
-        )  # fmt: skip
+        past = work[1 : 1 + 2 * dof]
+        _enter_assemble(
+            codes[7],
+            data,
+            codes,
+            constants,
+            q,
+            jacobian,
+            placements,
+            inertia,
+            targets,
+            work[0],
+            past,
+        )
     before = state.copy()
     if network[3] > 0.0:
-        count = int(network[5])
-        if count == 0:
-            count = substeps(data, n, m, p, network, state)
-            if count == 0:
-                return False
-        explicit_euler(data, n, m, p, network[4] != 0.0, state, network[3] / count, count, -1.0)
-        iterations, time = count, network[3]
-        primal, dual, gap = kkt_point(data, n, m, p, state, point)
+        iterations, time, primal, dual, gap = _enter_follow(
+            codes[8], data, n, m, p, state, point, network
+        )
         succeeded = primal + dual + gap < np.inf
     else:
-        iterations, time, primal, dual, gap = settle_implicit(
-            data, n, m, p, state, point, network[0], int(network[1]), network[2]
+        iterations, time, primal, dual, gap = _enter_settle(
+            codes[8], data, n, m, p, state, point, network[0], int(network[1]), network[2]
         )
         succeeded = within(primal, dual, gap, network[0])
     if not succeeded:
@@ -94,18 +126,6 @@ def control_step(
             # Rounded as numpy would: the record's q[k + 1] is q[k] + dt dq[k] to the last bit.
             q[i] = move(q[i], motion, point[i])
     return True
-
-
-@compiled
-def substeps(data: Vector, n: int, m: int, p: int, network: Vector, state: Vector) -> int:
-    """Count the explicit sub-steps that stability needs from a state (size,); 0: none are stable.
-
-    `network` (7,) is as in `control_step`.
-    """
-    active = np.empty(m + 2 * n)
-    field(data, n, m, p, network[4] != 0.0, state, np.empty(state.size), active)
-    stable = network[6] * stable_step(data, n, m, p, active)
-    return max(1, int(np.ceil(network[3] / stable))) if stable > 0.0 else 0
 
 
 # fastmath=False: left out, it would be inherited from the caller.

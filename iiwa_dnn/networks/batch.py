@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
-from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_implicit
+from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes
 from iiwa_dnn.qp.program import FIELDS, QP, numbers, require_pairs
@@ -25,6 +25,7 @@ CHUNK = 128
 BARRIER = 50
 """Budget of linear systems, on top, of a program that starts again through the barrier."""
 
+_enter = SETTLE.enter
 _AXES = {name: 2 if name in "PGA" else 1 for name in FIELDS}
 
 
@@ -172,12 +173,12 @@ def _settle_all(
     residuals: Matrix, iterations: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Settle one program for each row of `points`, over all cores."""
-    settler, count = ImplicitEuler(), len(points)
+    settler, count, address = ImplicitEuler(), len(points), SETTLE.address
 
     def settle(first: int) -> None:
         _settle_rows(
             first, min(first + CHUNK, count), tuple(parts), sizes, tol, settler.max_steps,
-            settler.long_step, points, residuals, iterations,
+            settler.long_step, points, residuals, iterations, address,
         )  # fmt: skip
 
     # Not numba's own threads: those end the process where two callers use them at once.
@@ -190,7 +191,7 @@ def _settle_all(
 def _settle_rows(
     first: int, last: int, parts: tuple[Matrix, ...], sizes: Sizes, tol: float,
     max_systems: int, long_step: float, points: Matrix, residuals: Matrix,
-    iterations: NDArray[np.int64],
+    iterations: NDArray[np.int64], address: int,
 ) -> None:  # fmt: skip
     """Settle the programs from `first` up to `last`, each from a cold start.
 
@@ -214,8 +215,8 @@ def _settle_rows(
         if convex:
             for i in range(state.size):
                 state[i] = 0.0
-            systems, _, primal, dual, gap = settle_implicit(
-                data, n, m, p, state, points[row], tol, max_systems, long_step
+            systems, _, primal, dual, gap = _enter(
+                address, data, n, m, p, state, points[row], tol, max_systems, long_step
             )
             iterations[row] = systems
             residuals[row, 0], residuals[row, 1], residuals[row, 2] = primal, dual, gap

@@ -30,11 +30,14 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # numba makes a float of a signed and an unsigned integer: the constant has to be unsigned too.
 ONE = np.uint64(1)
 
+_OPTIONS: dict[str, Any] = {
+    "cache": True, "error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True
+}  # fmt: skip
+
 
 def compiled(function: Function) -> Function:
     """Compile a function with numba at its first call, and keep the code on disk."""
-    jit = njit(cache=True, error_model="numpy", fastmath={"contract"})
-    return cast(Function, jit(function))
+    return cast(Function, njit(**_OPTIONS)(function))
 
 
 def check_size(argument: str, array: Vector, size: int) -> None:

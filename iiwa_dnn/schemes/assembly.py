@@ -15,6 +15,7 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.compiling import Apart
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.collisions import COLLISION, collision_rows
@@ -37,8 +38,19 @@ from iiwa_dnn.schemes.tasks import (
     so3_rows,
 )
 
-HEADER, BLOCK = 7, 7
-"""Entries of the codes' head (n, m, p, joints, blocks, frame, inertia) and of each block."""
+HEADER, BLOCK = 9, 8
+"""Entries of the codes' head (n, m, p, joints, blocks, frame, inertia; two addresses that
+`control.plan` fills in) and of each block (the last is the address of its function, or 0)."""
+
+_M = "float64[:, ::1]"
+_APART = {
+    COLLISION: Apart(collision_rows, f"void(V, i8, i8, i8, i8, i8, V, i8, {_M}, {_M}, f8)"),
+    MOTION_LIMITS: Apart(motion_limits, "void(V, i8, i8, i8, V, i8, V, V, f8)"),
+    ORIENTATION_BLOCK: Apart(block_rows, f"void(V, i8, i8, i8, i8[::1], i8, f8, {_M}, V, V, i8)"),
+}
+_enter_collision = _APART[COLLISION].enter
+_enter_motion = _APART[MOTION_LIMITS].enter
+_enter_block = _APART[ORIENTATION_BLOCK].enter
 
 
 class Block(NamedTuple):
@@ -142,7 +154,7 @@ class Layout:
         dof, count = self.robot.dof, len(compiled)
         kinematics = Kinematics(self.robot, self.frames)
         first = self.robot.frame_id(self.target_frames[0])
-        head = [*self.sizes, dof, count, first, int(self.needs_inertia)]
+        head = [*self.sizes, dof, count, first, int(self.needs_inertia), 0, 0]
         blocks: list[int] = []
         for block, at in zip(compiled, starts, strict=False):
             name = block.part.frame_name(self.robot)
@@ -152,7 +164,9 @@ class Layout:
             support = HEADER + BLOCK * count + dof * frame
             place = kinematics.frame_ids[frame]
             blocks += [block.part.kind, block.start, -block.rows if soft else block.rows]
-            blocks += [place, support, TARGET_SIZE * target, at]
+            apart = _APART.get(block.part.kind)
+            address = 0 if apart is None else apart.address
+            blocks += [place, support, TARGET_SIZE * target, at, address]
         moves = [kinematics.support(index) for index in kinematics.frame_ids]
         self.codes: Codes = np.concatenate([np.array(head + blocks, dtype=np.int64), *moves])
         weights = [
@@ -261,7 +275,7 @@ def assemble(
     for k in range(blocks):
         block = HEADER + BLOCK * k
         kind, start, rows = codes[block], codes[block + 1], codes[block + 2]
-        at = codes[block + 6]
+        at, address = codes[block + 6], codes[block + 7]
         if kind == KINETIC_ENERGY:
             add_kinetic_energy(data, n, dof, numbers, at, inertia)
         elif kind == CYCLIC_MOTION:
@@ -269,11 +283,13 @@ def assemble(
         elif kind == JOINT_LIMITS:
             joint_limits(data, at_lb, n, dof, numbers, at, q, rate)
         elif kind == MOTION_LIMITS:
-            motion_limits(data, at_lb, n, dof, numbers, at, q, past, rate)
+            _enter_motion(address, data, at_lb, n, dof, numbers, at, q, past, rate)
         elif kind == COLLISION:
             at_G = n * n + n + start * n
             at_h = n * n + n + m * n + start
-            collision_rows(data, at_G, at_h, n, dof, rows, numbers, at, jacobian, placements, rate)
+            _enter_collision(
+                address, data, at_G, at_h, n, dof, rows, numbers, at, jacobian, placements, rate
+            )
         else:
             count = abs(rows)
             if rows > 0:
@@ -295,9 +311,14 @@ def assemble(
                     out, A, b, n, codes, support, gain, jacobian, place, targets, target, period
                 )
             elif kind == ORIENTATION_BLOCK:
-                block_rows(out, A, b, n, codes, support, gain, jacobian, place, targets, target)
+                _enter_block(
+                    address, out, A, b, n, codes, support, gain, jacobian, place, targets, target
+                )
             if rows < 0:
                 _add_soft(data, n, out, count, numbers[numbers.size - blocks + k])
+
+
+ASSEMBLE = Apart(assemble, f"void(V, i8[::1], V, V, {_M}, {_M}, V, V, f8, V)")
 
 
 @compiled

@@ -211,7 +211,9 @@ def so3_rows(
         # The logarithm of a product: the mean twist and the error do not just add up.
         turn = targets[target + 15 : target + 18] / rate
         for j in range(3):
-            relative[:, j] = rotated(turn, relative[:, j])
+            column = rotated(turn, relative[:, j])
+            for i in range(3):  # a slice would compile numba's error messages
+                relative[i, j] = column[i]
         ahead = np.empty(3)
         rotation_log(relative, ahead)
         for i in range(3):

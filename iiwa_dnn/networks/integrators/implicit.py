@@ -30,6 +30,7 @@ from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_gram, linear_step
 from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
 from iiwa_dnn.networks.projection import field
+from iiwa_dnn.qp.compiling import Apart
 from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
@@ -190,3 +191,6 @@ def settle_implicit(
         travelling, step = next_step(step, GROWTH, before, rate, tol, travelling)
     primal, dual, gap = kkt_point(data, n, m, p, s, point)
     return systems, time, primal, dual, gap
+
+
+SETTLE = Apart(settle_implicit, "Tuple((i8, f8, f8, f8, f8))(V, i8, i8, i8, V, V, f8, i8, f8)")

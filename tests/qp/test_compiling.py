@@ -1,0 +1,70 @@
+"""Functions that are entered by their address, and the clock of the compiler."""
+
+from __future__ import annotations
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import heart, paper_robot
+from iiwa_dnn import DoubleIndicator, Robot, simulate
+from iiwa_dnn.qp import compiling
+from iiwa_dnn.qp.compiling import Apart, Watch
+from iiwa_dnn.qp.layout import Vector, compiled
+
+
+@compiled
+def _first_and_sum(values: Vector, count: int, factor: float) -> tuple[int, float]:
+    """Return the first value, cut to an integer, and the scaled sum of `count` values."""
+    total = 0.0
+    for i in range(count):
+        total += values[i]
+    return int(values[0]), factor * total
+
+
+_SUM = Apart(_first_and_sum, "Tuple((i8, f8))(V, i8, f8)")
+_enter = _SUM.enter
+
+
+@compiled
+def _twice(address: int, values: Vector) -> float:
+    """Enter the function with arguments of other types than its own."""
+    first, total = _enter(address, values, np.int32(values.size), 2)
+    return first + total
+
+
+def test_a_function_entered_by_its_address_answers_as_if_it_were_called() -> None:
+    values = np.array([3.7, 1.0, -2.5])
+    for _ in range(2):
+        assert _twice(_SUM.address, values) == 3 + 2.0 * 2.2
+
+
+def test_compiling_is_said_once_and_timed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = iter([1.0, 4.0, 10.0, 10.5])
+    monkeypatch.setattr(_twice.py_func, "__module__", "iiwa_dnn.control.step")
+    monkeypatch.setattr(compiling, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    monkeypatch.setattr("iiwa_dnn.qp.compiling.event.register", lambda *_: None)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    watch, own = Watch(), SimpleNamespace(data={"dispatcher": _twice})
+    for begins in (True, True, False, False, True, False):  # one inside another, and one more
+        (watch.on_start if begins else watch.on_end)(own)
+    assert watch.seconds == 3.5
+    assert capsys.readouterr().err == compiling.NOTICE + "\n"
+
+
+def test_compiling_is_not_wall_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    ask = DoubleIndicator.layout
+
+    def layout(self: DoubleIndicator, robot: Robot) -> object:
+        compiling.WATCH.seconds += 1000.0
+        return ask(self, robot)
+
+    monkeypatch.setattr(DoubleIndicator, "layout", layout)
+    record = simulate(paper_robot(), DoubleIndicator(), heart(), PAPER_Q0, dt=1e-4, duration=1e-3)
+    assert record.wall_time_s is not None
+    assert record.wall_time_s < -900.0
