@@ -16,7 +16,7 @@ from iiwa_dnn.qp import QP
 from iiwa_dnn.qp.compiling import WATCH
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Waypoints
 from iiwa_dnn.robot import Configuration, load_robot
-from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.schemes import AccelerationLimits, CollisionAvoidance, DoubleIndicator
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 
@@ -42,7 +42,9 @@ def run(options: WarmUpOptions) -> int:
             path.at(0.0)
         # Joints too slow for the path: steps without a solution, with certificate and policy.
         slow = robot.with_limits(velocity=1e-3 * robot.dq_max)
-        simulate(slow, DoubleIndicator(), reference, q0, dt=1e-2, duration=0.1)
+        for limits in ((), (AccelerationLimits(10.0), CollisionAvoidance())):
+            scheme = DoubleIndicator(extra_limits=limits)
+            simulate(slow, scheme, reference, q0, dt=1e-2, duration=0.1)
         bar.update()
         qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=np.ones(1))
         solve_problem(qp)

@@ -109,7 +109,10 @@ def test_after_the_warm_up_runs_compile_nothing(
         (("--mode", "continuous", "--orientation", "block"), 0),
         (("--motion", "rk4", "--kinetic", "inertia", "--reference", "circle"), 0),
         (("--scale", "0.1", "--speed", "0.01"), 1),  # steps without a solution
+        (("--acceleration-limit", "10", "--obstacles", str(tmp_path / "ball.toml")), 0),
     )
+    ball = '[[obstacle]]\nshape = "sphere"\ncenter = [9.0, 9.0, 9.0]\nradius = 0.1\n'
+    (tmp_path / "ball.toml").write_text(ball)
     with event.install_recorder("numba:compile") as compiled:
         for arguments, code in runs:
             assert main(["track", *short, *arguments, "--out", str(tmp_path)]) == code
