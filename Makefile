@@ -1,22 +1,23 @@
-# What a person needs: make setup, make heart, make test. ARGS="..." is handed on.
+# The targets of a user: make setup, make heart, make test. ARGS="..." is handed on.
 
 PYTHON ?= python3
 VENV := .venv
 VENV_PYTHON := $(VENV)/bin/python
 STAMP := $(VENV)/.installed
 ARGS ?=
+EXTRAS ?= robots,sim,view,dev
 
 .DEFAULT_GOAL := help
-.PHONY: help setup heart physics view test bounds notebooks docs coverage lint format types clean
+.PHONY: help force setup heart physics view test bounds notebooks docs coverage lint format types clean
 
 help:  ## list what can be made
-	@echo 'usage: make TARGET [PYTHON=python3.12] [ARGS="..."]'
+	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
 
-setup: $(STAMP)  ## make .venv and install the package in it, with everything that was tested
+setup: $(STAMP)  ## make .venv and install the package in it; EXTRAS= names some extras only
 
-# The stamp comes last, so that a setup cut short is done again.
-$(STAMP): pyproject.toml constraints.txt
+# The stamp comes last, so that a setup cut short is done again; other extras are installed anew.
+$(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS)),force)
 	@command -v $(PYTHON) >/dev/null || \
 		{ echo 'setup: $(PYTHON) not found; name a Python >= 3.10: make setup PYTHON=...' >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
@@ -26,8 +27,9 @@ $(STAMP): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import ctypes, sys; sys.platform == "linux" and ctypes.CDLL("libgomp.so.1")' 2>/dev/null || \
 		{ echo 'setup: the OpenMP library that Pinocchio and ProxQP load is missing; on Debian and Ubuntu: apt-get install libgomp1' >&2; exit 1; }
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
-	@echo 'setup: installing into $(VENV), 2 GB on disk in the end; the first time takes some minutes'
-	$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[robots,sim,view,dev]'
+	@echo 'setup: installing into $(VENV) with the extras $(EXTRAS)'
+	@echo 'setup: 0.9 GB on disk in the end, 2.1 GB with all extras; the first time takes some minutes'
+	$(VENV_PYTHON) -m pip install --progress-bar off --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]'
 	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
 

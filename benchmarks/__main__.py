@@ -1,13 +1,14 @@
-"""``python -m benchmarks`` solvers, loop, targets or collisions: measure, beside peers."""
+"""``python -m benchmarks`` solvers, loop, targets, collisions or sizes: measure, beside peers."""
 
 import sys
 
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
+from benchmarks.sizes import bench_sizes
 
 COMMANDS = {
     "solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets,
-    "collisions": bench_collisions,
+    "collisions": bench_collisions, "sizes": bench_sizes,
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import finite_array, not_negative, positive
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
 from iiwa_dnn.references.base import Pose, Reference
 
 
@@ -47,6 +47,7 @@ class MovingTarget(Reference):
         Raises:
             InvalidInputError: The pose is not finite, or a limit is not a number above zero; or a
                 jerk is given without an acceleration.
+            MissingDependencyError: An acceleration is given and ruckig is not installed.
         """
         self.speed, self.rate = not_negative("speed", speed), not_negative("rate", rate)
         self.acceleration, self.jerk = acceleration, jerk
@@ -120,9 +121,10 @@ class _Filter:
     """Time-optimal motion of a pose: six axes, the last three a rotation vector from `_anchor`."""
 
     def __init__(self, limits: tuple[float, float], acceleration: float, jerk: float) -> None:
-        # Here, since only filters of accelerations need it.
-        from ruckig import InputParameter, Ruckig, Trajectory
-
+        try:  # here, since only filters of accelerations need it
+            from ruckig import InputParameter, Ruckig, Trajectory
+        except ImportError as error:
+            raise MissingDependencyError("ruckig", "pip install ruckig") from error
         self._ruckig, self._ask, self._way = Ruckig(6), InputParameter(6), Trajectory(6)
         # The limits of ruckig are those of each axis, these are of the whole vector.
         most = np.repeat(limits, 3) / math.sqrt(3.0)

@@ -53,7 +53,8 @@ def load_robot(
             the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
             an arm of `iiwa_dnn.robot.arms.ARMS` has all joints frozen that do not move its tip.
-        verify: Let a second reader judge joints, limits and link poses (`verification`).
+        verify: Let a second reader judge joints, limits and link poses (`verification`); of the
+            extra ``verify``.
         tool: Pose of a tool in the frame `tip`, whose place it takes (`Robot.with_tool`): an SE3,
             or x, y, z [m], roll, pitch, yaw [rad], (6,).
 
@@ -63,7 +64,8 @@ def load_robot(
             second reader disagrees.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
             left free has more or less than one coordinate, or follows another joint.
-        MissingDependencyError: If the arm of that name is in a package that is not installed.
+        MissingDependencyError: If the arm of that name, or the second reader, is in a package that
+            is not installed.
     """
     arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
     path = _find(name_or_path) if arm is None else arm.path

@@ -9,11 +9,15 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-import yourdfpy
 
-from iiwa_dnn.errors import FileError
+from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import Robot, file_of
+
+try:
+    import yourdfpy
+except ImportError as error:
+    raise MissingDependencyError("yourdfpy", "pip install 'iiwa-dnn[verify]'") from error
 
 _TOLERANCE = 1e-9  # of positions [m] and of the rotation matrices' entries
 
