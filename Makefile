@@ -29,7 +29,11 @@ $(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS))
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'setup: installing into $(VENV) with the extras $(EXTRAS)'
 	@echo 'setup: 0.9 GB on disk in the end, 2.1 GB with all extras; the first time takes some minutes'
-	$(VENV_PYTHON) -m pip install --progress-bar off --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]'
+	@$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]' & \
+		pip=$$!; seconds=0; while kill -0 $$pip 2>/dev/null; do \
+		printf '\rsetup: %s s, %s MB in $(VENV)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
+		sleep 3; seconds=$$((seconds + 3)); done; echo; wait $$pip
+	@echo 'setup: compiling the numerical code, once; about a minute'
 	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
 

@@ -9,6 +9,7 @@ be stretched out to a singular posture, which it could not leave again within it
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +19,8 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks.integrators import ImplicitEuler
+from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Target
@@ -47,8 +50,9 @@ class FollowerState:
         position_error: Distance from tip to target [m].
         orientation_error: Angle between them [rad].
         kkt_residual: Largest KKT residual of the network's answer.
-        share: How much of the error was asked for: below 1 the target cannot be followed in full,
+        share: Share of the error that was asked for: below 1 the target cannot be followed in full,
             at 0 the tip stands still.
+        seconds: Wall time of the control step [s].
     """
 
     q: Vector
@@ -56,6 +60,7 @@ class FollowerState:
     orientation_error: float
     kkt_residual: float
     share: float
+    seconds: float
 
 
 class Follower:
@@ -93,9 +98,11 @@ class Follower:
         lowered = {name: min(getattr(scheme, name), 1.0 / dt) for name in _GAINS}
         scheme = replace(scheme, **lowered)
         self._controller = Controller(robot, scheme.anchored(start), dt=dt, policy="stop")
+        self._controller.warm_up()
         self._command: Command | None = None
         self._level = 0  # which share of the error to try first
         self._shift, self.obstacle = np.zeros(3), None
+        self._pushes: list[FloatArray] = []
 
     @property
     def scheme(self) -> DoubleIndicator:
@@ -164,7 +171,7 @@ class Follower:
         scheme = self.scheme
         shift *= _share(distance, TIP_SPEED, scheme.position_gain)
         turn *= _share(angle, TIP_RATE, scheme.orientation_gain)
-        asked, residual = 0.0, float("inf")
+        asked, residual, began = 0.0, float("inf"), time.perf_counter()
         for level in range(self._level, len(_SHARES)):
             share = _SHARES[level]
             near = pin.exp3(share * turn) @ conf.rotation
@@ -184,7 +191,40 @@ class Follower:
                 # The next step begins one share higher: at the edge, few programs are in vain.
                 self._level = max(0, level - 1)
                 break
-        return FollowerState(self._q, distance, angle, residual, asked)
+        seconds = time.perf_counter() - began
+        if self._pushes:
+            moved = self._q + self._pushes.pop()
+            self._q = np.clip(moved, self.robot.q_lower, self.robot.q_upper)
+        return FollowerState(self._q, distance, angle, residual, asked, seconds)
+
+    def push(self, shift: FloatArray) -> None:
+        """Displace the joints by `shift` (n,) [rad] within the next 0.1 s, inside their limits."""
+        count = max(1, round(0.1 / self.dt))
+        self._pushes = [shift / count] * count
+
+    @property
+    def distance(self) -> float:
+        """Distance of the arm from the ball [m]; NaN without one."""
+        for part in self.scheme.extra_limits:
+            if isinstance(part, CollisionAvoidance):
+                found = part.scene(self.robot).nearest(self._q[None], np.zeros(1))
+                return float(found[0][0])
+        return float("nan")
+
+    def settling(self) -> tuple[FloatArray, FloatArray]:
+        """Let a network settle on the last program from rest, and record its way.
+
+        Returns:
+            Decimal logarithms of the network time [rho], (M,), and the distances of the M points
+            from the answer [rad/s], (M, n). Empty before the first step.
+        """
+        if self._command is None:
+            return np.empty(0), np.empty((0, self.robot.dof))
+        network = self._controller.solver.network
+        solver = DNNSolver(network, follower=ImplicitEuler(step=1e12))
+        steps = 0.01 * 1.3 ** np.arange(70)
+        points = [solver.advance(self._command.qp, h * network.rho).x for h in steps]
+        return np.log10(np.cumsum(steps)), np.abs(np.array(points) - self._command.dq)
 
     def _stays_clear(self, now: Configuration, then: Configuration) -> bool:
         """Tell whether a step leads the arm neither into nor deeper into a singular posture."""

@@ -1,4 +1,4 @@
-"""The page: its server, replay and live mode on one stage, and the loop that keeps it moving."""
+"""The page: its server, a session for each browser, and the loop that keeps them moving."""
 
 from __future__ import annotations
 
@@ -6,19 +6,25 @@ import html
 import json
 import socket
 import time
+import warnings
 from collections.abc import Callable
 from contextlib import redirect_stdout
+from functools import partial
 from importlib import import_module
 from io import StringIO
+from queue import SimpleQueue
 from typing import Any
+
+import numpy as np
 
 from iiwa_dnn.app.viewer.follower import Follower
 from iiwa_dnn.app.viewer.live import LivePanel
 from iiwa_dnn.app.viewer.replay import ReplayPanel
-from iiwa_dnn.app.viewer.stage import VIEWS, Stage
+from iiwa_dnn.app.viewer.stage import VIEWS, Stage, first_view
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
 from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import DoubleIndicator
 
@@ -28,14 +34,68 @@ TICK = 1.0 / 30.0
 _MODES = ("replay", "live")
 
 
+class Session:
+    """Replay and live mode in one browser, with a state of their own.
+
+    Attributes:
+        stage: The three-dimensional part.
+        replay: The replay; None without a record.
+        live: The live mode.
+    """
+
+    def __init__(
+        self, host: Any, robot: Robot, q0: Vector, record: Record | None,
+        scheme: DoubleIndicator | None,
+    ) -> None:  # fmt: skip
+        """Put the robot and all controls into a browser.
+
+        Args:
+            host: The browser, a ``viser.ClientHandle``; or the server, for all of them.
+            robot: The robot, n joints.
+            q0: Joint positions at the start of the live mode [rad], (n,).
+            record: Run to replay; None: live mode only.
+            scheme: Scheme of the live mode; None takes the defaults.
+        """
+        follower = Follower(robot, q0, scheme)
+        self.stage = Stage(host, robot, _middle(robot, q0, record))
+        if getattr(getattr(host, "camera", None), "aspect", 1.0) < 1.0:  # a phone, upright
+            self.stage.turn_to("phone")
+        view: Any = host.gui.add_button_group("view", VIEWS)
+        view.on_click(lambda event: self.stage.turn_to(event.target.value))
+        if record is not None:
+            self._mode: Any = host.gui.add_button_group("mode", _MODES)
+            self._mode.on_click(lambda event: self.set_mode(str(event.target.value).strip("● ")))
+            self._mark("replay")
+        self.replay = None if record is None else ReplayPanel(self.stage, record)
+        self.live = LivePanel(self.stage, follower)
+        if record is None:
+            self.live.set_active(True)
+
+    def set_mode(self, mode: str) -> None:
+        """Change between ``"replay"`` and ``"live"``; both go on from their last state."""
+        if self.replay is not None:
+            self.live.set_active(mode == "live")
+            self.replay.set_visible(mode == "replay")
+            self._mark(mode)
+
+    def _mark(self, active: str) -> None:
+        """Mark the active mode's button."""
+        self._mode.options = tuple(f"● {mode}" if mode == active else mode for mode in _MODES)
+
+    def tick(self, elapsed: float) -> None:
+        """Let `elapsed` seconds pass."""
+        if self.live.active:
+            self.live.tick(elapsed)
+        elif self.replay is not None:
+            self.replay.tick(elapsed)
+
+
 class Page:
-    """A page that replays a record, follows a target live, or both in turn.
+    """A page that replays a record, follows a target live, or both in turn, in every browser anew.
 
     Attributes:
         server: The ``viser.ViserServer``.
-        stage: Its three-dimensional part.
-        replay: The replay; None without a record.
-        live: The live mode.
+        sessions: The browsers' sessions by their number, the newest last.
     """
 
     def __init__(
@@ -61,21 +121,18 @@ class Page:
             MissingDependencyError: If viser is not installed.
             InvalidInputError: If the address cannot be listened on, or `q0` is not acceptable.
         """
-        follower = Follower(robot, q0, scheme)
+        point = _middle(robot, q0, record)
         self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
-        self.stage = Stage(self.server, robot)
-        view: Any = self.server.gui.add_button_group("view", VIEWS)
-        view.on_click(lambda event: self.stage.turn_to(event.client.camera, event.target.value))
-        if record is not None:
-            self._mode: Any = self.server.gui.add_button_group("mode", _MODES)
-            self._mode.on_click(lambda event: self.set_mode(str(event.target.value).strip("● ")))
-            self._mark("replay")
-        self.replay = None if record is None else ReplayPanel(self.stage, record)
-        self.live = LivePanel(self.stage, follower)
-        if record is None:
-            self.stage.look_at(follower.configuration.position)
-            self.stage.show(follower.configuration.q)
-            self.live.set_active(True)
+        camera = self.server.initial_camera
+        camera.position, camera.look_at = map(tuple, first_view(point))
+        camera.fov = 0.95  # rad, from top to bottom
+        self.sessions: dict[int, Session] = {}
+        self._open = partial(Session, robot=robot, q0=q0, record=record, scheme=scheme)
+        # Browsers come and go in threads of the server; sessions change in `tick` alone.
+        self._comings: SimpleQueue[Any] = SimpleQueue()
+        self._goings: SimpleQueue[Any] = SimpleQueue()
+        self.server.on_client_connect(self._comings.put)
+        self.server.on_client_disconnect(self._goings.put)
 
     @property
     def address(self) -> str:
@@ -84,23 +141,19 @@ class Page:
         shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host
         return f"http://{f'[{shown}]' if ':' in shown else shown}:{self.server.get_port()}"
 
-    def set_mode(self, mode: str) -> None:
-        """Change between ``"replay"`` and ``"live"``; both go on from their last state."""
-        if self.replay is not None:
-            self.live.set_active(mode == "live")
-            self.replay.set_visible(mode == "replay")
-            self._mark(mode)
-
-    def _mark(self, active: str) -> None:
-        """Mark the active mode's button."""
-        self._mode.options = tuple(f"● {mode}" if mode == active else mode for mode in _MODES)
+    def open(self, host: Any) -> Session:
+        """Return a new session of a browser."""
+        return self._open(host)
 
     def tick(self, elapsed: float) -> None:
-        """Let `elapsed` seconds pass."""
-        if self.live.active:
-            self.live.tick(elapsed)
-        elif self.replay is not None:
-            self.replay.tick(elapsed)
+        """Let `elapsed` seconds pass in every browser."""
+        while not self._comings.empty():
+            client = self._comings.get()
+            self.sessions[client.client_id] = self.open(client)
+        while not self._goings.empty():
+            self.sessions.pop(self._goings.get().client_id, None)
+        for session in self.sessions.values():
+            session.tick(elapsed)
 
     def run(self, stop: Callable[[], bool] = lambda: False) -> None:
         """Keep the page moving until `stop` returns True, or Ctrl-C."""
@@ -115,6 +168,12 @@ class Page:
         """Close the page."""
         with redirect_stdout(StringIO()):  # viser says so
             self.server.stop()
+
+
+def _middle(robot: Robot, q0: Vector, record: Record | None) -> FloatArray:
+    """Return the middle of the path, or where the tip is at the start (3,) [m]."""
+    start = Configuration(robot, q0).position
+    return start if record is None else np.asarray(record.position_desired.mean(axis=0))
 
 
 def _open_server(title: str, host: str, port: int) -> Any:
@@ -136,6 +195,8 @@ def _open_server(title: str, host: str, port: int) -> Any:
     script = html.escape(f"document.title = {json.dumps(title)}")
     server.gui.add_html(f'<img src="data:," style="display:none" onerror="{script}">')
     server.scene.set_up_direction("+z")
+    # A browser that goes away amid a tick needs no more pictures.
+    warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")
     return server
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn.app.viewer import readout
+from iiwa_dnn.app.viewer.curves import COLOURS, Curves
 from iiwa_dnn.app.viewer.stage import Stage
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.envelope import envelope
@@ -18,7 +19,6 @@ from iiwa_dnn.results.scenery import obstacles_of
 SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
 _DESIRED_COLOUR, _DRAWN_COLOUR = (70, 80, 100), (220, 0, 30)
 _CURVE_POINTS = 300
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass
@@ -65,6 +65,7 @@ class ReplayPanel:
     Attributes:
         record: The run.
         playback: Its clock; the page's controls act on it, and so may a caller.
+        curves: Diagrams of the whole run.
     """
 
     def __init__(self, stage: Stage, record: Record) -> None:
@@ -75,12 +76,11 @@ class ReplayPanel:
         self._error = np.linalg.norm(position_error(record), axis=1)
         self._turn = orientation_error(record)
         self._shown: tuple[float, bool] | None = None
-        self._curves: list[tuple[_Curve, Any]] = []
+        self.curves: list[Curves] = []
         self._since_readout = np.inf
         stage.line("desired", record.position_desired, _DESIRED_COLOUR, 2.0)
         stage.add_obstacles(obstacles_of(record))
-        stage.look_at(record.position_desired.mean(axis=0))
-        gui = stage.server.gui
+        gui = stage.host.gui
         folders = gui.add_folder("Replay"), gui.add_folder("State")
         self._folders = (*folders, gui.add_folder("Whole run", expand_by_default=False))
         with self._folders[0]:
@@ -92,9 +92,14 @@ class ReplayPanel:
             self._facts = gui.add_html("")
             self._bars = gui.add_html("")
         with self._folders[2]:
-            self._curve(record.t, self._error, "position error [m]", "#d6001c")
-            gap = record.crosscheck_gap
-            self._curve(record.t[:-1], gap, "cross-check gap [rad/s]", "#1c7ed6")
+            steps = record.t[:-1]
+            self._curve(record.t, self._error, "position error [m]", COLOURS[0])
+            if record.distance is not None:
+                self._curve(
+                    record.t, record.distance, "distance of the nearest pair [m]", COLOURS[2]
+                )
+            self._curve(steps, record.kkt_residual, "KKT residual of the network", COLOURS[4])
+            self._curve(steps, record.crosscheck_gap, "cross-check gap [rad/s]", COLOURS[1])
         self._play.on_click(lambda _: self.playback.toggle())
         self._slider.on_update(self._on_slider)
         self._speed.on_update(self._on_speed)
@@ -155,8 +160,8 @@ class ReplayPanel:
             if record.torque is not None:
                 values["largest torque"] = f"{np.abs(record.torque[step]).max():.1f} N m"
         self._facts.content = readout.facts(values)
-        for curve, handle in self._curves:
-            handle.data = curve.at(self.playback.time)
+        for curve in self.curves:
+            curve.mark(self.playback.time)
         robot = self._stage.robot
         self._bars.content = readout.joint_bars(record.q[k], robot.q_lower, robot.q_upper)
 
@@ -170,56 +175,11 @@ class ReplayPanel:
         self.playback.speed = float(event.target.value)
 
     def _curve(self, t: FloatArray, values: FloatArray, title: str, colour: str) -> None:
-        """Draw the largest value of each stretch of time, where it is positive and has a log."""
-        good = np.isfinite(values) & (values > 0.0)
-        if good.sum() < 2:
-            return
-        from viser import uplot  # of an extra
-
-        times, _, _, greatest = envelope(t[good], values[good], _CURVE_POINTS)
-        low, high = np.floor(np.log10(greatest.min())), np.ceil(np.log10(greatest.max()))
-        powers = np.arange(low, max(high, low + 1.0) + 1.0, max(1.0, (high - low) // 5))
-        curve = _Curve(times, greatest, float(10.0**low), float(10.0 ** max(high, low + 1.0)))
-        handle = self._stage.server.gui.add_uplot(
-            curve.at(times[0]),
-            (
-                uplot.Series(label="t [s]"),
-                uplot.Series(label=title, stroke=colour, width=1),
-                uplot.Series(label="now", stroke="#444", width=1, points={"show": False}),
-            ),
-            title=title,
-            scales={
-                "x": uplot.Scale(time=False),
-                "y": uplot.Scale(distr=3, log=10, range=(curve.low, curve.high)),
-            },
-            axes=(
-                uplot.Axis(),
-                uplot.Axis(
-                    splits=tuple((10.0**powers).tolist()),
-                    values=tuple("10" + f"{k:.0f}".translate(_RAISED) for k in powers),
-                ),
-            ),
-            legend=uplot.Legend(show=False),
-            height=190,
-            padding=(12, 8, 0, 0),  # room for half a number above the axis
-        )
-        self._curves.append((curve, handle))
-
-
-@dataclass
-class _Curve:
-    """A curve over times (M,) [s] between two powers of ten, and the line of the present time."""
-
-    times: FloatArray
-    values: FloatArray
-    low: float
-    high: float
-
-    def at(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return times, curve and a line that is at the bottom but at the present time."""
-        k = int(np.searchsorted(self.times, time))
-        times = np.insert(self.times, k, 3 * [np.clip(time, self.times[0], self.times[-1])])
-        line = np.full(len(times), self.low)
-        line[k + 1] = self.high
-        there = self.values[min(k, len(self.values) - 1)]
-        return times, np.insert(self.values, k, 3 * [there]), line
+        """Draw the largest value of each stretch of time."""
+        if (values > 0.0).sum() > 1:
+            times, _, _, greatest = envelope(t, np.nan_to_num(values, posinf=0.0), _CURVE_POINTS)
+            curve = Curves(
+                self._stage.host.gui, title, (colour,), (self.playback.start, self.playback.end)
+            )
+            curve.show(times, greatest)
+            self.curves.append(curve)

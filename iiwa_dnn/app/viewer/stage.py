@@ -22,18 +22,24 @@ _PIECES = 400  # straight pieces that a path is drawn with, at most
 
 
 class Stage:
-    """A robot on a page.
+    """A robot in a browser.
 
     Attributes:
-        server: The ``viser.ViserServer``.
+        host: The browser, a ``viser.ClientHandle``; or a ``viser.ViserServer`` for all of them.
         robot: The robot.
     """
 
-    def __init__(self, server: Any, robot: Robot) -> None:
-        """Put the robot's shapes and a floor on the page."""
-        self.server, self.robot = server, robot
+    def __init__(self, host: Any, robot: Robot, point: FloatArray) -> None:
+        """Put the robot's shapes and a floor on the page.
+
+        Args:
+            host: The browser, or the server.
+            robot: The robot.
+            point: The point that the views turn to [m], (3,).
+        """
+        self.host, self.robot, self._point = host, robot, point
         self._data = robot.model.createData()
-        scene = server.scene
+        scene = host.scene
         scene.add_grid(
             "/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5, plane="xy",
             cell_color=(225, 225, 230), section_color=(195, 195, 205), shadow_opacity=0.25,
@@ -56,12 +62,12 @@ class Stage:
             if not isinstance(obstacle, HalfSpace):
                 colour = tuple(round(255 * part) for part in OBSTACLE_COLOUR)
                 name, outside = f"/obstacle_{number}", outline(obstacle)
-                node = self.server.scene.add_mesh_simple(name, *outside, color=colour)
+                node = self.host.scene.add_mesh_simple(name, *outside, color=colour)
                 self._obstacles.append((node, obstacle))
 
     def _add(self, shape: Shape, name: str, **options: Any) -> None:
         """Put a shape on the page, under the frame that its name begins with."""
-        scene, place = self.server.scene, {
+        scene, place = self.host.scene, {
             "name": name,
             "color": tuple(round(255 * part) for part in shape.colour),
             "position": shape.position,
@@ -85,7 +91,7 @@ class Stage:
 
     def show(self, q: FloatArray, t: float = 0.0) -> None:
         """Move the robot to joint positions (n,) [rad], and obstacles to where they are then."""
-        with self.server.atomic():
+        with self.host.atomic():
             for node, obstacle in self._obstacles:
                 node.position = obstacle.shift(t)
             poses = joint_poses(self.robot, q, self._data)
@@ -101,7 +107,7 @@ class Stage:
         if name in self._lines:
             self._lines[name].points = pieces
             return
-        self._lines[name] = self.server.scene.add_line_segments(
+        self._lines[name] = self.host.scene.add_line_segments(
             f"/{name}", pieces, colour, thickness=width, thickness_units="screen"
         )
 
@@ -110,27 +116,29 @@ class Stage:
         if name in self._lines:
             self._lines[name].visible = visible
 
-    def look_at(self, point: FloatArray) -> None:
-        """Let the camera of a new page look at the arm and at a point [m], (3,)."""
-        self._point = point
-        side = _beside(point)
-        middle = 0.5 * point + np.array([0.0, 0.0, 0.25])
-        away = 0.95 * side + 0.35 * point + np.array([0.0, 0.0, 0.55])
-        right = np.cross([0.0, 0.0, 1.0], away)
-        middle += 0.2 * right / np.linalg.norm(right)  # the controls cover the right of the page
-        camera = self.server.initial_camera
-        camera.look_at, camera.position = tuple(middle), tuple(middle + away)
-        camera.fov = 0.95  # rad, from top to bottom
-
-    def turn_to(self, camera: Any, view: str) -> None:
-        """Let one browser's camera look as one of ``VIEWS`` says."""
+    def turn_to(self, view: str) -> None:
+        """Let the browser's camera look as one of ``VIEWS`` says."""
         side, up = _beside(self._point), np.array([0.0, 0.0, 1.0])
         away = {"top": 0.7 * up + 1e-3 * side, "side": 0.7 * side, "tool": 0.25 * (side + up)}
-        first = self.server.initial_camera
-        middle = self._point if view in away else np.array(first.look_at)
-        position = self._point + away[view] if view in away else np.array(first.position)
-        camera.position = tuple(position)  # takes the point looked at along
-        camera.look_at = tuple(middle)
+        position, middle = first_view(self._point)
+        if view == "phone":  # the controls cover the lower part
+            position, middle = 2.2 * position - 1.2 * middle, np.array(middle)
+            drop = np.array([0.0, 0.0, 0.55])
+            position, middle = position - drop, middle - drop
+        if view in away:
+            position, middle = self._point + away[view], self._point
+        self.host.camera.position = tuple(position)  # takes the point looked at along
+        self.host.camera.look_at = tuple(middle)
+
+
+def first_view(point: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a camera's position and the point that it looks at, for the arm and a point, (3,)."""
+    side = _beside(point)
+    middle = 0.5 * point + np.array([0.0, 0.0, 0.25])
+    away = 0.95 * side + 0.35 * point + np.array([0.0, 0.0, 0.55])
+    right = np.cross([0.0, 0.0, 1.0], away)
+    middle += 0.2 * right / np.linalg.norm(right)  # the controls cover the right of the page
+    return middle + away, middle
 
 
 def _beside(point: FloatArray) -> FloatArray:

@@ -143,3 +143,40 @@ def test_an_arm_gives_way_to_a_ball_that_is_pushed_against_it(
     follower.avoid(None)
     with pytest.raises(InvalidInputError, match=r"^obstacle"):
         follower.move_obstacle(elbow)
+
+
+def test_a_push_displaces_the_joints_inside_their_limits_and_is_made_good(robot):
+    near = robot.with_limits(upper=np.append(np.full(6, 2.5), START[6] + 0.02))
+    follower = Follower(near, START)
+    start = follower.configuration
+    follower.push(np.array([0.0, 0.05, 0.0, 0.0, 0.0, 0.0, 0.1]))
+    errors = [follower.step(start.position, start.rotation).position_error for _ in range(20)]
+    assert (follower.configuration.q <= near.q_upper).all()
+    assert max(errors) > 0.01
+    for _ in range(600):
+        state = follower.step(start.position, start.rotation)
+    assert state.position_error < 1e-5
+
+
+def test_the_network_settles_from_rest_on_the_answer(robot):
+    follower = Follower(robot, START)
+    start = follower.configuration
+    assert len(follower.settling()[0]) == 0
+    follower.step(start.position + np.array([0.02, 0.0, 0.0]), start.rotation)
+    times, apart = follower.settling()
+    assert (np.diff(times) > 0.0).all()
+    answer = np.abs(follower._command.dq)
+    assert answer.max() > 0.05
+    # Rest is as far from the answer as the answer is large; in the end nothing is left.
+    np.testing.assert_allclose(apart[0], answer, atol=0.05 * answer.max())
+    assert apart[-1].max() < 1e-8
+
+
+def test_the_distance_of_arm_and_ball(robot):
+    follower = Follower(robot, START)
+    assert np.isnan(follower.distance)
+    tip = follower.configuration.position
+    follower.avoid(Sphere((tip + np.array([0.0, 0.0, 0.6])).tolist(), 0.05))
+    far = follower.distance
+    follower.move_obstacle(tip)  # by one period at the ball's speed
+    assert 0.0 < far - follower.distance <= TIP_SPEED * follower.dt + 1e-9

@@ -25,9 +25,10 @@ def test_obstacles_of_a_record_stand_where_they_are() -> None:
     record = iiwa_dnn.simulate(robot, scheme, heart, START, dt=1e-2, duration=0.2)
     page = Page(robot, record.q[0], record, port=0)
     try:
-        drawn = page.stage._obstacles
+        stage = page.open(page.server).stage
+        drawn = stage._obstacles
         assert [type(obstacle).__name__ for _, obstacle in drawn] == ["Sphere", "Box"]
-        page.stage.show(record.q[-1], 2.0)
+        stage.show(record.q[-1], 2.0)
         np.testing.assert_allclose(drawn[0][0].position, [0.0, 0.0, -0.1])
         np.testing.assert_allclose(drawn[1][0].position, 0.0)
         ball, corners = drawn[0][0].vertices, drawn[1][0].vertices

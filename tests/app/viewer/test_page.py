@@ -13,7 +13,8 @@ import pytest
 from helpers_browser import needs_browser, open_browser, picture, requested, wait_for
 from helpers_physics import START, heart_without_physics, papers_robot
 from iiwa_dnn import Configuration, InvalidInputError, Target
-from iiwa_dnn.app.viewer.page import Page
+from iiwa_dnn.app.viewer.page import Page, Session
+from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.robot.shapes import joint_poses
 
 pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")
@@ -45,9 +46,16 @@ def browser(page, tmp_path_factory):
     with open_browser(tmp_path_factory.mktemp("profile")) as browser:
         browser.get_log("performance")  # what the empty start page asked for
         browser.get(page.address)
+        wait_for(lambda: page.sessions, "the session of this browser")
         wait_for(lambda: buttons(browser, "Play"), "the page's controls")
         wait_for(lambda: arm(picture(browser)).sum() > 1000, "the arm")
         yield browser
+
+
+@pytest.fixture
+def session(page, browser):
+    """The session of the browser, which was the first."""
+    return page.sessions[min(page.sessions)]
 
 
 def buttons(browser, text: str) -> list:
@@ -108,16 +116,16 @@ def test_it_loads_from_this_machine_alone_and_is_not_blank(browser, page):
 
 
 @needs_browser
-def test_the_title_and_the_active_mode_are_told(browser, page):
+def test_the_title_and_the_active_mode_are_told(browser, session):
     wait_for(lambda: browser.title == "iiwa7 · iiwa_dnn", "the window's title")
     assert buttons(browser, "● replay")
     assert not buttons(browser, "● live")
 
 
 @needs_browser
-def test_views_turn_the_camera_of_this_browser(browser, page):
-    camera = next(iter(page.server.get_clients().values())).camera
-    tip = page.replay.record.position_desired.mean(axis=0)
+def test_views_turn_the_camera_of_this_browser(browser, session):
+    camera = session.stage.host.camera
+    tip = session.replay.record.position_desired.mean(axis=0)
     first = np.array([camera.position, camera.look_at])
     for view, direction in (("top", [0.0, 0.0, 1.0]), ("side", [tip[1], -tip[0], 0.0])):
         click(browser, view)
@@ -135,57 +143,69 @@ def test_views_turn_the_camera_of_this_browser(browser, page):
 
 
 @needs_browser
-def test_curves_have_powers_of_ten_and_a_line_at_the_present_time(browser, page):
-    curve, handle = page.replay._curves[0]
-    page.replay.playback.seek(4.0)
-    wait_for(lambda: handle.data[0][np.argmax(handle.data[2])] == 4.0, "the line")
+def test_curves_have_powers_of_ten_and_a_line_at_the_present_time(browser, session):
+    curve = session.replay.curves[0]
+    handle = curve.handle
+    session.replay.playback.seek(4.0)
+    wait_for(lambda: curve.now == 4.0, "the line")
     times, values, line = handle.data
+    assert times[np.argmax(line)] == 4.0
     assert (np.diff(times) >= 0.0).all()
     assert (line == curve.low).sum() == len(line) - 1
-    assert np.isin(values, curve.values).all()
+    errors = np.linalg.norm(position_error(session.replay.record), axis=1)
+    assert errors.max() == values.max()
     assert all(tick.startswith("10") for tick in handle.axes[1]["values"])
     assert np.log10(handle.axes[1]["splits"]) == pytest.approx(
         np.round(np.log10(handle.axes[1]["splits"]))
     )
 
 
-def test_the_ghost_stands_where_the_last_link_has_to_be(page):
+@pytest.fixture
+def shared():
+    """A session that all browsers of a page have in common: there is no browser."""
+    page = Page(papers_robot(), START, port=0)
+    yield page.open(page.server)
+    page.close()
+
+
+def test_the_ghost_stands_where_the_last_link_has_to_be(shared):
+    stage = shared.stage
     q = np.array([0.3, -0.5, 0.2, 1.1, -0.4, 0.6, 0.9])
-    at = Configuration(page.stage.robot, q)
-    page.stage.ghost(Target(at.position, at.rotation))
-    last = joint_poses(page.stage.robot, q)[-1]
-    ghost = page.stage._ghost
+    at = Configuration(stage.robot, q)
+    stage.ghost(Target(at.position, at.rotation))
+    last = joint_poses(stage.robot, q)[-1]
+    ghost = stage._ghost
     assert ghost.visible
     np.testing.assert_allclose(ghost.position, last.translation, atol=1e-12)
     turned = pin.Quaternion(*map(float, ghost.wxyz)).matrix()
     np.testing.assert_allclose(turned, last.rotation, atol=1e-12)
-    page.stage.ghost(None)
+    stage.ghost(None)
     assert not ghost.visible
 
 
 @needs_browser
-def test_the_path_so_far_is_drawn(browser, page):
-    page.replay.playback.seek(4.0)
+def test_the_path_so_far_is_drawn(browser, session):
+    session.replay.playback.seek(4.0)
     wait_for(lambda: red(picture(browser)).sum() > 50, "a drawn path")
-    page.replay.playback.seek(0.0)
+    session.replay.playback.seek(0.0)
     wait_for(lambda: red(picture(browser)).sum() == 0, "no path at the start")
 
 
 @needs_browser
-def test_the_slider_moves_the_arm(browser, page):
+def test_the_slider_moves_the_arm(browser, session):
     sliders(browser)[0].send_keys(Keys.HOME)
-    wait_for(lambda: page.replay.playback.time == 0.0, "the start")
+    wait_for(lambda: session.replay.playback.time == 0.0, "the start")
     wait_for(lambda: red(picture(browser)).sum() == 0, "no path at the start")
     start = picture(browser)
     slider = sliders(browser)[0]
     ActionChains(browser).drag_and_drop_by_offset(slider, 60, 0).perform()
-    wait_for(lambda: 1.0 <= page.replay.playback.time < 10.0, "the slider to move the replay")
-    assert not page.replay.playback.playing
+    wait_for(lambda: 1.0 <= session.replay.playback.time < 10.0, "the slider to move the replay")
+    assert not session.replay.playback.playing
     wait_for(lambda: changed(start, picture(browser)) > 500, "the arm to move")
     # What is on the stage is the record's own posture at that time.
-    shown = [np.array(joint.position) for joint in page.stage._joints]
-    q = page.replay.record.q[page.replay.sample]
-    there = [pose.translation for pose in joint_poses(page.stage.robot, q)]
+    shown = [np.array(joint.position) for joint in session.stage._joints]
+    q = session.replay.record.q[session.replay.sample]
+    there = [pose.translation for pose in joint_poses(session.stage.robot, q)]
     np.testing.assert_allclose(shown, there, atol=1e-6)
 
 
@@ -195,40 +215,40 @@ def changed(first: np.ndarray, second: np.ndarray) -> int:
 
 
 @needs_browser
-def test_play_runs_and_pause_stops(browser, page):
+def test_play_runs_and_pause_stops(browser, session):
     sliders(browser)[0].send_keys(Keys.HOME)
-    wait_for(lambda: page.replay.playback.time == 0.0, "the start")
+    wait_for(lambda: session.replay.playback.time == 0.0, "the start")
     first = picture(browser)
     click(browser, "Play")
-    wait_for(lambda: page.replay.playback.time > 1.0, "the replay to run")
-    assert page.replay.playback.playing
+    wait_for(lambda: session.replay.playback.time > 1.0, "the replay to run")
+    assert session.replay.playback.playing
     wait_for(lambda: buttons(browser, "Pause"), "the button to say Pause")
     wait_for(lambda: changed(first, picture(browser)) > 500, "the arm to move")
     click(browser, "Pause")
-    wait_for(lambda: not page.replay.playback.playing, "the replay to stop")
-    time = page.replay.playback.time
+    wait_for(lambda: not session.replay.playback.playing, "the replay to stop")
+    time = session.replay.playback.time
     wait_for(lambda: buttons(browser, "Play"), "the button to say Play")
-    assert page.replay.playback.time == time
+    assert session.replay.playback.time == time
     shown = float(sliders(browser)[0].get_attribute("aria-valuenow"))
     assert shown == pytest.approx(time, abs=0.02)
 
 
 @needs_browser
-def test_live_the_arm_follows_the_dragged_target(browser, page):
+def test_live_the_arm_follows_the_dragged_target(browser, session):
     click(browser, "live")
-    wait_for(lambda: page.live.active, "the live mode")
+    wait_for(lambda: session.live.active, "the live mode")
     wait_for(lambda: len(sliders(browser)) == 4, "weight and gains")
     wait_for(lambda: "distance to the target" in browser.page_source, "the read-out")
-    start = np.array(page.live.target.position)
-    drag(browser, page, 0.05)
+    start = np.array(session.live.target.position)
+    drag(browser, session, 0.05)
     moved = wait_for(
         lambda: (
-            np.linalg.norm(np.array(page.live.target.position) - start) > 0.01
-            and np.array(page.live.target.position)
+            np.linalg.norm(np.array(session.live.target.position) - start) > 0.01
+            and np.array(session.live.target.position)
         ),
         "the target to be dragged",
     )
-    follower = page.live.follower
+    follower = session.live.follower
     wait_for(
         lambda: np.linalg.norm(follower.configuration.position - moved) < 1e-3,
         "the arm to follow",
@@ -240,29 +260,88 @@ def test_live_the_arm_follows_the_dragged_target(browser, page):
     click(browser, "Target back to the start")
     wait_for(lambda: np.linalg.norm(follower.configuration.position - start) < 1e-3, "the way back")
     click(browser, "replay")
-    wait_for(lambda: not page.live.active and buttons(browser, "Play"), "the replay again")
+    wait_for(lambda: not session.live.active and buttons(browser, "Play"), "the replay again")
 
 
 @needs_browser
-def test_live_the_arm_gives_way_to_a_dragged_ball(browser, page):
-    follower = page.live.follower
-    page.set_mode("live")
-    page.live.set_ball(True)
+def test_live_the_arm_gives_way_to_a_dragged_ball(browser, session):
+    follower = session.live.follower
+    session.set_mode("live")
+    session.live.set_ball(True)
     wait_for(lambda: follower.obstacle is not None, "the ball")
     elbow = follower.configuration.frame("iiwa7_link_4").position
     q = follower.configuration.q
-    page.live.ball.position = elbow
+    session.live.ball.position = elbow
     assert wait_for(
         lambda: np.abs(follower.configuration.q - q).max() > 0.05, "the arm to give way"
     )
-    page.live.set_ball(False)
+    session.live.set_ball(False)
     wait_for(lambda: follower.obstacle is None, "the ball to be gone")
-    page.set_mode("replay")
+    session.set_mode("replay")
 
 
-def drag(browser, page: Page, metres: float) -> None:
+def test_live_a_push_shows_in_the_curves_and_the_network_settles_again(shared):
+    live = shared.live
+    for _ in range(30):
+        live.tick(0.1)
+    live._wanted.put(live._push)
+    for _ in range(5):
+        live.tick(0.1)
+    error = live.curves[0].handle.data[1]
+    assert error.max() > 1e3 * error[:25].max()
+    for _ in range(40):
+        live.tick(0.1)
+    times, error, _, line = live.curves[0].handle.data
+    assert error[-1] < 1e-3 * error.max()
+    assert times[np.argmax(line)] == 0.0
+    assert np.diff(times).max() == pytest.approx(0.1)
+    path = live._stage._lines["followed"].points
+    np.testing.assert_allclose(path[-1, 1], live.follower.configuration.position, atol=1e-6)
+    states = np.array(live.settling.handle.data[1:-1])
+    assert states.shape[0] == live.follower.robot.dof
+    assert states[:, -1].max() < 1e-6
+
+
+@needs_browser
+def test_each_browser_has_a_state_of_its_own(browser, page, session):
+    first = browser.current_window_handle
+    session.replay.playback.seek(4.0)
+    browser.switch_to.new_window("tab")
+    browser.get(page.address)
+    other = wait_for(
+        lambda: len(page.sessions) == 2 and page.sessions[max(page.sessions)], "a second session"
+    )
+    click(browser, "live")
+    wait_for(lambda: other.live.active, "the live mode of the second")
+    assert not session.live.active
+    assert (session.replay.playback.time, other.replay.playback.time) == (4.0, 0.0)
+    browser.close()
+    browser.switch_to.window(first)
+    wait_for(lambda: len(page.sessions) == 1, "the end of the second")
+
+
+@needs_browser
+def test_on_a_phone_the_arm_stands_above_the_controls(browser, page, session):
+    first = browser.current_window_handle
+    browser.switch_to.new_window("tab")
+    phone = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", phone)
+    browser.get(page.address)
+    wait_for(lambda: buttons(browser, "Play"), "the page's controls")
+
+    def seen() -> bool:
+        rows, columns = np.nonzero(arm(picture(browser)[:330]))  # the controls begin below
+        return len(rows) > 500 and bool(columns.min() > 0 and columns.max() < 389)
+
+    assert wait_for(seen, "the whole arm above the controls")
+    browser.close()
+    browser.switch_to.window(first)
+    wait_for(lambda: len(page.sessions) == 1, "the end of the second")
+
+
+def drag(browser, session: Session, metres: float) -> None:
     """Take the handle of one of the target's axes with the mouse and pull it."""
-    camera = next(iter(page.server.get_clients().values())).camera
+    camera = session.stage.host.camera
     w, x, y, z = map(float, camera.wxyz)
     to_camera = pin.Quaternion(w, x, y, z).matrix().T
     scale = 0.5 * camera.image_height / np.tan(0.5 * camera.fov)
@@ -271,8 +350,8 @@ def drag(browser, page: Page, metres: float) -> None:
         seen = to_camera @ (point - camera.position)
         return scale * seen[:2] / seen[2]  # from the middle of the canvas
 
-    origin = np.array(page.live.target.position)
-    w, x, y, z = map(float, page.live.target.wxyz)
+    origin = np.array(session.live.target.position)
+    w, x, y, z = map(float, session.live.target.wxyz)
     axes = pin.Quaternion(w, x, y, z).matrix().T
     # The axis that lies across the picture, not the one that points into it.
     axis = max(axes, key=lambda axis: np.linalg.norm(pixel(origin + axis) - pixel(origin)))
@@ -296,7 +375,9 @@ def test_only_this_machine_is_let_in_unless_told_otherwise():
         # Another address of this same machine: nobody listens there.
         with pytest.raises(OSError):  # noqa: PT011
             socket.create_connection(("127.0.0.2", address.port), timeout=5)
-        assert page.live.active
+        session = page.open(page.server)
+        assert session.live.active
+        session.tick(0.1)
         page.tick(0.1)
     finally:
         page.close()

@@ -1,0 +1,109 @@
+"""Curves on the page, on logarithmic axes with powers of ten, and a line at the present time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.results.record import FloatArray
+
+COLOURS = ("#d6001c", "#1c7ed6", "#2b8a3e", "#e8590c", "#862e9c", "#0b7285", "#5c3d2e")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+class Curves:
+    """One or more positive curves over time in a diagram of their own.
+
+    Attributes:
+        handle: The diagram on the page.
+        now: Time of the vertical line; None: there is none.
+        low: Lower end of the axis, a power of ten.
+        high: Upper end of the axis, a power of ten.
+    """
+
+    now: float | None = None
+
+    def __init__(
+        self, gui: Any, title: str, colours: tuple[str, ...], ends: tuple[float, float],
+        across: str = "t [s]", powers: bool = False,
+    ) -> None:  # fmt: skip
+        """Put an empty diagram on the page.
+
+        Args:
+            gui: Where the diagram is added, a page's or a browser's.
+            title: Name and unit of the curves.
+            colours: Colour of each curve, k of them.
+            ends: Ends of the horizontal axis.
+            across: Name and unit of the horizontal axis.
+            powers: True if `ends`, and the times of `show`, are decimal logarithms.
+        """
+        from viser import uplot  # of an extra
+
+        self._uplot, self._ends, self._powers = uplot, ends, powers
+        self._times: FloatArray
+        self._values: FloatArray
+        self.low, self.high = 0.0, 0.0
+        # Not empty: a diagram that begins so gets no horizontal axis later.
+        self._times, self._values = np.array(ends), np.ones((2, len(colours)))
+        self.handle = gui.add_uplot(
+            (self._times, *self._values.T, self._times),
+            (
+                uplot.Series(label=across),
+                *(uplot.Series(label=title, stroke=colour, width=1) for colour in colours),
+                uplot.Series(label="now", stroke="#444", width=1, points={"show": False}),
+            ),
+            title=title,
+            legend=uplot.Legend(show=False),
+            height=170,
+            padding=(12, 8, 0, 0),  # room for half a number above the axis
+        )
+
+    def show(self, times: FloatArray, values: FloatArray, now: float | None = None) -> None:
+        """Draw curves; values that have no logarithm are left out.
+
+        Args:
+            times: Times [s], or their logarithms, (M,).
+            values: Values in the unit of the title, (M,) or (M, k).
+            now: Time of the vertical line; None: there is none.
+        """
+        values = values.reshape(len(times), -1)
+        good = np.isfinite(values) & (values > 0.0)
+        some = good.any(axis=1)
+        self._times, self._values = times[some], np.where(good, values, np.nan)[some]
+        if some.any():
+            low, high = np.log10(np.nanmin(self._values)), np.log10(np.nanmax(self._values))
+            self._scale(float(np.floor(low)), float(max(np.ceil(high), np.floor(low) + 1.0)))
+            self.mark(now)
+
+    def mark(self, now: float | None) -> None:
+        """Draw the curves with the line at the present time."""
+        self.now = now
+        times, values = self._times, self._values
+        line: FloatArray = np.full(len(times), self.low)
+        if now is not None:
+            k = int(np.searchsorted(times, now))
+            times = np.insert(times, k, 3 * [np.clip(now, times[0], times[-1])])
+            values = np.insert(values, k, 3 * [values[min(k, len(values) - 1)]], axis=0)
+            line = np.insert(line, k, [self.low, self.high, self.low])
+        self.handle.data = (times, *np.ascontiguousarray(values.T), line)
+
+    def _scale(self, low: float, high: float) -> None:
+        """Let the axis reach from one power of ten to another."""
+        if (10.0**low, 10.0**high) == (self.low, self.high):
+            return
+        uplot, self.low, self.high = self._uplot, 10.0**low, 10.0**high
+        self.handle.scales = {
+            "x": uplot.Scale(time=False, range=self._ends),
+            "y": uplot.Scale(distr=3, log=10, range=(self.low, self.high)),
+        }
+        across = np.arange(*self._ends, 2.0)
+        marks = {"splits": tuple(across.tolist()), "values": _named(across)} if self._powers else {}
+        up = np.arange(low, high + 1.0, max(1.0, (high - low) // 4))
+        labels = {"splits": tuple((10.0**up).tolist()), "values": _named(up)}
+        self.handle.axes = uplot.Axis(**marks), uplot.Axis(**labels)
+
+
+def _named(powers: NDArray[Any]) -> tuple[str, ...]:
+    return tuple("10" + f"{power:.0f}".translate(_RAISED) for power in powers)
