@@ -10,10 +10,14 @@ as the levels above and all limits let it be:
 
 :math:`A_0` being the rows of tasks without a priority. The step's own program then minimises the
 scheme's cost with :math:`A_k x = A_k x_k` for every level. :math:`x_k` need not be unique, but
-:math:`A_k x_k` is.
+:math:`A_k x_k` is. Limits that have a multiplier in some level are equalities for those below, and
+the rows of a level are projected on what the levels above leave free: that keeps every program well
+conditioned, in singular poses too.
 
-Source: O. Kanoun, F. Lamiraux, P.-B. Wieber, "Kinematic control of redundant manipulators:
-generalizing the task-priority framework to inequality task", IEEE Trans. Robotics 27 (2011).
+Sources: O. Kanoun, F. Lamiraux, P.-B. Wieber, "Kinematic control of redundant manipulators:
+generalizing the task-priority framework to inequality task", IEEE Trans. Robotics 27 (2011);
+A. Escande, N. Mansard, P.-B. Wieber, "Hierarchical quadratic programming: fast online
+humanoid-robot motion generation", Int. J. Robotics Research 33 (2014).
 """
 
 from __future__ import annotations
@@ -30,6 +34,12 @@ from iiwa_dnn.qp.layout import Sizes
 FINEST = 1e-12
 """Tolerance that a level aims at: a lower one may amplify its error by its multipliers. The step's
 own tolerance is what it has to reach."""
+
+SMALLEST = 1e-9
+"""Singular value of a level's rows below which their direction is left to the levels below [1]."""
+
+HELD = 1e-11
+"""Multiplier above which a limit holds for all levels below."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +80,7 @@ class Cascade:
         for priority in sorted(set(priorities.tolist()) - {0}):
             own, above = priorities == priority, priorities < priority
             p = int(above.sum())
+            p = min(n, p + m) if self.levels else p
             data, x = np.zeros((n + m + p) * (n + 1) + 2 * n), np.zeros(n)
             network = DNNSolver(solver.network, FINEST, solver.settler)
             self.levels.append(
@@ -80,31 +91,50 @@ class Cascade:
         """Replace the rows A x = b of a program, level by level, by what can be attained.
 
         They become rows of the same meaning and length one, as many as are independent, and zeros.
+        A bound with a multiplier in some level becomes an equality, lb = ub, and an inequality row
+        a row of A: levels below cannot leave it. Otherwise a single face would be all that is left
+        to them, and rounding would decide whether a point is on it.
         """
-        A = b = None
+        lb, ub = qp.lb.copy(), qp.ub.copy()
+        x: Vector = np.zeros(qp.q.size)
+        held, freedom = np.zeros(qp.h.size, dtype=bool), np.eye(x.size)
         for level in self.levels:
             own, above = level.rows
-            if A is None or b is None:
-                A, b = qp.A[above], qp.b[above]
             program = QP.from_data(level.data, level.sizes)
-            program.P[:], program.q[:] = qp.A[own].T @ qp.A[own], -qp.A[own].T @ qp.b[own]
-            program.G[:], program.h[:], program.lb[:], program.ub[:] = qp.G, qp.h, qp.lb, qp.ub
-            program.A[:], program.b[:] = A, b
+            if level is self.levels[0]:
+                program.A[:], program.b[:] = qp.A[above], qp.b[above]
+            else:
+                rows = np.where(lb < ub, np.concatenate([qp.A[above], qp.G[held]]), 0.0)
+                _independent(rows, program.A)
+                program.b[:] = program.A @ x
+                freedom = np.diag(1.0 * (lb < ub)) - program.A.T @ program.A
+            left, sizes, right = _decomposed(qp.A[own] @ freedom)
+            E = left * sizes @ right
+            program.P[:], program.q[:] = E.T @ E, -E.T @ (qp.b[own] - qp.A[own] @ x + E @ x)
+            program.G[:], program.h[:], program.lb[:], program.ub[:] = qp.G, qp.h, lb, ub
             solution = level.solver.solve(program)
             level.x[:] = x = solution.x
             level.missing[:] = qp.b[own] - qp.A[own] @ x
             if not solution.residuals.largest <= self._tol:  # nor has the step: the policy decides
                 return
-            A = _independent(qp.A[own | above])
-            b = A @ x
-        if A is not None and b is not None:
-            qp.A[:], qp.b[:] = A, b
+            bound = np.abs(solution.z_box) > HELD
+            lb[bound] = ub[bound] = x[bound]
+            held |= solution.z > HELD
+        if self.levels:
+            qp.lb[:], qp.ub[:] = lb, ub
+            _independent(np.where(lb < ub, qp.A, 0.0), qp.A)
+            qp.b[:] = qp.A @ x
 
 
-def _independent(A: Matrix) -> Matrix:
-    """Return orthonormal rows that span those of A (p, n), and zero rows, (p, n)."""
-    _, sizes, directions = np.linalg.svd(A, full_matrices=False)
-    count = int((sizes > 1e-9 * max(1.0, sizes[0])).sum())
-    rows = np.zeros_like(A)
-    rows[:count] = directions[:count]
-    return rows
+def _decomposed(A: Matrix) -> tuple[Matrix, Vector, Matrix]:
+    """Decompose A (p, n) into singular vectors and values, without the smallest of them."""
+    left, sizes, right = np.linalg.svd(A, full_matrices=False)
+    count = int((sizes > SMALLEST).sum())
+    return left[:, :count], sizes[:count], right[:count]
+
+
+def _independent(A: Matrix, out: Matrix) -> None:
+    """Write orthonormal rows that span those of A (p, n), and zero rows, into `out`."""
+    directions = _decomposed(A)[2]
+    out[:] = 0.0
+    out[: len(directions)] = directions

@@ -8,6 +8,7 @@ import qpsolvers
 import scipy.linalg
 import scipy.sparse
 
+from benchmarks.priorities import KINDS, PRIORITIES, compare, programs
 from helpers_simulation import paper_robot
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.networks.solver import DNNSolver
@@ -108,3 +109,35 @@ def test_a_run_records_its_levels_and_checks_their_programs() -> None:
     assert record.level_residual[:20, 2].max() < 1e-8
     assert record.level_residual[:, 3].min() > 0.05
     assert record.crosscheck_gap.max() < 1e-6
+
+
+@pytest.mark.parametrize("kind", sorted(KINDS))
+def test_levels_in_random_and_singular_poses_are_those_of_daqp(kind: str) -> None:
+    compared = [compare(qp, PRIORITIES) for qp in programs(40, *KINDS[kind])]
+    assert all(each.solved for each in compared)
+    known = [each for each in compared if each.expected.size]
+    assert len(known) >= 39  # DAQP gives up now and then
+    assert max(each.gap for each in known) <= 1e-8
+    assert sum((each.expected > 1e-3).sum() for each in known) > 40
+
+
+def test_limits_that_a_level_uses_up_hold_for_the_levels_below() -> None:
+    rng, priorities = np.random.default_rng(3), np.repeat([1, 2, 3], 3)
+    held = known = unknown = 0
+    for _ in range(100):
+        A, x = rng.normal(size=(9, 7)), rng.uniform(-1.0, 1.0, 7)
+        if rng.random() < 0.5:
+            A[5] = A[:3].T @ rng.normal(size=3)  # a level that repeats a part of the one above
+        G = rng.normal(size=(4, 7))
+        h = G @ x + rng.uniform(0.0, 1.0, 4)
+        qp = QP(np.eye(7), np.zeros(7), G, h, A, 4.0 * rng.normal(size=9), -np.ones(7), np.ones(7))
+        lb, ub = qp.lb.copy(), qp.ub.copy()
+        compared = compare(qp, priorities)
+        assert compared.solved
+        known += compared.gap <= 1e-8
+        unknown += np.isnan(compared.gap)
+        held += int((qp.lb == qp.ub).sum())
+        assert (qp.lb >= lb).all()
+        assert (qp.ub <= ub).all()
+    assert known == 100 - unknown >= 98  # DAQP gives up now and then
+    assert held > 100
