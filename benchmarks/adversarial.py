@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from judge_limits import breaches
 
 DT, PIECE = 1e-3, 10_000
-JERKS = {"iiwa7": 500.0, "panda": None, "xarm7": 1000.0}
+JERKS: dict[str, float | None] = {"iiwa7": 500.0, "panda": None, "xarm7": 1000.0}
 """Limits beside the robots' own [rad/s^3]; xarm7's accelerations are taken as 10 rad/s^2."""
 
 
@@ -49,13 +49,14 @@ def main(steps: int) -> int:
                 jerk if jerky else np.inf,
             )  # fmt: skip
             done, bad, pieces = done + PIECE, bad + len(found), pieces + 1
-            frozen = longest_freeze(driven, DT)
-            room = min(room, driven.room)
-            if kind not in ("jumps", "out of reach"):  # those lead where the arm cannot go
-                freeze = max(freeze, frozen)
+            frozen, end = longest_freeze(driven, DT)
+            room, freeze = min(room, driven.room), max(freeze, frozen)
+            at_limit = np.minimum(driven.q[end] - robot.q_lower, robot.q_upper - driven.q[end])
+            joints = (np.flatnonzero(at_limit < 1e-3) + 1).tolist()
             actions = np.bincount(driven.actions, minlength=6).tolist()
-            print(name, kind, "jerk" if jerky else "acceleration",
-                  "filtered" if filtered else "raw", actions, f"freeze {frozen:.2f} s",
+            limit = "jerk" if jerky else "acceleration"
+            stood = f"freeze {frozen:.2f} s" + (f", joints {joints} at limits" if frozen else "")
+            print(name, kind, limit, "filtered" if filtered else "raw", actions, stood,
                   f"error {np.median(driven.filtered):.1e} m", found, flush=True)  # fmt: skip
     return 0
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
@@ -10,7 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import iiwa_dnn
+import iiwa_dnn.control.policies
 from iiwa_dnn import Configuration, Robot, Target
+
+FAR = 1.5
+"""Distance from the base [m] beyond which none of the arms reaches; `out_of_reach` asks for 2 m."""
 
 Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
@@ -29,13 +34,14 @@ def jumps(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iter
 
 def teleoperation(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
     """A hand's motion of up to 0.3 m/s, known every 33 ms only."""
-    place, turn = _pose(robot, robot.start_posture())
-    w = rng.uniform(0.5, 4.0, (3, 3))
+    start, turn = _pose(robot, robot.start_posture())
+    place, w = start, rng.uniform(0.5, 4.0, (3, 3))
     phase = rng.uniform(0.0, 2.0 * np.pi, (3, 3))
     period = max(1, round(1.0 / (30.0 * dt)))
     for k in range(steps):
-        t = dt * (k - k % period)
-        yield place + (0.02 * (np.sin(w * t + phase) - np.sin(phase))).sum(axis=1), turn
+        if k % period == 0:
+            place = start + (0.02 * (np.sin(w * dt * k + phase) - np.sin(phase))).sum(axis=1)
+        yield place, turn
 
 
 def sinusoids(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
@@ -98,6 +104,7 @@ class Drive(NamedTuple):
         us: Time of each step [us], (N,).
         error: Distance of the tip from the raw target [m], (N,).
         filtered: Distance of the tip from the filtered target [m], (N,).
+        within: Whether the target is within the arm's reach, (N,).
         room: Least distance of a program's bounds [rad/s]; negative: one is infeasible by them.
     """
 
@@ -106,6 +113,7 @@ class Drive(NamedTuple):
     us: Array
     error: Array
     filtered: Array
+    within: NDArray[np.bool_]
     room: float
 
 
@@ -117,12 +125,15 @@ def drive(
     dt: float,
     q0: Array,
     filtered: bool,
+    policy: iiwa_dnn.control.policies.Policy = "slow",
 ) -> Drive:
     """Drive an arm towards a stream of poses, with or without the filter of `MovingTarget`."""
     start = Configuration(robot, q0)
     limits = {"acceleration": 1.0, "jerk": 10.0}
     hand = iiwa_dnn.MovingTarget(start, **limits)
-    controller = iiwa_dnn.Controller(robot, scheme, hand if filtered else None, dt=dt)
+    controller = iiwa_dnn.Controller(
+        robot, scheme, hand if filtered else None, dt=dt, policy=policy
+    )
     controller.warm_up()
     hand = iiwa_dnn.MovingTarget(start, **limits)
     if filtered:
@@ -131,9 +142,14 @@ def drive(
     q[0] = q0
     actions, us = np.zeros(steps, np.int8), np.empty(steps)
     error, behind, room = np.empty(steps), np.empty(steps), np.inf
+    within, last, target = np.empty(steps, bool), None, None
     for k, (place, turn) in zip(range(steps), poses, strict=False):
-        hand.set(place, turn)
-        target = None if filtered else Target(place, turn)
+        if place is not last:  # many are held for a while
+            last = place
+            if filtered:
+                hand.set(place, turn)
+            else:
+                target = Target.from_data(np.concatenate([place, turn.ravel(), np.zeros(6)]))
         began = time.perf_counter_ns()
         command = controller.step(q[k], k * dt, target)
         us[k] = 1e-3 * (time.perf_counter_ns() - began)
@@ -141,19 +157,27 @@ def drive(
         actions[k] = command.action
         tip, qp = controller.plan.place[9:], command.qp
         room = min(room, float((qp.ub - qp.lb).min()))
-        error[k] = np.linalg.norm(tip - place)
+        error[k] = math.dist(tip, place)
         row = controller._room  # its last target is the one that was tracked
         assert row is not None
-        behind[k] = np.linalg.norm(tip - row.targets[row.count - 1, :3])
-    return Drive(q, actions, us, error, behind, room)
+        behind[k] = math.dist(tip, row.targets[row.count - 1, :3])
+        within[k] = math.hypot(*place) < FAR
+    return Drive(q, actions, us, error, behind, within, room)
 
 
-def longest_freeze(driven: Drive, dt: float) -> float:
-    """Longest time [s] in which the arm stands though its target is 1 mm away or more."""
+def longest_freeze(driven: Drive, dt: float) -> tuple[float, int]:
+    """Longest time [s] in which the arm stands though a target within reach is 1 mm away or more.
+
+    Returns:
+        The time, and the step at which it ends.
+    """
     still = np.abs(np.diff(driven.q, axis=0)).max(axis=1) < 1e-4 * dt
-    frozen = np.concatenate([[0], still & (driven.filtered > 1e-3), [0]])
-    edges = np.flatnonzero(np.diff(frozen))
-    return dt * float(np.diff(edges)[::2].max(initial=0))
+    frozen = np.concatenate([[0], still & driven.within & (driven.filtered > 1e-3), [0]])
+    edges = np.flatnonzero(np.diff(frozen)).reshape(-1, 2)
+    if not edges.size:
+        return 0.0, 0
+    longest = edges[np.diff(edges).argmax()]
+    return dt * float(longest[1] - longest[0]), int(longest[1])
 
 
 def scheme(jerk: float | None, acceleration: float | None = None) -> iiwa_dnn.Scheme:

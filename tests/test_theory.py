@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
+from scipy.spatial.transform import Rotation
 
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp, network_rates
@@ -18,9 +19,10 @@ from iiwa_dnn import (
     DoubleIndicator,
     ImplicitEuler,
     ProjectionNetwork,
+    Waypoints,
     simulate,
 )
-from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.results.metrics import orientation_error, position_error
 
 Array = NDArray[np.float64]
 RHO, DELTA = 9e-5, 10.2
@@ -126,6 +128,31 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
         best = minimize(function, x, method="BFGS", options={"gtol": 1e-9})
         assert function(new[:4]) <= best.fun + 1e-9
         np.testing.assert_allclose(new[:4], best.x, atol=1e-4)
+
+
+def test_eulers_error_is_the_joint_acceleration_half_a_step_late_and_fed_back() -> None:
+    turns = Rotation.from_rotvec([[0, 0, 0], [-0.25, -0.16, 0.18], [0.05, -0.24, -0.04]])
+    poses = (turns * Rotation.from_matrix(paper_start().rotation)).as_quat()[:, [3, 0, 1, 2]]
+    points = paper_start().position + [[0, 0, 0], [0.03, 0, 0.02], [0, 0.02, 0]]
+    path = Waypoints([0.0, 1.2, 2.4], points, "clamped", poses).anchored(paper_start())
+    dt, duration, largest = 1e-3, 2.4, {}
+    for tracking in ("paper", "next"):
+        scheme = DoubleIndicator(orientation="so3", home=PAPER_Q0, tracking=tracking)
+        run = simulate(
+            paper_robot(), scheme, path, PAPER_Q0, dt=dt, duration=duration, check=UNCHECKED
+        )
+        largest[tracking] = orientation_error(run).max()
+        if tracking == "paper":
+            record = run
+    error, added = np.zeros(3), []
+    for k in range(1, len(record.dq)):
+        jacobian = Configuration(paper_robot(), record.q[k]).jacobian[3:]
+        added.append(0.5 * dt * jacobian @ (record.dq[k] - record.dq[k - 1]))
+        error = (1.0 - DELTA * dt) * error + added[-1]
+        largest["expected"] = max(largest.get("expected", 0.0), float(np.linalg.norm(error)))
+    assert abs(largest["paper"] / largest["expected"] - 1.0) < 0.02
+    assert largest["paper"] < np.linalg.norm(added, axis=1).max() / (DELTA * dt)
+    assert largest["next"] < 1e-3 * largest["paper"]
 
 
 def test_the_mean_square_that_noise_leaves() -> None:

@@ -7,7 +7,7 @@ velocity that the joints should have, inside the velocity and position limits al
 .. math::
 
     \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v\|^2
-        + \varepsilon\,(\tfrac12 v^T P v + [\lambda = 0]\, q^T v), \quad
+        + \tfrac12 \varepsilon\, v^T P v + \varepsilon'\, q^T v, \quad
     \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma / \sigma_0)^2\bigr)
 
 with :math:`\sigma` the smallest singular value of W A: away from singular poses it is the task's
@@ -24,6 +24,7 @@ robustness for robot manipulator control", J. Dynamic Systems, Measurement, and 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -39,8 +40,9 @@ from iiwa_dnn.schemes.motion_limits import braking
 DAMPING, NEAR = 0.05, 0.05
 """Lambda [m/rad] and sigma_0 [m/rad] of the damping near singular poses."""
 
-BLEND = 1e-4
-"""Epsilon: weight of the scheme's own cost beside the task."""
+BLEND, WISH = 1e-4, 0.1
+"""Epsilon: weight of the scheme's own cost beside the task, and the share of the task's gradient in
+the joints that can follow it that the cost's own gradient may reach."""
 
 POSITION_GAIN = 20.0
 """Rate at which the wanted velocity falls towards a position limit [1/s]."""
@@ -207,23 +209,33 @@ def soften(
                 )
         smallest = np.linalg.eigvalsh(gram)[0]
         damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
-    # Near a singular pose a wish for another posture would hold the tip away from its target.
-    wish = 0.0 if damping > 0.0 else BLEND
-    for i in range(at_A):
-        out[i] = data[i] * (BLEND if i < at_q else wish if i < at_G else 1.0)
+    pull, wish = np.zeros(n), 0.0
     for j in range(p):
-        row, square = at_A + j * n, weights[j] * weights[j]
         for i in range(n):
-            scaled = square * data[row + i]
-            out[at_q + i] -= scaled * data[at_lb - p + j]
-            for k in range(n):
-                out[i * n + k] += scaled * data[row + k]
+            pull[i] += weights[j] * weights[j] * data[at_A + j * n + i] * data[at_lb - p + j]
     for i in range(n):
-        out[i * n + i] += damping
         lb, ub = data[at_lb + i], data[at_lb + n + i]
         if i < dof:
             most = numbers[2 * dof + i]
             lb = min(max(POSITION_GAIN * (numbers[i] - q[i]), -most), most)
             ub = min(max(POSITION_GAIN * (numbers[dof + i] - q[i]), -most), most)
         out[at_A + i], out[at_A + n + i] = lb, ub
+    # A wish for another posture may not outweigh the task, or it would hold the tip away from its
+    # target: near a singular pose, or where joints at their limits leave the task little.
+    if damping == 0.0:
+        free, wished = 0.0, 0.0
+        for i in range(dof):
+            free += min(max(pull[i], out[at_A + i]), out[at_A + n + i]) ** 2
+            wished += data[at_q + i] ** 2
+        wish = min(BLEND, WISH * math.sqrt(free / wished)) if wished > 0.0 else BLEND
+    for i in range(at_A):
+        out[i] = data[i] * (BLEND if i < at_q else wish if i < at_G else 1.0)
+    for j in range(p):
+        row, square = at_A + j * n, weights[j] * weights[j]
+        for i in range(n):
+            for k in range(n):
+                out[i * n + k] += square * data[row + i] * data[row + k]
+    for i in range(n):
+        out[at_q + i] -= pull[i]
+        out[i * n + i] += damping
     return damping
