@@ -10,7 +10,8 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
     :math:`G \dot q \le h`. Feedforward and feedback are slowed alike, and the reference's clock has
     to advance by s dt: then the arm goes along the same path, later. Where not even standing still
     is feasible, since a joint outside its limits has to come back or an obstacle comes near, the
-    task yields as with ``relax``.
+    task yields as with ``relax``. So it does in a singular pose, in which the arm would stay for
+    good; the clock creeps on by a tenth, until the path leads out of it.
 ``relax``.
 ``relax``
     :math:`b' = A \dot q'` with :math:`\dot q'` the point within the limits that violates the task
@@ -43,7 +44,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from iiwa_dnn.control.reach import Reach, Sides, ask_reference, largest_fraction, least_violation
-from iiwa_dnn.control.yielding import Yielding
+from iiwa_dnn.control.yielding import CREEP, Yielding
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status, Vector
@@ -55,11 +56,10 @@ _FEASIBLE = 1.0 - 1e-9  # the linear program's own tolerance is 1e-10
 
 SINGULAR = 0.05
 """Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
-There the joints would race for next to nothing; ``slow`` goes slower in proportion, so that the arm
-comes to rest there."""
+There the joints would race for next to nothing; ``slow`` goes slower in proportion."""
 
 REST = 1e-3
-"""A fraction below it, in a singular pose, is none: the arm stands still."""
+"""A fraction below it, in a singular pose, is none: the task yields, and the clock creeps on."""
 
 # At the very edge of what is feasible the multipliers may grow without bound; seen at one step in
 # 150 of random ones, where a little less has room enough.
@@ -151,14 +151,20 @@ def resolve(
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
     if policy == "stop":
         return stopped(qp, failed, reach, yielding)
+    creeps = False
     if policy == "slow" and not np.isnan(reach.fraction):
-        reach = _braked(qp, reach)
-        if not reach.dq.any() and _rest_is_allowed(qp):
-            return _settled(Action.SLOW, qp, reach._replace(fraction=0.0))
-        return _slowed(qp, solver, reach)
+        share = _brake(qp, reach)
+        creeps = share * reach.fraction < REST and share < 1.0
+        if not creeps:
+            reach = reach._replace(fraction=share * reach.fraction, dq=share * reach.dq)
+            if not reach.dq.any() and _rest_is_allowed(qp):
+                return _settled(Action.SLOW, qp, reach)
+            return _slowed(qp, solver, reach)
     relaxed = least_violation(qp, weights)
     if relaxed is None:
         return stopped(qp, failed, reach)
+    if creeps:
+        return _settled(Action.SLOW, qp, relaxed._replace(fraction=CREEP))
     return _settled(Action.RELAX, qp, relaxed)
 
 
@@ -188,15 +194,12 @@ def _slowed(qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
     return Resolution(Action.SLOW, attainable, unsettled, *slower[:1], *slower[2:])
 
 
-def _braked(qp: QP, reach: Reach) -> Reach:
-    """Less of a velocity for which the joints race and the tip hardly moves; see ``SINGULAR``."""
+def _brake(qp: QP, reach: Reach) -> float:
+    """Compute the share of a velocity to take where joints race and the tip hardly moves."""
     tip, joints = np.linalg.norm(qp.A @ reach.dq), np.linalg.norm(reach.dq)
     if tip >= SINGULAR * joints or not _rest_is_allowed(qp):
-        return reach
-    share = float(tip / (SINGULAR * joints))
-    if share * reach.fraction < REST:
-        share = 0.0
-    return reach._replace(fraction=share * reach.fraction, dq=share * reach.dq)
+        return 1.0
+    return float(tip / (SINGULAR * joints))
 
 
 def _rest_is_allowed(qp: QP) -> bool:

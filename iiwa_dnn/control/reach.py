@@ -15,6 +15,10 @@ DAMPING = 0.01
 """Of ``relax``, by the violation [m/s]: what joint velocities cost, [(m/rad)^2 / (m/s)]. It bounds
 the rate at which a singular pose is approached, whatever is asked for."""
 
+DRIFT = 0.02
+"""Speed at most [rad/s] that damping leaves, towards the posture that the cost wishes for. Damped
+to rest, an arm pulled beyond its reach ends up exactly stretched, and finds back too late."""
+
 _TIGHT = 1e-11
 """Tolerance on the residuals of the least squares."""
 
@@ -107,7 +111,8 @@ def least_violation(
             return None
         damping = DAMPING * float(np.linalg.norm(rhs - rows @ closest.x))
     rows = np.vstack([rows, np.sqrt(damping) * np.eye(n)])
-    rhs = np.append(rhs, np.zeros(n))
+    drift = qp.q * (-DRIFT / max(float(np.linalg.norm(qp.q)), 1.0))
+    rhs = np.append(rhs, np.sqrt(damping) * drift)
     found = _least_squares(rows, rhs, qp)
     if found is None:
         return None

@@ -6,17 +6,18 @@ velocity that the joints should have, inside the velocity and position limits al
 
 .. math::
 
-    \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v\|^2
+    \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v - v_0\|^2
         + \tfrac12 \varepsilon\, v^T P v + \varepsilon'\, q^T v, \quad
     \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma / \sigma_0)^2\bigr)
 
 with :math:`\sigma` the smallest singular value of W A: away from singular poses it is the task's
-velocity, near them it is damped. A direction of singular value s is short of its velocity by the
-share :math:`\lambda^2 / (\lambda^2 + s^2)` at most, so that the tip lags a target of speed u by
-:math:`u \lambda^2 / (\delta s^2)`, :math:`\delta` the task's gain; the joints' speed is at most
-:math:`\|W b\| / (2 \lambda)`. The second stage lets each joint approach that velocity as quickly as
-its limits allow without passing it (`iiwa_dnn.schemes.motion_limits.braking`): looking one step
-ahead only, a limited jerk would make it swing about it for ever.
+velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction of singular
+value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at most, so that
+the tip lags a target of speed u by :math:`u \lambda^2 / (\delta s^2)`, :math:`\delta` the task's
+gain; the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. The second
+stage lets each joint approach that velocity as quickly as its limits allow without passing it
+(`iiwa_dnn.schemes.motion_limits.braking`): looking one step ahead only, a limited jerk would make
+it swing about it for ever.
 
 Source of the damping: Y. Nakamura, H. Hanafusa, "Inverse kinematic solutions with singularity
 robustness for robot manipulator control", J. Dynamic Systems, Measurement, and Control 108 (1986).
@@ -30,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.control.clipping import clip_command
-from iiwa_dnn.control.reach import Reach
+from iiwa_dnn.control.reach import DRIFT, Reach
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.qp.dense import dot
@@ -235,7 +236,8 @@ def soften(
         for i in range(n):
             for k in range(n):
                 out[i * n + k] += square * data[row + i] * data[row + k]
+    size = math.sqrt(dot(data, at_q, data[at_q:], n))
     for i in range(n):
-        out[at_q + i] -= pull[i]
+        out[at_q + i] += damping * DRIFT * data[at_q + i] / max(size, 1.0) - pull[i]
         out[i * n + i] += damping
     return damping

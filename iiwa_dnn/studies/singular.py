@@ -39,8 +39,8 @@ def tilted_run(orientation: Orientation, mode: Mode) -> Record:
     )  # fmt: skip
 
 
-def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
-    """Follow a line for 4 s, in steps of dt [s], 0.3 m beyond the arm's reach and back."""
+def stretched_run(policy: Policy, dt: float = 1e-3, duration: float = 4.0) -> Record:
+    """Follow a line of 4 s, 0.3 m beyond the arm's reach and back, in steps of dt [s]."""
     start = vertical_start()
     outward = start.position * [1.0, 1.0, 0.0]
     reach = 0.8 - float(np.linalg.norm(outward))
@@ -48,5 +48,5 @@ def stretched_run(policy: Policy, dt: float = 1e-3) -> Record:
     line = Line(offset=(x, y, z), period=4.0).anchored(start)
     return simulate(
         paper_robot(), DoubleIndicator(orientation="none"), line, start.q,
-        dt=dt, duration=4.0, policy=policy, check=CrossCheck(()),
+        dt=dt, duration=duration, policy=policy, check=CrossCheck(()),
     )  # fmt: skip

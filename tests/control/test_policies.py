@@ -103,7 +103,9 @@ def test_the_least_violation_is_a_quadratic_programs_solution(outside: float) ->
                 damping = 0.01 * np.sqrt(2.0 * distance(rows, rhs, qp))
             # The seventh direction is free; a touch of the norm makes it one point for ProxQP.
             cost = rows.T @ rows + max(damping, 1e-9) * np.eye(7)
-            other = solve_by("proxqp", QP(cost, -rows.T @ rhs, lb=qp.lb, ub=qp.ub))
+            drift = -0.02 * qp.q / max(np.linalg.norm(qp.q), 1.0)
+            linear = -rows.T @ rhs - damping * drift
+            other = solve_by("proxqp", QP(cost, linear, lb=qp.lb, ub=qp.ub))
             np.testing.assert_allclose(rows @ dq, rows @ other, rtol=0, atol=1e-6)
 
 
@@ -278,7 +280,9 @@ def test_the_least_violation_within_rows_is_a_quadratic_programs_solution() -> N
         qp = QP(base.P, base.q, wall, h, base.A, base.b, base.lb, base.ub)
         reach = least_violation(qp, damping=0.01)
         cost = qp.A.T @ qp.A + 0.01 * np.eye(7)
-        problem = QP(cost, -qp.A.T @ qp.b, G=wall, h=h, lb=qp.lb, ub=qp.ub).to_qpsolvers()
+        drift = -0.02 * qp.q / max(np.linalg.norm(qp.q), 1.0)
+        linear = -qp.A.T @ qp.b - 0.01 * drift
+        problem = QP(cost, linear, G=wall, h=h, lb=qp.lb, ub=qp.ub).to_qpsolvers()
         other = qpsolvers.solve_problem(problem, solver="daqp")
         np.testing.assert_allclose(reach.dq, other.x, rtol=0, atol=1e-6)
         in_the_way += int(reach.rows.sum())
@@ -299,14 +303,8 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: policies.Policy)
 @pytest.mark.parametrize(
     ("row", "b", "lowest", "fraction", "dq"),
     [
-        (
-            0.01,
-            1.0,
-            -1.0,
-            0.002,
-            0.2,
-        ),  # full speed gives 0.01 of b, and the brake takes four fifths
-        (0.01, 5.0, -1.0, 0.0, 0.0),  # less than a thousandth is left: rest
+        # Full speed gives 0.01 of b, and the brake takes four fifths.
+        (0.01, 1.0, -1.0, 0.002, 0.2),
         (0.06, 1.0, -1.0, 0.06, 1.0),  # no singular pose
         (0.01, 1.0, 0.5, 0.01, 1.0),  # a joint that may not rest is not braked
     ],
@@ -322,6 +320,17 @@ def test_slow_brakes_where_the_joints_race_for_next_to_nothing(
     assert answer.solution.status is Status.SOLVED
     np.testing.assert_allclose(answer.qp.b, [row * dq], rtol=0, atol=1e-9)
     assert answer.sides.tolist() == [1]
+
+
+def test_slow_does_not_rest_in_a_singular_pose() -> None:
+    # Less than a thousandth of b is left: the clock creeps on, and the damped task is followed.
+    qp = QP(np.eye(2), [0.0, -9.0], A=[[1e-3, 0.0]], b=[5.0], lb=[-1.0] * 2, ub=[1.0] * 2)
+    answer = resolve(qp, failed(qp), "slow", DNNSolver())
+    assert (answer.action, answer.fraction) == (Action.SLOW, 0.1)
+    damping = 0.01 * (5.0 - 1e-3)
+    expected = [5e-3 / (1e-6 + damping), 0.02]  # and towards the posture that the cost wishes for
+    np.testing.assert_allclose(answer.solution.x, expected, rtol=1e-6)
+    np.testing.assert_array_equal(answer.qp.b, qp.A @ answer.solution.x)
 
 
 def test_a_decided_velocity_is_the_best_point_of_its_program() -> None:

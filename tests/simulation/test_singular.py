@@ -7,11 +7,14 @@ import pytest
 
 from helpers_kinematics import rotation_angle
 from helpers_simulation import paper_robot
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
 from iiwa_dnn.studies.singular import stretched_run, tilted_run, vertical_start
+
+JERK = JerkLimits(500.0)
 
 
 def tilt(record: Record) -> np.ndarray:
@@ -62,11 +65,52 @@ def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> N
 
 
 @pytest.mark.parametrize("dt", [1e-3, 1e-2])
-def test_the_slow_policy_comes_to_rest_before_the_singular_pose(dt: float) -> None:
+def test_the_slow_policy_keeps_to_the_path_up_to_the_singular_pose(dt: float) -> None:
     record = stretched_run("slow", dt)
     assert record.fraction is not None
-    assert record.fraction[-1] < 0.01
+    creeps = int(np.flatnonzero(record.fraction == 0.1)[0])
+    assert record.fraction[creeps - 1] < 0.01
     assert np.abs(record.dq[-1]).max() < 0.1
-    assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 2e-3
+    error = np.linalg.norm(record.position - record.position_desired, axis=1)
+    assert error[: creeps + 1].max() < 2e-3
     # Changes of the velocities in a second: shaking at every step would make 1e3 and more.
     assert np.abs(np.diff(record.dq, axis=0)).sum() / record.t[-1] < 50.0
+
+
+def test_the_slow_policy_comes_back_from_the_singular_pose() -> None:
+    record = stretched_run("slow", 1e-2, 18.0)
+    assert record.fraction is not None
+    error = np.linalg.norm(record.position - record.position_desired, axis=1)
+    shoulder = np.array([0.0, 0.0, 0.34])
+    reach = np.linalg.norm(record.position - shoulder, axis=1).max()
+    beyond = np.flatnonzero(np.linalg.norm(record.position_desired - shoulder, axis=1) > reach)
+    assert error[beyond].max() > 0.1
+    back = beyond[-1] + 50  # half a second later
+    assert error[back:].max() < 1e-2
+    assert record.fraction[back + 100] == 1.0
+    assert error[-1] < 1e-3
+
+
+@pytest.mark.parametrize("limits", [(), (AccelerationLimits(),), (AccelerationLimits(), JERK)])
+def test_an_arm_held_stretched_for_long_follows_its_target_back_at_once(
+    limits: tuple[Limit, ...],
+) -> None:
+    robot, dt, speed = paper_robot(), 2e-3, 0.1
+    shoulder, out = np.array([0.0, 0.0, 0.34]), np.array([0.6, 0.0, 0.8])
+    q = np.array([0.0, 0.3, 0.0, -0.9, 0.0, -0.3, 0.0])
+    start, length = Configuration(robot, q), np.linalg.norm
+    scheme = DoubleIndicator(orientation="none", extra_limits=limits)
+    controller = Controller(robot, scheme, dt=dt)
+    reach = float(length(Configuration(robot, [0.0] * 7).position - shoulder))
+    for k in range(2500):
+        target = start.position + (shoulder + (reach + 0.1) * out - start.position) * min(
+            k / 300, 1
+        )
+        q = q + dt * controller.step(q, k * dt, Target(target, start.rotation)).dq
+    for k in range(1500):  # back at 0.1 m/s, within reach after a second
+        target = shoulder + (reach + 0.1 - speed * k * dt) * out
+        command = controller.step(q, 5.0 + k * dt, Target(target, start.rotation))
+        q = q + dt * command.dq
+        assert k * dt < 1.5 or np.abs(command.dq).max() > 0.1
+    # No more than the lag of a target without a velocity of its own.
+    assert float(length(Configuration(robot, q).position - target)) < 1.2 * speed / 10.2
