@@ -15,7 +15,7 @@ from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.implicit import SETTLE
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -111,8 +111,10 @@ class Plan:
         self.stuck = False
         self.halted: Resolution | None = None
         self.yielding: Yielding | None = None
+        self.rates: Matrix | None = None
         if layout is not None and layout.restrained:
             limits = layout.blocks[-1].part.numbers(robot)
+            self.rates = limits[3 * dof :].reshape(2, dof)
             self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
         self._constants = work[1 + 3 * dof + NETWORK + inertia.size :]

@@ -52,6 +52,9 @@ CREEP = 0.1
 """Share of a period by which a slowed clock always advances: an arm that rests in a singular or
 unreachable pose does not hold its target there."""
 
+FULL = 0.1
+"""Task velocity [m/s] below which the drift of the damping is less, so that a target is reached."""
+
 _REACHED = 1e-9
 
 
@@ -236,8 +239,11 @@ def soften(
         for i in range(n):
             for k in range(n):
                 out[i * n + k] += square * data[row + i] * data[row + k]
-    size = math.sqrt(dot(data, at_q, data[at_q:], n))
+    asked, size = 0.0, math.sqrt(dot(data, at_q, data[at_q:], n))
+    for j in range(p):
+        asked += (weights[j] * data[at_lb - p + j]) ** 2
+    drift = DRIFT * min(1.0, math.sqrt(asked) / FULL) / max(size, 1.0)
     for i in range(n):
-        out[at_q + i] += damping * DRIFT * data[at_q + i] / max(size, 1.0) - pull[i]
+        out[at_q + i] += damping * drift * data[at_q + i] - pull[i]
         out[i * n + i] += damping
     return damping

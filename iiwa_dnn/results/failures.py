@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from iiwa_dnn.results.metrics import (
     compute_metrics,
     limits,
     position_limit_excess,
+    rate_limit_excess,
     velocity_limit_excess,
 )
 from iiwa_dnn.results.record import Record
@@ -19,6 +21,8 @@ from iiwa_dnn.results.record import Record
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
 
+_acceleration = partial(rate_limit_excess, order=1)
+_jerk = partial(rate_limit_excess, order=2)
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
 
 
@@ -142,8 +146,10 @@ def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[st
     for kind, key, unit, excess in (
         ("position", "position_limit_violation_rad", "rad", position_limit_excess),
         ("velocity", "velocity_limit_violation_rad_s", "rad/s", velocity_limit_excess),
+        ("acceleration", "acceleration_limit_violation_rad_s2", "rad/s^2", _acceleration),
+        ("jerk", "jerk_limit_violation_rad_s3", "rad/s^3", _jerk),
     ):
-        worst, where = metrics[key], ""
+        worst, where = metrics.get(key, 0.0), ""  # few schemes have all of them
         if worst is None:
             reasons.append(f"a joint {kind} is not finite")
         elif worst > LIMIT_SLACK:

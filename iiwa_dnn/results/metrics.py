@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.files import plain
-from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
@@ -65,6 +65,23 @@ def velocity_limit_excess(record: Record) -> FloatArray:
     return excess
 
 
+def rate_limit_excess(record: Record, order: int) -> FloatArray:
+    """Compute the excess of each joint's acceleration or jerk over its limit, (N, n); 0 below.
+
+    Finite differences of the commands, from rest, less the rounding that they carry on.
+
+    Args:
+        record: The run of a scheme with such limits.
+        order: 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
+    """
+    dt, still = record.settings["dt"], np.zeros((order, record.q.shape[1]))
+    rates = np.diff(np.vstack([still, record.dq]), order, axis=0) / dt**order
+    rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
+    allowed = limits(record, RATES[order - 1]) + rounding
+    excess: FloatArray = np.maximum(np.abs(rates) - allowed, 0.0)
+    return excess
+
+
 def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
     values = record.settings[key]
@@ -109,6 +126,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "realtime_factor": duration / wall if wall else None,
             "position_limit_violation_rad": position_limit_excess(record).max(),
             "velocity_limit_violation_rad_s": velocity_limit_excess(record).max(initial=0.0),
+            **_rate_limits(record),
             "max_kkt_residual": _max(record.kkt_residual),
             "crosscheck": _crosscheck(record),
             **_physics(record, np.linalg.norm(error, axis=1)),
@@ -137,6 +155,16 @@ def _frames(record: Record) -> dict[str, Any]:
                 record.settings["frames"], distances, angles, strict=True
             )
         }
+    }
+
+
+def _rate_limits(record: Record) -> dict[str, Any]:
+    """Largest excess over acceleration and jerk limits of a scheme that has them."""
+    names = ("acceleration_limit_violation_rad_s2", "jerk_limit_violation_rad_s3")
+    return {
+        name: rate_limit_excess(record, order).max(initial=0.0)
+        for order, name in enumerate(names, start=1)
+        if RATES[order - 1] in record.settings
     }
 
 

@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 MODES = ("converged", "continuous")
-LIMITS = ("q_lower", "q_upper", "dq_max")
+LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
 
 # Errors of NumPy, zip and JSON on a damaged file; InvalidInputError is a ValueError.
 _DAMAGE = (

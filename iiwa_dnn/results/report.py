@@ -21,6 +21,8 @@ _SETTINGS = {
     "q_lower": "lower joint limits [rad]",
     "q_upper": "upper joint limits [rad]",
     "dq_max": "velocity limits [rad/s]",
+    "ddq_max": "acceleration limits [rad/s²]",
+    "dddq_max": "jerk limits [rad/s³]",
     "q0": "initial joint positions [rad]",
     "dt": "time step [s]",
     "duration": "duration [s]",
@@ -75,6 +77,8 @@ _RESULTS: Table = (
     ("largest KKT residual", "max_kkt_residual", ""),
     ("beyond position limits", "position_limit_violation_rad", "rad"),
     ("beyond velocity limits", "velocity_limit_violation_rad_s", "rad/s"),
+    ("beyond acceleration limits", "acceleration_limit_violation_rad_s2", "rad/s²"),
+    ("beyond jerk limits", "jerk_limit_violation_rad_s3", "rad/s³"),
     ("steps", "steps", ""),
     ("time step", "dt_s", "s"),
     ("time simulated", "duration_s", "s"),
@@ -298,7 +302,11 @@ def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str, str]]:
 def _rows(values: Mapping[str, Any], table: Table) -> list[tuple[str, str, str]]:
     """Look up the numbers of a table; the unit of the kinetic index depends on the scheme."""
     units = {"kinetic": _kinetic_unit(values.get("settings", {}))}
-    return [(name, _number(values[key]), units.get(unit, unit)) for name, key, unit in table]
+    return [
+        (name, _number(values[key]), units.get(unit, unit))
+        for name, key, unit in table
+        if key in values
+    ]
 
 
 def _kinetic_unit(settings: Mapping[str, Any]) -> str:

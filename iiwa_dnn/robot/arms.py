@@ -94,6 +94,9 @@ RATES: dict[str, tuple[tuple[float, ...], float | tuple[float, ...]]] = {
 }
 """Acceleration [rad/s^2] and jerk [rad/s^3] limits by the robot's name.
 
-iiwa7: KUKA publishes none; Drake's model of the arm derives these accelerations from its torque
-limits. panda: the limits for Panda in the documentation of libfranka.
+iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
+iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives
+them from measured ones of an iiwa 14 (C. Larsen, master's thesis, Chalmers 2019, table 4) by the
+ratio of torque limits times inverse mass matrices. panda: kMaxJointAcceleration and kMaxJointJerk
+of include/franka/rate_limiting.h in libfranka 0.9.2, the last one for that arm.
 """

@@ -13,6 +13,7 @@ from iiwa_dnn.control.controller import Controller, References
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled, larger
+from iiwa_dnn.results.record import RATES
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.frames import TrackedFrames
@@ -151,6 +152,7 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
     """Return what a record says of robot, scheme and network of a run from q0 (n,) [rad]."""
     robot, solver = controller.robot, controller.solver
     integrator = solver.settler if controller.mode == "converged" else solver.follower
+    rates = controller.plan.rates
     return {
         "robot": robot.name,
         "tip": controller.plan.frames[0],
@@ -158,6 +160,7 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
         "q_lower": robot.q_lower,
         "q_upper": robot.q_upper,
         "dq_max": robot.dq_max,
+        **({} if rates is None else dict(zip(RATES, rates, strict=True))),
         "q0": q0,
         "tol": solver.tol,
         "rho": solver.network.rho,

@@ -22,6 +22,7 @@ from iiwa_dnn import (
     Scheme,
     Step,
     Target,
+    compute_metrics,
     failures,
     simulate,
 )
@@ -119,6 +120,9 @@ def test_a_path_that_is_too_quick(policy: Policy) -> None:
 def test_commands_that_something_alters_keep_the_limits(options: dict[str, object]) -> None:
     record: Record = run(LIMITED, heart(1.0), duration=0.3, **options)
     assert judged(record.q) == []
+    metrics = compute_metrics(record)
+    assert metrics["acceleration_limit_violation_rad_s2"] == 0.0
+    assert metrics["jerk_limit_violation_rad_s3"] == 0.0
     assert np.abs(record.dq).max() > 0.0
 
 

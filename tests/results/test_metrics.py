@@ -234,6 +234,25 @@ def test_a_broken_limit_names_joint_and_time():
     ]
 
 
+def test_acceleration_and_jerk_are_judged_where_the_scheme_limits_them():
+    record, n = make_record(), 7
+    dt, dq = record.settings["dt"], np.array(record.dq)
+    rates = {"ddq_max": [None] * n, "dddq_max": [None] * n}
+    free = dataclasses.replace(record, settings=record.settings | rates)
+    assert compute_metrics(free)["jerk_limit_violation_rad_s3"] == 0.0
+    padded = np.vstack([np.zeros((2, n)), dq])
+    most = [np.abs(np.diff(padded, order, axis=0)).max(axis=0) / dt**order for order in (1, 2)]
+    rates = {"ddq_max": most[0].tolist(), "dddq_max": most[1].tolist()}
+    at_limit = dataclasses.replace(record, settings=record.settings | rates)
+    assert failures(at_limit) == []
+    rates = {"ddq_max": (most[0] - 0.5).tolist(), "dddq_max": (most[1] - 3.0).tolist()}
+    broken = dataclasses.replace(record, settings=record.settings | rates)
+    acceleration, jerk = failures(broken)
+    assert acceleration.startswith("joint acceleration limit broken by 0.5 rad/s^2; joint ")
+    assert jerk.startswith("joint jerk limit broken by 3 rad/s^3; joint ")
+    assert failures(compute_metrics(broken))[1] == "joint jerk limit broken by 3 rad/s^3"
+
+
 def test_rounding_at_a_limit_is_forgiven():
     assert failures(sample(make_record(), "q", (3, 5), 2.5 + 1e-12)) == []
     assert failures(sample(make_record(), "q", (3, 5), 2.5 + 1e-8))
