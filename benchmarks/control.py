@@ -271,7 +271,7 @@ def _proxqp_alone(robot: Robot, scheme: Any, reference: Any, record: Any) -> tup
 
 
 def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
-    """What the parts of a step take on their own [us], called in a row from Python."""
+    """Measure the parts of a step on their own [us], called in a row from Python."""
     robot = paper_robot()
     start = Configuration(robot, paper.START)
     scheme, reference = DoubleIndicator().anchored(start), Heart().anchored(start)

@@ -1,4 +1,4 @@
-"""What a new process takes until its first step, and the memory of a short and a long run."""
+"""Time of a new process until its first step, and the memory of a short and a long run."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def save_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
         folder: Where to; it exists.
 
     Returns:
-        What was written.
+        The files written.
     """
     write_json(folder / "results.json", results)
     write_text(folder / "report.md", markdown(results))

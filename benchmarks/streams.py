@@ -56,7 +56,7 @@ def heart(count: int, dt: float, scale: float | None = None) -> Programs:
 
 
 def active_at_limits(qp: QP, x: Vector, distance: float = 1e-9) -> int:
-    """How many bounds x (n,) lies against."""
+    """Count the bounds that x (n,) lies against."""
     return int(((x - qp.lb < distance) | (qp.ub - x < distance)).sum())
 
 

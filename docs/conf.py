@@ -1,19 +1,27 @@
 """How Sphinx builds these pages: ``make docs``."""
 
+import shutil
 from importlib.metadata import version as installed_version
+from pathlib import Path
 
 project = "iiwa_dnn"
 author = "The iiwa_dnn developers"
 copyright = author
 version = release = installed_version("iiwa-dnn")
 
+# The notebooks lie beside the pages' folder; they are shown as they are kept.
+HERE = Path(__file__).parent
+shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks", dirs_exist_ok=True)
+
 extensions = [
-    "myst_parser",
+    "myst_nb",
+    "sphinx-mathjax-offline",  # formulas without a network
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
 ]
+nb_execution_mode = "off"
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 # Pages are read on the forge too, where a link to a folder or a script is a link as any other.

@@ -100,6 +100,7 @@ def test_the_api_page_and_the_table_of_contents_are_complete() -> None:
     errors = {name for name in iiwa_dnn.__all__ if name.endswith("Error")}  # as a module
     assert set(iiwa_dnn.__all__) - errors == listed
     pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
+    pages |= {f"notebooks/{path.stem}" for path in (ROOT / "notebooks").glob("*.ipynb")}
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     trees = re.findall(r"^```{toctree}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
     named = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}

@@ -11,8 +11,8 @@ NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 
 
 def test_there_are_notebooks() -> None:
-    assert [path.stem for path in NOTEBOOKS] == ["quickstart", "solver_comparison"]
-    assert sum(path.stat().st_size for path in NOTEBOOKS) < 200_000
+    assert [path.stem for path in NOTEBOOKS] == ["between_steps", "quickstart", "solver_comparison"]
+    assert sum(path.stat().st_size for path in NOTEBOOKS) < 900_000
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

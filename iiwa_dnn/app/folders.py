@@ -61,7 +61,7 @@ def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:
 def save_settings(options: RunOptions, folder: Path) -> Path:
     """Write ``settings.toml`` into a run's folder, from which ``--settings`` repeats the run.
 
-    Where the run went to and how much it printed are left out. A file that describes the same run
+    Options of output and folder are left out. A file that describes the same run
     already is left as it is, since a person may have written it.
 
     Raises:

@@ -74,10 +74,10 @@ class RunOptions:
     """Options of every command that leaves a folder."""
 
     command: ClassVar[str]
-    settings: _File = None  # TOML file of options that are not given here, and of the folder
+    settings: _File = None  # TOML file of options; those given here come first
     out: Folder = Path("runs")  # folder that the results are written to
     overwrite: _Flag = False  # write over a folder that holds another run or other files
-    quiet: _Quiet = False  # print no progress, no summary, only why a run failed
+    quiet: _Quiet = False  # print nothing but the reasons of a failure
     verbose: _Verbose = False  # print settings, written files and the traceback of an error too
 
 
@@ -103,7 +103,7 @@ class TrackOptions(RunOptions):
     offset: _Vector = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
     amplitudes: _Vector = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
     period: Time = Heart.period  # time of one round on the path [s]; a CSV file has its own
-    obstacles: _File = None  # TOML file of obstacles that the arm avoids, and with them itself
+    obstacles: _File = None  # TOML file of obstacles; the arm avoids them and itself
     weight: _Number = 0.2  # weight xi of the kinetic index against the joint drift, in [0, 1]
     orientation: _Form = "so3"  # form of the orientation task: so3, block (the paper's) or none
     dt: Time = 1e-4  # control period [s]
@@ -114,7 +114,7 @@ class TrackOptions(RunOptions):
     speed: _Number = 1.0  # velocity limits, as a share of the data sheet's
     acceleration_limit: _AnyLimit = None  # acceleration limit of all joints [rad/s^2], or robot
     jerk_limit: _AnyLimit = None  # jerk limit of all joints [rad/s^3], or robot (its own)
-    mode: _Mode = "converged"  # converged: network settled at every step; continuous: one time step
+    mode: _Mode = "converged"  # converged: network settled at every step; continuous: lagging
     kinetic: _Matrix = "identity"  # matrix G of the kinetic index: identity (the paper's), inertia
     gain: _Number = 10.2  # feedback gain of the position and the orientation error [1/s]
     tracking: _Tracking = "paper"  # target of a step: paper (at its time) or next (at its end)
@@ -132,8 +132,8 @@ class TrackOptions(RunOptions):
 class PhysicsOptions(TrackOptions):
     """Draw a path with an arm that has masses and motors, in MuJoCo.
 
-    The network's velocities, a torque loop under them, every step checked; no disturbances by
-    default.
+    A torque controller follows the network's joint velocities, and every step is checked. There
+    are no disturbances unless asked for.
     """
 
     command: ClassVar[str] = "physics"
@@ -157,7 +157,7 @@ class PhysicsOptions(TrackOptions):
 class PaperOptions(RunOptions):
     """Run every experiment of the paper and put each number beside the paper's.
 
-    A sweep that was cut short goes on where it was.
+    An interrupted sweep resumes.
     """
 
     command: ClassVar[str] = "paper"
@@ -175,7 +175,7 @@ class PaperOptions(RunOptions):
 class NoiseOptions(RunOptions):
     """Compare the countermeasures against noise of the joint velocity.
 
-    Error against smoothness of the command. A sweep that was cut short goes on where it was.
+    The report puts the error against the smoothness of the command. An interrupted sweep resumes.
     """
 
     command: ClassVar[str] = "noise"
@@ -189,7 +189,7 @@ class NoiseOptions(RunOptions):
 class AtlasOptions(RunOptions):
     """Compare the networks of the field at equal compute: tables, a figure and verdicts.
 
-    A sweep that was cut short goes on where it was.
+    An interrupted sweep resumes.
     """
 
     command: ClassVar[str] = "atlas"
@@ -204,7 +204,7 @@ class AtlasOptions(RunOptions):
 
 @dataclass(frozen=True)
 class ViewOptions:
-    """Replay a run in the browser, or drive the arm live, towards a target that is dragged."""
+    """Replay a run in the browser, or let the arm follow a target that is dragged."""
 
     command: ClassVar[str] = "view"
     run: Positional[_Run] = None  # folder or record of a run (none: live)
@@ -221,7 +221,7 @@ class ViewOptions:
 class SolveOptions:
     """Solve the quadratic program in an .npz file.
 
-    The file holds the arrays P and q, and of G and h, A and b, lb, ub those that there are.
+    The file holds the arrays P and q, and if need be G and h, A and b, lb, ub.
     """
 
     command: ClassVar[str] = "solve"
@@ -229,7 +229,7 @@ class SolveOptions:
     tol: _Number = 1e-9  # largest residual of a solution, in the program's units
     check: _Solver = "none"  # solvers that are asked too: proxqp, osqp or both
     out: _File = None  # .npz file that the solution is written to
-    quiet: _Quiet = False  # print only why there is no solution
+    quiet: _Quiet = False  # print only the reason if there is no solution
     verbose: _Verbose = False  # print the multipliers, and the traceback of an error too
 
 

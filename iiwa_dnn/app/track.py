@@ -175,6 +175,8 @@ def draw(
     with progress_bar(simulation.steps, "step", options.quiet) as bar:
         record = simulation.run(bar.update)
     save_settings(options, folder)
+    if not options.quiet and sys.stderr.isatty():
+        print(f"writing report and figures to {folder}", file=sys.stderr)
     metrics = save_run(record, folder, plots=options.plots, more=more)
     if last is not None:
         last(record, folder)

@@ -27,7 +27,7 @@ class Answers:
         rows: The array, (capacity, width).
         at_figures: Column in which the figures begin.
         at_targets: Column in which the targets begin.
-        unsolved: Solutions of another status, by their number.
+        unsolved: Solutions of another status, by the number of the answer.
         resolved: Decisions of a policy, by the number of the answer.
     """
 

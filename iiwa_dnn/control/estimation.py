@@ -60,13 +60,13 @@ class JointEstimator:
     """The filter of n joints, one control step after the other.
 
     Attributes:
-        model: What it is told of the noise.
+        model: Standard deviations of the noise.
         dt: Control period [s].
         bias: Estimated disturbance of the velocity [rad/s], (n,).
     """
 
     def __init__(self, model: NoiseModel, dt: float) -> None:
-        """Know nothing yet.
+        """Start without an estimate.
 
         Raises:
             InvalidInputError: `dt` is not a positive time.
@@ -75,7 +75,7 @@ class JointEstimator:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Drop the estimates; the next sample starts anew."""
         self._q: Vector | None = None
         self.bias: Vector = np.zeros(0)
 

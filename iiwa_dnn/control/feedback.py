@@ -39,7 +39,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
 
 ROUGHNESS = 0.02
-"""How rough a command `noise_gain` accepts: its change from step to step as a share of the
+"""Roughness of a command that `noise_gain` accepts: its change from step to step as a share of the
 noise's, which is :math:`\\delta\\,dt`."""
 
 

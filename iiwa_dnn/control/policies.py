@@ -8,7 +8,7 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
     :math:`b' = s\,b` with the largest feasible :math:`s \in [0, 1]`, the solution of the linear
     program :math:`\max s` subject to :math:`A \dot q = s\,b`, the bounds and
     :math:`G \dot q \le h`. Feedforward and feedback are slowed alike, and the reference's clock has
-    to advance by s dt: then the arm goes along the same path, later. Where not even standing still
+    to advance by s dt: then the arm goes along the same path, later. If not even standing still
     is feasible, since a joint outside its limits has to come back or an obstacle comes near, the
     task yields as with ``relax``. So it does in a singular pose, in which the arm would stay for
     good; the clock creeps on by a tenth, until the path leads out of it.
@@ -22,7 +22,7 @@ rows alone, so no limit is ever relaxed, and the check gets a program of the usu
 ``raise``
     A `NoSolutionError` with the program inside.
 
-The multipliers of the first two problems name the bounds and rows that stand in the way. Where the
+The multipliers of the first two problems name the bounds and rows that stand in the way. If the
 limits contradict each other, so that no velocity is within all of them, the arm stops. A program
 that has a solution which the network missed is answered by the reference solver, whatever the
 policy.

@@ -1,6 +1,6 @@
 r"""A network whose clock runs by the size of its own rates: finite-, fixed-, predefined-time forms.
 
-Of a network :math:`\rho\,\dot s = F(s)` and an activation :math:`\Phi`,
+For a network :math:`\rho\,\dot s = F(s)` and an activation :math:`\Phi`,
 
 .. math::  \rho\,\dot s = \Phi(\|F(s)\|)\,\frac{F(s)}{\|F(s)\|} .
 

@@ -40,7 +40,7 @@ class BatchSolution(NamedTuple):
         found: True where every residual is at most the tolerance, (k,).
         residuals: Primal residual, dual residual and duality gap, (k, 3).
         iterations: Linear systems solved, (k,).
-        faults: Errors of programs that no convex solver could make sense of, by their number.
+        faults: Errors of programs that are not convex quadratic programs, by index.
             Their points are NaN.
     """
 

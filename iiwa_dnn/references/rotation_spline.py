@@ -37,8 +37,8 @@ def fit_rotations(times: Array, quaternions: Array, ends: str) -> Array:
         ends: ``"clamped"``, ``"natural"`` or ``"closed"``, as of `Waypoints`.
 
     Returns:
-        Of each piece the polynomial's coefficients of x^3, x^2 and x, and the rotation vector from
-        the first orientation to the piece's, (m - 1, 4, 3).
+        Coefficients of x^3, x^2 and x of each piece's polynomial, and the rotation vector from the
+        first orientation to the piece's, (m - 1, 4, 3).
 
     Raises:
         InvalidInputError: Two neighbours are half a turn apart, or the turns are too large to fit.

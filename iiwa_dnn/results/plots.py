@@ -91,7 +91,7 @@ def write_figures(
 def overview_figure(record: Record) -> Figure:
     """Draw path, joint angles, joint velocities and position error: the paper's Fig. 1 (a)–(d).
 
-    Where the target turns, (e) is the orientation error against it.
+    If the target turns, (e) is the orientation error against it.
     """
     turns = bool(np.ptp(record.rotation_desired, axis=0).max() > _TURNS)
     rows = 3 if turns else 2

@@ -59,7 +59,7 @@ def hull_points(s: Vector, a: int, o: Vector, c: int, count: int, out: Vector, a
 
     The segment is that of `segment_points`; the hull is that of `count` points from o[c] on. The
     point of their difference nearest to the origin is looked for among simplices of its corners.
-    Where the two overlap, both points are equal.
+    If the two overlap, both points are equal.
 
     Source: E. G. Gilbert, D. W. Johnson, S. S. Keerthi, "A fast procedure for computing the
     distance between complex objects in three-dimensional space", IEEE J. Robotics and Automation

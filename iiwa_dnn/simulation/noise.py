@@ -14,7 +14,7 @@ from iiwa_dnn.qp.program import Matrix, Vector
 
 NoiseEntry = Literal["velocity", "network", "measurement"]
 NOISE_ENTRIES: tuple[NoiseEntry, ...] = ("velocity", "network", "measurement")
-"""Where noise may enter the loop; sigma is in the unit of what it is added to.
+"""Places at which noise may enter the loop; sigma is in the unit of what it is added to.
 
 ``velocity`` [rad/s]: added to the joint velocity that the controller commands, before the filter:
 the paper's section IV. ``network`` [rad/s]: added to x of the network's state after each step's

@@ -46,7 +46,7 @@ class Simulation:
     filter act on the velocity, and the plant follows the result for dt. An altered command is
     clipped to the limits at the true joint positions, as by a drive that watches its own limits. At
     a step that the network cannot solve a policy decides; it is an Euler step, whatever the motion.
-    Where a policy slows down, the record's desired positions are those of the slowed clock.
+    If a policy slows down, the record's desired positions are those of the slowed clock.
     """
 
     def __init__(

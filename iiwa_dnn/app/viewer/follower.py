@@ -2,7 +2,7 @@ r"""The controller closed around a target that may jump.
 
 A dragged target can be far away, and out of reach. The feedback of the scheme asks for the
 velocity :math:`\delta e`, so the error is cut to what the tip may do,
-:math:`\|e\| \le v_{max} / \delta`, and likewise for the orientation. Where even that has no
+:math:`\|e\| \le v_{max} / \delta`, and likewise for the orientation. If even that has no
 solution, shorter errors are tried, and in the end the arm stands still. It also does so rather than
 be stretched out to a singular posture, which it could not leave again within its joints' speeds.
 """
@@ -31,10 +31,10 @@ from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import CollisionAvoidance, DoubleIndicator, Limit
 
 TIP_SPEED, TIP_RATE = 0.25, 1.0
-"""What the tip may do: [m/s] and [rad/s]. 0.25 m/s is what robots may do beside people."""
+"""Largest speed [m/s] and rate [rad/s] of the tip; 0.25 m/s is the limit beside people."""
 
 LEAST_SINGULAR_VALUE = 0.05
-"""Of the Jacobian's: below it, leaving at 0.1 m/s would ask for 2 rad/s of the joints."""
+"""Least one of the Jacobian: below it, 0.1 m/s of the tip would ask for 2 rad/s of the joints."""
 
 _GAINS = ("drift_gain", "position_gain", "orientation_gain", "limit_gain")
 _SHARES = (1.0, 0.3, 0.1, 0.03, 0.0)
@@ -143,7 +143,7 @@ class Follower:
         """Move the ball towards a place (3,) [m] for one period, at `TIP_SPEED` at most.
 
         Returns:
-            Where it is afterwards, (3,) [m].
+            The place of the ball afterwards, (3,) [m].
         """
         if self.obstacle is None:
             raise InvalidInputError("obstacle", "is missing: avoid one first")
@@ -162,7 +162,7 @@ class Follower:
             rotation: How, (3, 3).
 
         Returns:
-            Where the arm is afterwards.
+            The state of the arm afterwards.
         """
         conf = Configuration(self.robot, self._q, self._scratch)
         shift = position - conf.position
