@@ -22,6 +22,7 @@ from iiwa_dnn.results import plots
 from iiwa_dnn.results.pictures import ArmRenderer
 
 HERE = Path(__file__).parent
+PAGE = HERE.parent / "docs/images/viewer_live.png"
 TILE, COLUMNS = (256, 184), 4  # size of a picture on the sheet [pixel], pictures in a row
 CSV = "t,x,y,z\n0,0,0,0\n2,0.06,0,0.04\n4,0.06,0.08,0\n6,0,0.08,0.04\n8,0,0,0\n"
 
@@ -142,6 +143,7 @@ def scenes(csv):
         ("push", error, lambda: run("physics", *push)),
         ("remote_centre", partial(figure, pivot), lambda: example("remote_centre.py")),
         ("priorities", partial(figure, levels), lambda: example("priorities.py")),
+        ("live_drag", lambda _: Image.open(PAGE).convert("RGB"), lambda: None),
     )
 
 
@@ -156,12 +158,14 @@ def main(folder="docs/images/gallery"):
     for i, (name, draw, make) in enumerate(drawn):
         print(f"-- {name}", flush=True)
         picture = draw(make())
-        picture.quantize(128, Image.Quantize.MAXCOVERAGE).save(out / f"{name}.png", optimize=True)
+        if name != "live_drag":  # a picture of the browser, taken by hand
+            small = picture.quantize(128, Image.Quantize.MAXCOVERAGE)
+            small.save(out / f"{name}.png", optimize=True)
         picture.thumbnail(TILE, Image.Resampling.LANCZOS)
         x, y = i % COLUMNS * TILE[0], i // COLUMNS * (TILE[1] + 22)
         sheet.paste(picture, (x + (TILE[0] - picture.width) // 2, y + 20))
         ImageDraw.Draw(sheet).text((x + 8, y + 4), name.replace("_", " "), fill="black")
-    sheet.quantize(128, Image.Quantize.MAXCOVERAGE).save(out / "contact.png", optimize=True)
+    sheet.save(out / "contact.png", optimize=True)
 
 
 if __name__ == "__main__":

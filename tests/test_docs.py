@@ -26,7 +26,7 @@ DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("do
 WITH_CODE = (
     "README.md", "atlas.md", "collisions.md", "commands.md", "control_loop.md", "index.md",
     "networks.md", "noise.md", "own_network.md", "own_reference.md", "own_scheme.md",
-    "real_arm.md", "robots.md", "theory.md",
+    "real_arm.md", "robots.md", "theory.md", "tutorial.md",
 )  # fmt: skip
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
