@@ -2,13 +2,14 @@
 
 import sys
 
+from benchmarks.arms import bench_arms
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
 from benchmarks.sizes import bench_sizes
 
 COMMANDS = {
     "solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets,
-    "collisions": bench_collisions, "sizes": bench_sizes,
+    "collisions": bench_collisions, "arms": bench_arms, "sizes": bench_sizes,
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -123,7 +123,7 @@ def measure_steps(
         dt: Control period [s].
         pythons: Python interpreter by module, for libraries that this one does not have.
         progress: Called with the number of steps done since the last call.
-        scene: Further arrays of the task, such as obstacles.
+        scene: Further arrays of the task, such as obstacles; with `poses`, of another one.
         loops: Loops to measure; None: all of `LOOPS`.
 
     Returns:
@@ -146,12 +146,13 @@ def measure_steps(
     drivers: list[Driver] = []
     with tempfile.TemporaryDirectory() as folder:
         task = Path(folder) / "task.npz"
-        np.savez(
-            task, urdf=str(file_of(robot)), tip=robot.tip, names=robot.joint_names, dt=dt,
-            q0=paper.START, lower=robot.q_lower, upper=robot.q_upper, velocity=robot.dq_max,
-            poses=[pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
-            **(scene or {}),
-        )  # fmt: skip
+        heart = {
+            "urdf": str(file_of(robot)), "tip": robot.tip, "names": robot.joint_names, "dt": dt,
+            "q0": paper.START, "lower": robot.q_lower, "upper": robot.q_upper,
+            "velocity": robot.dq_max,
+            "poses": [pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
+        }  # fmt: skip
+        np.savez(task, **{**heart, **(scene or {})})
         try:
             drivers += [Driver(loop, found[loop.module], task) for loop in loops]
             for first in range(0, steps, CHUNK):
@@ -160,7 +161,8 @@ def measure_steps(
                     taken = driver.take(first, last)
                     times[loop] += taken["us"]
                     moved[loop] += taken["q"] if scene else []
-                    for k, q in enumerate(taken["q"], first + 1):
+                    on_heart = [] if scene and "poses" in scene else taken["q"]
+                    for k, q in enumerate(on_heart, first + 1):
                         tip = Configuration(robot, q, data).position
                         error = float(np.linalg.norm(tip - targets[k].position))
                         errors[loop] = max(errors[loop], error)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import mink
 import mujoco
-from serve import Loop, Task, serve
+from serve import Loop, Task, by_frame, serve
 
 # MuJoCo merges bodies without a joint, the tip among them, unless told not to.
 _COMPILER = '<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco></robot>'
@@ -20,7 +20,8 @@ def make(task: Task, variant: str) -> Loop:
     model = spec.compile()
     model.jnt_range[:, 0], model.jnt_range[:, 1] = task["lower"], task["upper"]
     configuration, dt = mink.Configuration(model, q=task["q0"].copy()), float(task["dt"])
-    frame = mink.FrameTask(str(task["tip"]), "body", position_cost=1.0, orientation_cost=1.0)
+    tips, poses = by_frame(task)
+    frames = [mink.FrameTask(tip, "body", position_cost=1.0, orientation_cost=1.0) for tip in tips]
     posture = mink.PostureTask(model, cost=1e-3)
     posture.set_target(task["q0"])
     names = [str(name) for name in task["names"]]
@@ -33,10 +34,12 @@ def make(task: Task, variant: str) -> Loop:
             collision_detection_distance=near + 0.2,
         )  # fmt: skip
         limits.append(avoid)
-    tasks, poses = [frame, posture], [mink.SE3.from_matrix(pose) for pose in task["poses"]]
+    tasks = [*frames, posture]
+    wanted = [[mink.SE3.from_matrix(pose) for pose in at] for at in poses]
 
     def step(k: int) -> None:
-        frame.set_target(poses[k + 1])
+        for frame, pose in zip(frames, wanted[k + 1], strict=True):
+            frame.set_target(pose)
         velocity = mink.solve_ik(configuration, tasks, dt, solver=variant, limits=limits)
         configuration.integrate_inplace(velocity, dt)
 

@@ -1,7 +1,12 @@
-"""This package's loop as documented: `Controller.step(q, t)`, with and without integration."""
+"""This package's loop as documented: `Controller.step(q, t)`, with and without integration.
+
+A task with a `scene` is one of ``scripts/arm_scenes.py``.
+"""
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,21 +15,28 @@ from serve import Loop, Task, serve
 import iiwa_dnn
 from iiwa_dnn.simulation import MOTIONS
 
+sys.path.insert(0, str(Path(__file__).parents[2]))
+from scripts import arm_scenes  # noqa: E402
+
 
 def make(task: Task, variant: str) -> Loop:
     """Make the loop; the variants are ``command``, ``euler`` and ``midpoint``."""
-    robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
-        lower=task["lower"], upper=task["upper"], velocity=task["velocity"]
-    )
     q, dt = np.array(task["q0"]), float(task["dt"])
-    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q))
-    scheme: iiwa_dnn.Scheme = iiwa_dnn.DoubleIndicator()
+    reference: Any
+    if "scene" in task:
+        robot, scheme, reference, _ = arm_scenes.scene(str(task["scene"]), dt)
+    else:
+        robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
+            lower=task["lower"], upper=task["upper"], velocity=task["velocity"]
+        )
+        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q))
+        scheme = iiwa_dnn.DoubleIndicator()
     if "balls" in task:
         balls = map(iiwa_dnn.Sphere, task["balls"], map(float, task["ball_radii"]))
         distance = float(task["distance"])
         avoid = iiwa_dnn.CollisionAvoidance(list(balls), self_collision=False, distance=distance)
         scheme = iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoid])
-    controller = iiwa_dnn.Controller(robot, scheme, heart, dt=dt)
+    controller = iiwa_dnn.Controller(robot, scheme, reference, dt=dt)
     controller.warm_up()
     command: Any = None
 

@@ -14,7 +14,7 @@ import pink
 import pinocchio as pin
 from pink.barriers import SelfCollisionBarrier
 from pink.limits import AccelerationLimit, ConfigurationLimit, VelocityLimit
-from serve import Loop, Task, serve
+from serve import Loop, Task, by_frame, serve
 
 
 def make(task: Task, variant: str) -> Loop:
@@ -33,10 +33,12 @@ def make(task: Task, variant: str) -> Loop:
         barriers = [SelfCollisionBarrier(count, gain=20.0, d_min=distance)]
         scene = {"collision_model": geometry, "collision_data": geometry.createData()}
     configuration = pink.Configuration(model, model.createData(), q0, **scene)
-    frame = pink.FrameTask(str(task["tip"]), position_cost=1.0, orientation_cost=1.0)
+    names, poses = by_frame(task)
+    frames = [pink.FrameTask(name, position_cost=1.0, orientation_cost=1.0) for name in names]
     posture = pink.PostureTask(cost=1e-3)
     posture.set_target(task["q0"])
-    tasks, poses, later = [frame, posture], [pin.SE3(pose) for pose in task["poses"]], bool(ahead)
+    tasks, later = [*frames, posture], bool(ahead)
+    wanted = [[pin.SE3(pose) for pose in at] for at in poses]
 
     limits = None
     if limited:
@@ -44,7 +46,8 @@ def make(task: Task, variant: str) -> Loop:
         limits = [ConfigurationLimit(model), VelocityLimit(model), rates]
 
     def step(k: int) -> None:
-        frame.set_target(poses[k + later])
+        for frame, pose in zip(frames, wanted[k + later], strict=True):
+            frame.set_target(pose)
         velocity = pink.solve_ik(
             configuration, tasks, dt, solver=solver, limits=limits, barriers=barriers, **options
         )

@@ -1,4 +1,4 @@
-"""PlaCo's loop: a hard frame task, a weak joints task, joint and velocity limits."""
+"""PlaCo's loop: hard or soft frame tasks, a weak joints task, joint and velocity limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import placo
 from balls import write_scene
-from serve import Loop, Task, serve
+from serve import Loop, Task, by_frame, serve
 
 
 def make(task: Task, variant: str) -> Loop:
@@ -25,13 +25,14 @@ def make(task: Task, variant: str) -> Loop:
         robot.set_joint_limits(name, float(task["lower"][i]), float(task["upper"][i]))
         robot.set_velocity_limit(name, float(task["velocity"][i]))
     robot.update_kinematics()
-    solver, poses = placo.KinematicsSolver(robot), list(task["poses"])
+    solver, (tips, poses) = placo.KinematicsSolver(robot), by_frame(task)
     solver.mask_fbase(True)
-    frame = solver.add_frame_task(str(task["tip"]), poses[0])
-    frame.configure("tip", "hard", 1.0, 1.0)
+    frames = [solver.add_frame_task(tip, pose) for tip, pose in zip(tips, poses[0], strict=True)]
+    for tip, frame in zip(tips, frames, strict=True):
+        frame.configure(tip, "soft" if "soft" in task else "hard", 1.0, 1.0)
     joints = solver.add_joints_task()
     joints.set_joints(dict(zip(names, task["q0"].tolist(), strict=True)))
-    joints.configure("posture", "soft", 1e-3)
+    joints.configure("posture", "soft", 1e-6 if "soft" in task else 1e-3)
     solver.enable_joint_limits(True)
     solver.enable_velocity_limits(True)
     if "balls" in task:
@@ -42,7 +43,8 @@ def make(task: Task, variant: str) -> Loop:
     solver.dt = float(task["dt"])
 
     def step(k: int) -> None:
-        frame.T_world_frame = poses[k + 1]
+        for frame, pose in zip(frames, poses[k + 1], strict=True):
+            frame.T_world_frame = pose
         solver.solve(True)
         robot.update_kinematics()
 

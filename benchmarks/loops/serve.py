@@ -17,10 +17,17 @@ from typing import Any
 import numpy as np
 
 Task = Mapping[str, Any]
-"""urdf, tip, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4), dt apart."""
+"""urdf, tip or tips, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4) or (steps + 1,
+tips, 4, 4), dt apart; `soft` where a frame's task is not to be hard."""
 
 Loop = tuple[Callable[[int], object], Callable[[], Any]]
 """``step(k)``, which is timed, and ``posture()``, the joint positions (n,) [rad] after it."""
+
+
+def by_frame(task: Task) -> tuple[list[str], Any]:
+    """Return the names of the f frames that are moved, and their poses, (steps + 1, f, 4, 4)."""
+    names, poses = [str(name) for name in np.atleast_1d(task["tip"])], task["poses"]
+    return names, poses.reshape(len(poses), len(names), 4, 4)
 
 
 def serve(make: Callable[[Task, str], Loop]) -> None:
