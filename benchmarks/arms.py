@@ -25,7 +25,10 @@ from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import file_of
 from scripts.arm_scenes import SCENES, scene
 
-OWN, PEERS = "iiwa_dnn, with q + dt dq", ("Pink, daqp, target one step ahead", "mink, daqp", "PlaCo")
+OWN, PEERS = (
+    "iiwa_dnn, with q + dt dq",
+    ("Pink, daqp, target one step ahead", "mink, daqp", "PlaCo"),
+)
 ARRIVED = 1e-4  # [m]
 
 

@@ -49,7 +49,7 @@ def scene(name, dt):
         position = start.frame(frame).position.copy()
         if centre == "pose":
             goal = np.random.default_rng(0).uniform(-np.pi / 2, np.pi / 2, robot.dof)
-            references[frame] = iiwa_dnn.MovingTarget(iiwa_dnn.Configuration(robot, goal))
+            references[frame] = iiwa_dnn.Still().anchored(iiwa_dnn.Configuration(robot, goal))
             continue
         if centre not in (None, "velocity"):
             position[1:] = centre

@@ -19,7 +19,10 @@ def main(duration=10.0, dt=1e-3):
     point = start.position + 0.15 * start.rotation[:, 2]  # on the axis, 15 cm before the flange
     scheme = iiwa_dnn.Scheme(
         costs=[iiwa_dnn.KineticEnergy(weight=0.2), iiwa_dnn.CyclicMotion(weight=0.8)],
-        tasks=[iiwa_dnn.PositionTask(), iiwa_dnn.RemoteCentreTask(point, gain=100.0)],
+        tasks=[
+            iiwa_dnn.PositionTask(tracking="next"),
+            iiwa_dnn.RemoteCentreTask(point, tracking="next"),
+        ],
         limits=[iiwa_dnn.JointLimits()],
     )
     heart = iiwa_dnn.Heart(scale=2e-3, period=duration).anchored(start)

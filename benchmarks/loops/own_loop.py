@@ -16,7 +16,7 @@ import iiwa_dnn
 from iiwa_dnn.simulation import MOTIONS
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
-from scripts import arm_scenes  # noqa: E402
+from scripts import arm_scenes
 
 
 def make(task: Task, variant: str) -> Loop:

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 Task = Mapping[str, Any]
-"""urdf, tip or tips, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4) or (steps + 1,
-tips, 4, 4), dt apart; `soft` where a frame's task is not to be hard."""
+"""urdf, tip or f tips, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4) or
+(steps + 1, f, 4, 4), dt apart; `soft` where the tasks of frames are not to be hard."""
 
 Loop = tuple[Callable[[int], object], Callable[[], Any]]
 """``step(k)``, which is timed, and ``posture()``, the joint positions (n,) [rad] after it."""

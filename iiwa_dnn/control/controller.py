@@ -8,12 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import (
-    computeJointJacobians,
-    log3,
-    updateFramePlacement,
-    updateFramePlacements,
-)
+from pinocchio import computeJointJacobians, log3, updateFramePlacement, updateFramePlacements
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
@@ -125,7 +120,7 @@ class Controller:
         index = room.count
         if index == SIZE:
             self._room, index = (room := room.following()), 0
-        if target is not None or room.path is None:
+        if target is not None or not room.paths:
             room.targets[index] = self.targets(t - self.delay, target)
         elif t - self.delay != room.times[index]:
             room.look_ahead(t - self.delay, index)
@@ -148,14 +143,15 @@ class Controller:
             self.anchor(start)
             if target is None:
                 self.warn_if_far(start, t, stacklevel=4)
-        plan, reference = self.plan, self.reference
-        base: Vector = np.zeros(18 * len(plan.frames))
-        path, numbers = None, base[:0]
-        if isinstance(reference, Reference) and plan.frames == (self.robot.tip,):
-            path = (reference := self._ahead(self.robot.tip, reference)).compiled
-            if path is not None:
-                base, numbers = reference.base, reference.numbers
-        self._room = room = Room(plan, self.dt, path, base, numbers)
+        base: Vector
+        plan, given = self.plan, self._references
+        seen = [self._ahead(name, given[name]) for name in plan.frames if name in given]
+        paths = [(one.compiled, one.numbers) for one in seen if one.compiled is not None]
+        if not paths or len(paths) < len(plan.frames):
+            paths, base = [], np.zeros(18 * len(plan.frames))
+        else:
+            base = np.concatenate([one.base for one in seen])
+        self._room = room = Room(plan, self.dt, paths, base)
         return plan, room
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
@@ -206,9 +202,8 @@ class Controller:
         plan = self._plan
         if plan is None or plan.version != self.solver.version:
             converged = self.mode == "converged"
-            self._plan = plan = Plan(
-                self.robot, self.scheme, self.solver, self.dt, converged, self._q
-            )
+            parts = self.robot, self.scheme, self.solver, self.dt, converged
+            self._plan = plan = Plan(*parts, self._q)
         return plan
 
     def answers(self, targets: Matrix) -> Answers:
@@ -232,13 +227,18 @@ class Controller:
         """
         if self.reference is None:
             raise InvalidInputError("reference", "is missing: give one, or a target to each step")
-        one = self.reference
-        given = {self.robot.tip: one} if isinstance(one, Reference) else one
+        given = self._references
         for name in self.plan.frames:
             if name not in given:
                 raise InvalidInputError("reference", f"is missing for frame {name!r}")
         seen = (self._ahead(name, given[name]).sample(times) for name in self.plan.frames)
         return np.concatenate([targets.data for targets in seen], axis=1)
+
+    @property
+    def _references(self) -> Mapping[str, Reference]:
+        """References by frame name; none where every step gets a target."""
+        one = self.reference
+        return {self.robot.tip: one} if isinstance(one, Reference) else one or {}
 
     def _ahead(self, frame: str, reference: Reference) -> Reference:
         """Return a frame's reference, one period ahead where its tasks track the next target."""

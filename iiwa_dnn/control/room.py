@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.qp import Vector
+from iiwa_dnn.schemes.parts import TARGET_SIZE
 
 SIZE = 256
 """Steps whose programs and answers share one array."""
@@ -24,15 +26,18 @@ class Room(Answers):
     Attributes:
         times: Times of the targets in the rows [s]; NaN where none is sampled yet.
         commands: Joint velocities of all rows, answered or not, as views.
-        path: Compiled form of the tip's reference, `Reference.compiled`; None: has none.
+        paths: Compiled form (`Reference.compiled`) and numbers of each frame's reference; none
+            where one of them has no compiled form.
     """
 
-    def __init__(self, plan: Plan, dt: float, path: Any, base: Vector, numbers: Vector) -> None:
-        """Allocate for a plan; base (18 frames,) and numbers (c,) are the reference's."""
+    def __init__(
+        self, plan: Plan, dt: float, paths: Sequence[tuple[Any, Vector]], base: Vector
+    ) -> None:
+        """Allocate for a plan; base (18 frames,) is the targets' at the paths' origins."""
         super().__init__(plan.sizes, plan.q.size, plan.expected, np.tile(base, (SIZE, 1)))
-        self.path, self.times = path, [math.nan] * SIZE
+        self.paths, self.times = paths, [math.nan] * SIZE
         self.commands = list(self.rows[:, self._x])
-        self._arguments = (plan, dt, path, base, numbers)
+        self._arguments = (plan, dt, paths, base)
         self._periods, self._ahead, self._next = np.arange(SIZE + 1), 1, math.nan
 
     def following(self) -> Room:
@@ -43,11 +48,14 @@ class Room(Answers):
 
     def look_ahead(self, t: float, index: int) -> None:
         """Sample the target of a time [s], and more and more after it while calls are on time."""
-        _, dt, path, base, numbers = self._arguments
+        _, dt, paths, base = self._arguments
         self._ahead = count = min(2 * self._ahead, SIZE - index) if t == self._next else 1
         # Rounded as a caller rounds k dt; a NaN stays one.
         times = ((t / dt + 0.5) // 1.0 + self._periods[: count + 1]) * dt
         times[0] = t
         self.targets[index : index + count] = base  # to which a path adds
-        path(times[:count], numbers, self.rows, index, self.at_targets)
+        column = self.at_targets
+        for path, numbers in paths:
+            path(times[:count], numbers, self.rows, index, column)
+            column += TARGET_SIZE
         *self.times[index : index + count], self._next = times.tolist()

@@ -6,6 +6,7 @@ from iiwa_dnn.references.heart import Heart
 from iiwa_dnn.references.line import Line
 from iiwa_dnn.references.lissajous import Lissajous
 from iiwa_dnn.references.moving_target import MovingTarget
+from iiwa_dnn.references.still import Still
 from iiwa_dnn.references.targets import Target, Targets
 from iiwa_dnn.references.turning import Cone, OnSurface, Tilting
 from iiwa_dnn.references.waypoints import Waypoints
@@ -19,6 +20,7 @@ __all__ = [
     "MovingTarget",
     "OnSurface",
     "Reference",
+    "Still",
     "Target",
     "Targets",
     "Tilting",

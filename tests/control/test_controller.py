@@ -14,9 +14,16 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Status
-from iiwa_dnn.references import Heart
+from iiwa_dnn.references import Circle, Heart, MovingTarget, Reference
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
+from iiwa_dnn.schemes import (
+    CyclicMotion,
+    DoubleIndicator,
+    PoseTask,
+    PositionTask,
+    PseudoInverse,
+    Scheme,
+)
 
 SCHEME = DoubleIndicator(home=PAPER_Q0)
 
@@ -157,3 +164,29 @@ def test_targets_sampled_ahead_follow_a_changed_period_and_delay() -> None:
     fresh.dt = 2e-3
     want = fresh.step(start.q, 0.0, reference.at(0.018)).dq
     np.testing.assert_allclose(early.dq, want, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("tracking", ["paper", "next"])
+@pytest.mark.parametrize("compiled", [True, False])
+def test_targets_of_two_frames_are_sampled_ahead_too(tracking: Any, compiled: bool) -> None:
+    robot = load_robot("iiwa7_dual")
+    start = Configuration(robot, robot.start_posture())
+    left, right = "left_iiwa7_flange", "right_iiwa7_flange"
+    still = MovingTarget(start.frame(right))  # which has no compiled form
+    other: Reference = Circle().anchored(start.frame(right)) if compiled else still
+    references = {right: other, left: Heart().anchored(start.frame(left))}
+    tasks = [PositionTask(frame=right, tracking=tracking), PoseTask(frame=left, tracking=tracking)]
+    scheme = Scheme([CyclicMotion()], tasks)
+    ahead = Controller(robot, scheme, references, dt=1e-3)
+    one_by_one = Controller(robot, scheme, dt=1e-3)
+    q = start.q
+    for k in range(20):
+        seen = {
+            name: reference.ahead(1e-3) if tracking == "next" else reference
+            for name, reference in references.items()
+        }
+        given = {name: reference.at(k * 1e-3) for name, reference in seen.items()}
+        dq = ahead.step(q, k * 1e-3).dq
+        want = one_by_one.step(q, k * 1e-3, given).dq
+        np.testing.assert_allclose(dq, want, rtol=0, atol=1e-9)
+        q = q + 1e-3 * dq

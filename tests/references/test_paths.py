@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Waypoints
+from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Still, Waypoints
 from iiwa_dnn.robot import Configuration, load_robot
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
@@ -175,3 +175,16 @@ def test_bad_parameters(make, argument: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         make()
     assert caught.value.argument == argument
+
+
+def test_a_pose_that_is_held_does_not_move() -> None:
+    robot = load_robot("iiwa7")
+    q0 = robot.start_posture()
+    goal = Configuration(robot, q0 + 0.1)
+    still = Still(period=3.0).anchored(goal)
+    targets = still.sample([0.0, 1.0, 2.9])
+    np.testing.assert_array_equal(targets.position, np.tile(goal.position, (3, 1)))
+    np.testing.assert_array_equal(targets.data[:, 12:], 0.0)
+    assert still.duration == 3.0
+    with pytest.raises(InvalidInputError, match="period"):
+        Still(period=0.0)

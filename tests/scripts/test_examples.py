@@ -78,14 +78,15 @@ def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
 
 def test_two_arms(tmp_path: Path) -> None:
     text = example(tmp_path, "two_arms.py", "0.5")
-    assert number(r"left (\S+) m", text) < 5e-6
-    assert number(r"right (\S+) m", text) < 5e-6
-    assert number(r"changes by (\S+)", text) < 1e-6
+    assert number(r"left (\S+) m", text) < 1e-6
+    assert number(r"right (\S+) m", text) < 1e-6
+    assert number(r"changes by (\S+) m", text) < 1e-6
+    assert number(r"and (\S+) rad", text) < 1e-6
 
 
 def test_a_shaft_through_a_point(tmp_path: Path) -> None:
     text = example(tmp_path, "remote_centre.py", "5")
-    assert number(r"at most (\S+) m from the point", text) < 1e-6
+    assert number(r"at most (\S+) m from the point", text) < 1e-7
     assert number(r"tilted by (\S+) deg", text) > 10.0
 
 
@@ -112,3 +113,11 @@ def test_the_heart_around_an_obstacle(tmp_path: Path) -> None:
     assert 0.02 <= nearest[1] < 0.021
     assert "failures []" in text
     assert (tmp_path / "figures" / "obstacle.png").exists()
+
+
+def test_arms_of_other_libraries_examples(tmp_path: Path) -> None:
+    text = example(tmp_path, "arm_scenes.py", "4", "1e-2")
+    assert text.count("gap to ProxQP") == 8
+    assert number(r"arm_ur5 +error (\S+) m", text) < 5e-5
+    assert number(r"dual_iiwa +error (\S+) m", text) < 5e-6
+    assert "failures []" in text
