@@ -27,7 +27,7 @@ class Curves:
 
     def __init__(
         self, gui: Any, title: str, colours: tuple[str, ...], ends: tuple[float, float],
-        across: str = "t [s]", powers: bool = False,
+        powers: bool = False,
     ) -> None:  # fmt: skip
         """Put an empty diagram on the page.
 
@@ -36,7 +36,6 @@ class Curves:
             title: Name and unit of the curves.
             colours: Colour of each curve, k of them.
             ends: Ends of the horizontal axis.
-            across: Name and unit of the horizontal axis.
             powers: True if `ends`, and the times of `show`, are decimal logarithms.
         """
         from viser import uplot  # of an extra
@@ -50,9 +49,9 @@ class Curves:
         self.handle = gui.add_uplot(
             (self._times, *self._values.T, self._times),
             (
-                uplot.Series(label=across),
-                *(uplot.Series(label=title, stroke=colour, width=1) for colour in colours),
-                uplot.Series(label="now", stroke="#444", width=1, points={"show": False}),
+                uplot.Series(),
+                *(uplot.Series(stroke=colour, width=1) for colour in colours),
+                uplot.Series(stroke="#444", width=1, points={"show": False}),
             ),
             title=title,
             legend=uplot.Legend(show=False),

@@ -30,14 +30,14 @@ _SLIDERS = {
     "position_gain": ("δ position [1/s]", 30.0, 0.1),
     "orientation_gain": ("ν turn [1/s]", 30.0, 0.1),
 }
-# Titles and colours of the diagrams; their columns stand in `LivePanel._sample`.
+# Titles and colours of the diagrams; `LivePanel._draw` has their columns.
 _CURVES = (
     ("error [m], angle in blue [rad]", COLOURS[:2]),
     ("distance of arm and ball [m]", COLOURS[2:3]),
     ("KKT residual of the network", COLOURS[4:5]),
     ("time to settle a step [s]", COLOURS[5:6]),
 )
-_SETTLING = "states from rest to their answer [rad/s]"
+_SETTLING = "states to answer [rad/s] over time [ρ]"
 _LEAST = 1e-12  # what lies below is rounding
 _SECONDS, _PATH, _PATH_COLOUR = 20.0, 600, (220, 0, 30)
 
@@ -82,13 +82,9 @@ class LivePanel:
             self._bars = gui.add_html("")
         self._diagrams = gui.add_folder("Last 20 s", visible=False)
         with self._diagrams:
-            self.curves = tuple(
-                Curves(gui, title, colours, (-_SECONDS, 0.0), "time before now [s]")
-                for title, colours in _CURVES
-            )
-            self.settling = Curves(
-                gui, _SETTLING, COLOURS, (-2.0, 7.0), "network time [rho]", powers=True
-            )
+            ends = -_SECONDS, 0.0
+            self.curves = tuple(Curves(gui, name, lines, ends) for name, lines in _CURVES)
+            self.settling = Curves(gui, _SETTLING, COLOURS, (-2.0, 7.0), powers=True)
         home.on_click(lambda _: self.target_home())
         push.on_click(lambda _: self._wanted.put(self._push))
         ball.on_update(lambda _: self.set_ball(ball.value))

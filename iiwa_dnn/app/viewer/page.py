@@ -95,7 +95,8 @@ class Page:
 
     Attributes:
         server: The ``viser.ViserServer``.
-        sessions: The browsers' sessions by their number, the newest last.
+        sessions: The sessions of the browsers by the browser's number.
+        open: Function that returns a new session of a browser.
     """
 
     def __init__(
@@ -127,7 +128,7 @@ class Page:
         camera.position, camera.look_at = map(tuple, first_view(point))
         camera.fov = 0.95  # rad, from top to bottom
         self.sessions: dict[int, Session] = {}
-        self._open = partial(Session, robot=robot, q0=q0, record=record, scheme=scheme)
+        self.open = partial(Session, robot=robot, q0=q0, record=record, scheme=scheme)
         # Browsers come and go in threads of the server; sessions change in `tick` alone.
         self._comings: SimpleQueue[Any] = SimpleQueue()
         self._goings: SimpleQueue[Any] = SimpleQueue()
@@ -140,10 +141,6 @@ class Page:
         host = self.server.get_host()
         shown = "127.0.0.1" if host in ("0.0.0.0", "::") else host
         return f"http://{f'[{shown}]' if ':' in shown else shown}:{self.server.get_port()}"
-
-    def open(self, host: Any) -> Session:
-        """Return a new session of a browser."""
-        return self._open(host)
 
     def tick(self, elapsed: float) -> None:
         """Let `elapsed` seconds pass in every browser."""
