@@ -105,7 +105,8 @@ class Plan:
             # A program that a few systems do not solve most likely has no solution.
             network[1] = min(network[1], _BUDGET)
         head = [1.0 / dt, *np.zeros(3 * dof)]
-        work = np.concatenate([head, network, inertia, constants])
+        n, m, p = self.sizes
+        work = np.concatenate([head, network, inertia, constants, np.zeros(3 * n + m + p)])
         self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]
         self.last = self.past[:dof]
         self.stuck = False
@@ -117,7 +118,7 @@ class Plan:
             self.rates = limits[3 * dof :].reshape(2, dof)
             self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
-        self._constants = work[1 + 3 * dof + NETWORK + inertia.size :]
+        self._constants = work[1 + 3 * dof + NETWORK + inertia.size :][: constants.size]
         moving = () if layout is None else layout.moving
         self._moving = [(part, self._constants[place]) for part, place in moving]
         self.moves = bool(self._moving)

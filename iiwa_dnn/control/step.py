@@ -62,11 +62,11 @@ def control_step(
         index: Number of the row.
         codes: `Layout.codes`, with the addresses of `assemble` and of the answering function.
         work: ``[1 / dt | last command (dof) | the one before (dof) | joint positions (dof) |
-            network (7) | inertia matrix (dof dof, or none) | constants]``: the commands are
-            written; the network's numbers are those of `DNNSolver.numbers` (tolerance, budget and
-            first step of the implicit integrator, time to advance (0: settle), whether x is
-            projected, explicit sub-steps (0: as many as stability needs), share of the stable step
-            that is used); the constants are `Layout.numbers`.
+            network (7) | inertia matrix (dof dof, or none) | constants | room for a state]``: the
+            commands are written; the network's numbers are those of `DNNSolver.numbers` (tolerance,
+            budget and first step of the implicit integrator, time to advance (0: settle), whether x
+            is projected, explicit sub-steps (0: as many as stability needs), share of the stable
+            step that is used); the constants are `Layout.numbers`.
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         state: The network's state, (size,), advanced.
@@ -84,8 +84,9 @@ def control_step(
     data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
     at_network = 1 + 3 * dof
     q, network = work[1 + 2 * dof : at_network], work[at_network : at_network + NETWORK]
+    inertia, before = work[at_network + NETWORK : -state.size], work[-state.size :]
     if not built:
-        inertia, targets = work[at_network + NETWORK :], figures[FIGURES + PLACE + dof :]
+        targets = figures[FIGURES + PLACE + dof :]
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
         past = work[1 : 1 + 2 * dof]
         _enter_assemble(
@@ -101,7 +102,8 @@ def control_step(
             work[0],
             past,
         )
-    before = state.copy()
+    for i in range(state.size):
+        before[i] = state[i]
     if network[3] > 0.0:
         iterations, time, primal, dual, gap = _enter_follow(
             codes[8], data, n, m, p, state, point, network

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.networks.base import CompiledForm, Flow, Network, read_point
-from iiwa_dnn.qp.dense import dot, extreme_eigenvalues
+from iiwa_dnn.qp.dense import add_scaled, dot, extreme_eigenvalues
 from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size, compiled, larger, offsets
 from iiwa_dnn.qp.program import QP
 
@@ -146,13 +146,26 @@ def field(
     at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
     at_z, at_u = n + p, n + p + m
     largest = 0.0
+    for i in range(n):  # the gradient, for now
+        rates[i] = data[at_q + i] + s[at_u + i] - s[at_u + n + i] + dot(data, i * n, s, n)
+    for j in range(p):
+        row = at_A + j * n
+        add_scaled(rates, s[n + j], data, row, n)
+        rate = dot(data, row, s, n) - data[at_b + j]
+        rates[n + j] = rate
+        largest = larger(largest, abs(rate))
+    for j in range(m):
+        row, z = at_G + j * n, s[at_z + j]
+        if z != 0.0:
+            add_scaled(rates, z, data, row, n)
+        slack = dot(data, row, s, n) - data[at_h + j]
+        is_active = z + slack > 0.0
+        rate = slack if is_active else -z
+        active[j] = is_active
+        rates[at_z + j] = rate
+        largest = larger(largest, abs(rate))
     for i in range(n):
-        gradient = data[at_q + i] + s[at_u + i] - s[at_u + n + i] + dot(data, i * n, s, n)
-        for j in range(p):
-            gradient += data[at_A + j * n + i] * s[n + j]
-        for j in range(m):
-            gradient += data[at_G + j * n + i] * s[at_z + j]
-        rate = -gradient
+        rate = -rates[i]
         if project:
             rate = min(max(s[i] + rate, data[at_lb + i]), data[at_ub + i]) - s[i]
         rates[i] = rate
@@ -165,17 +178,6 @@ def field(
             active[m + side * n + i] = is_active
             rates[at_u + side * n + i] = rate
             largest = larger(largest, abs(rate))
-    for j in range(p):
-        rate = dot(data, at_A + j * n, s, n) - data[at_b + j]
-        rates[n + j] = rate
-        largest = larger(largest, abs(rate))
-    for j in range(m):
-        slack = dot(data, at_G + j * n, s, n) - data[at_h + j]
-        is_active = s[at_z + j] + slack > 0.0
-        rate = slack if is_active else -s[at_z + j]
-        active[j] = is_active
-        rates[at_z + j] = rate
-        largest = larger(largest, abs(rate))
     return largest
 
 

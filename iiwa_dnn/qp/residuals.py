@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.qp.dense import dot
+from iiwa_dnn.qp.dense import add_scaled, dot
 from iiwa_dnn.qp.layout import Matrix, Triple, Vector, compiled, larger, offsets
 
 
@@ -15,30 +15,31 @@ def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Trip
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
     at_z, at_box = n + p, n + p + m
-    primal, dual, gap = 0.0, 0.0, 0.0
-    for j in range(p):
-        primal = larger(primal, abs(dot(data, at_A + j * n, point, n) - data[at_b + j]))
-        gap += data[at_b + j] * point[n + j]
-    for j in range(m):
-        primal = larger(primal, dot(data, at_G + j * n, point, n) - data[at_h + j])
-        if point[at_z + j] != 0.0:
-            gap += data[at_h + j] * point[at_z + j]
+    primal, dual, gap, gradient = 0.0, 0.0, 0.0, np.empty(n)
     for i in range(n):
         x, lb, ub, multiplier = point[i], data[at_lb + i], data[at_ub + i], point[at_box + i]
         primal = larger(primal, x - ub)
         primal = larger(primal, lb - x)
         value = data[at_q + i] + dot(data, i * n, point, n)
         gap += x * value
-        value += multiplier
-        for j in range(p):
-            value += data[at_A + j * n + i] * point[n + j]
-        for j in range(m):
-            value += data[at_G + j * n + i] * point[at_z + j]
-        dual = larger(dual, abs(value))
+        gradient[i] = value + multiplier
         if multiplier > 0.0 and ub < np.inf:
             gap += ub * multiplier
         elif multiplier < 0.0 and lb > -np.inf:
             gap += lb * multiplier
+    for j in range(p):
+        row, y = at_A + j * n, point[n + j]
+        primal = larger(primal, abs(dot(data, row, point, n) - data[at_b + j]))
+        gap += data[at_b + j] * y
+        add_scaled(gradient, y, data, row, n)
+    for j in range(m):
+        row, z = at_G + j * n, point[at_z + j]
+        primal = larger(primal, dot(data, row, point, n) - data[at_h + j])
+        if z != 0.0:
+            gap += data[at_h + j] * z
+            add_scaled(gradient, z, data, row, n)
+    for i in range(n):
+        dual = larger(dual, abs(gradient[i]))
     return primal, dual, abs(gap)
 
 
@@ -78,16 +79,20 @@ def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) ->
         point[n + j] = s[n + j]
     for j in range(m):
         point[at_z + j] = max(s[at_z + j], 0.0)
+    falls = point[at_z + m :]
     for i in range(n):
-        fall = -data[at_q + i] - dot(data, i * n, point, n)
-        for j in range(p):
-            fall -= data[at_A + j * n + i] * point[n + j]
-        for j in range(m):
-            fall -= data[at_G + j * n + i] * point[at_z + j]
+        falls[i] = -data[at_q + i] - dot(data, i * n, point, n)
+    for j in range(p):
+        add_scaled(falls, -point[n + j], data, at_A + j * n, n)
+    for j in range(m):
+        if point[at_z + j] != 0.0:
+            add_scaled(falls, -point[at_z + j], data, at_G + j * n, n)
+    for i in range(n):
+        fall = falls[i]
         # The distance to the bound first: at a bound it is zero, and the rest is not rounded.
         above = point[i] - data[at_ub + i] + fall
         below = point[i] - data[at_lb + i] + fall
-        point[at_z + m + i] = above if above > 0.0 else (below if below < 0.0 else 0.0)
+        falls[i] = above if above > 0.0 else (below if below < 0.0 else 0.0)
     return point_residuals(data, n, m, p, point)
 
 

@@ -133,12 +133,13 @@ def settle_implicit(
     """
     size, flags, project = s.size, m + 2 * n, tol < 0.0  # False; a literal is compiled apart
     # One allocation: each takes as long as a hundred products.
-    work = np.empty(3 * (size + n * n) + 2 * flags)
+    work = np.empty(3 * (size + flags) + 2 * n * n + p + m)
     rates, new_rates, new = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
     rest = work[3 * size :]
     active, new_active = rest[:flags], rest[flags : 2 * flags]
-    gram, K = rest[2 * flags : 2 * flags + n * n], rest[2 * flags + n * n : 2 * (flags + n * n)]
-    rhs, counted = np.empty(p + flags), np.empty(m)
+    rhs, counted = rest[2 * flags : 3 * flags + p], rest[3 * flags + p : 3 * flags + p + m]
+    rest = rest[3 * flags + p + m :]
+    gram, K = rest[: n * n], rest[n * n :]
     begin_gram(data, n, m, p, counted, gram)
     step, systems, time, factored = FIRST_STEP, 0, 0.0, project
     trial, stalled, travelling = 0, 0, 0
