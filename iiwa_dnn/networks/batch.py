@@ -92,7 +92,7 @@ def solve_batch(
     checks.positive("tol", tol)
     given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
     arrays = {name: numbers(name, value) for name, value in given if value is not None}
-    require_pairs(arrays)
+    require_pairs([arrays.get(name) for name in FIELDS])
     parts, (n, m, p), count = _stacked(arrays)
     points, residuals = np.full((count, 2 * n + m + p), np.nan), np.empty((count, 3))
     iterations = np.zeros(count, dtype=np.int64)

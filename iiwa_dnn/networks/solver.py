@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from iiwa_dnn.networks.integrators import (
     barrier,
 )
 from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.networks.integrators.implicit import settle_implicit
 from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
 from iiwa_dnn.qp.backend import provide
@@ -31,9 +31,13 @@ from iiwa_dnn.qp.solution import Solution, Status
 if TYPE_CHECKING:
     import qpsolvers
 
-LARGE = 150
-"""Variables from which on a cold start goes through the barrier and LAPACK at once."""
+LARGE, HUGE = 150, 400
+"""Variables from which on the barrier comes before the search for a certificate, and from which on
+a cold start goes through it at once."""
+WORK = 20_000
+"""Linear systems times variables of a first try: the rest of the budget is for the second."""
 
+_NETWORK, _SETTLER, _FOLLOWER = ProjectionNetwork(), ImplicitEuler(), ExplicitEuler()
 _PARTS = ("network", "tol", "settler", "follower")
 
 
@@ -71,12 +75,16 @@ class DNNSolver:
         Raises:
             InvalidInputError: `tol` is not a positive number.
         """
-        self._kept: deque[tuple[Network, Sizes, Vector]] = deque(maxlen=1)
-        self.version = -len(_PARTS)
-        self.network = network if network is not None else ProjectionNetwork()
-        self.tol = tol
-        self.settler = settler if settler is not None else ImplicitEuler()
-        self.follower = follower if follower is not None else ExplicitEuler()
+        checks.positive("tol", tol)
+        self._kept: deque[tuple[Network, Sizes, Vector]]
+        self.__dict__.update(  # not through __setattr__, which counts
+            _kept=deque(maxlen=1),
+            version=0,
+            network=_NETWORK if network is None else network,
+            tol=tol,
+            settler=_SETTLER if settler is None else settler,
+            follower=_FOLLOWER if follower is None else follower,
+        )
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "tol":
@@ -155,17 +163,23 @@ class DNNSolver:
         state, point = self._take(network, qp), np.empty(2 * n + m + p)
         settled = self._settle(network, qp, state, point)
         primal, dual, gap = settled[2:]
+        if 0.1 * tol < primal + dual + gap <= 3.0 * tol:
+            primal, dual, gap = barrier.worse(qp, point, (primal, dual, gap))
+            settled = *settled[:2], primal, dual, gap
         # The state is not kept without a solution: the multipliers grow without bound then, or are
         # no numbers any more, and would spoil every later call.
         if not within(primal, dual, gap, tol):
             if not math.isfinite(primal + dual + gap):
                 return Solution(point, sizes, Status.NOT_FINITE, *settled)
+            if n >= LARGE:
+                settled = self._second_try(network, qp, state, point, settled)
             # Almost there: rounding is in the way, not the lack of a solution.
-            far = n < LARGE or max(primal, dual, gap) > 1e-3
+            far = n < LARGE or max(settled[2:]) > 1e-3
             found = find_certificate(qp, point) if far else None
             if found is not None:
                 return Solution(point, sizes, found[0], *settled, found[1])
-            settled = self._second_try(network, qp, state, point, settled)
+            if n < LARGE:
+                settled = self._second_try(network, qp, state, point, settled)
             if not within(*settled[2:], tol):
                 return Solution(point, sizes, Status.NOT_SETTLED, *settled)
         self._kept.append((network, sizes, state))
@@ -174,22 +188,21 @@ class DNNSolver:
     def _settle(self, network: Network, qp: QP, state: Vector, point: Vector) -> Settled:
         """Settle with the settler; a large program from a cold start, through the barrier."""
         settler = self.settler
-        if (
-            qp.sizes[0] >= LARGE and type(settler) is ImplicitEuler and network.compiled is not None
-            and not state.any()
-        ):  # fmt: skip
+        if type(settler) is not ImplicitEuler or network.compiled is None:
+            return settler.settle(network, qp, state, point, self.tol)
+        if qp.sizes[0] >= HUGE and not state.any():
             return barrier.settle(qp, state, point, self.tol, settler.max_steps)
-        if type(settler) is ImplicitEuler and network.compiled is not None:
-            # The rest of the budget is for a second try.
-            settler = replace(settler, max_steps=(settler.max_steps + 1) // 2)
-        return settler.settle(network, qp, state, point, self.tol)
+        budget = min((settler.max_steps + 1) // 2, WORK // qp.sizes[0] + 1)
+        return settle_implicit(
+            qp.data, *qp.sizes, state, point, self.tol, budget, settler.long_step
+        )
 
     def _second_try(
         self, network: Network, qp: QP, state: Vector, point: Vector, settled: Settled
     ) -> Settled:
         """Start again through the barrier, with the rest of the budget; take the better point."""
         settler = self.settler
-        if type(settler) is not ImplicitEuler or network.compiled is None or qp.sizes[0] >= LARGE:
+        if type(settler) is not ImplicitEuler or network.compiled is None or qp.sizes[0] >= HUGE:
             return settled
         other = point.copy()
         left = settler.max_steps - settled[0]
@@ -231,12 +244,13 @@ class DNNSolver:
 
     def _take(self, network: Network, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is put back."""
-        try:
-            owner, sizes, state = self._kept.pop()
-            if owner is network and sizes == qp.sizes:
-                return state
-        except IndexError:
-            pass
+        if self._kept:
+            try:
+                owner, sizes, state = self._kept.pop()
+                if owner is network and sizes == qp.sizes:
+                    return state
+            except IndexError:  # another thread was quicker
+                pass
         state = np.array(network.initial_state(qp), dtype=np.float64)
         check_size("network", state, network.state_size(qp))
         return state

@@ -14,7 +14,7 @@ negative at ``lb``).
 from __future__ import annotations
 
 import math
-from collections.abc import Container
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FIELDS", "QP", "Matrix", "Vector"]
 
-_WITH_LOOPS = 10_000
-"""Size of `QP.data` up to which compiled loops check the values in less time than numpy."""
+_FLOAT = np.dtype(np.float64)
 
 FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 """Names of the eight arrays, in the order of `QP.data` and of qpsolvers."""
@@ -52,6 +51,23 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
         (slice(start, end), shape)
         for start, end, shape in zip([0, *ends], ends, shapes, strict=False)
     )
+
+
+@lru_cache
+def _absent(sizes: Sizes) -> tuple[list[int], list[Vector]]:
+    """Count the numbers of each field; return what stands for a field that is left out."""
+    n, counts = sizes[0], [place.stop - place.start for place, _ in _places(sizes)]
+    empty = np.empty(0)
+    return counts, [
+        empty,
+        empty,
+        empty,
+        empty,
+        empty,
+        empty,
+        np.full(n, -np.inf),
+        np.full(n, np.inf),
+    ]
 
 
 class _Field:
@@ -110,21 +126,24 @@ class QP:
         Raises:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
-        given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
-        arrays = {name: numbers(name, value) for name, value in given if value is not None}
-        require_pairs(arrays)
-        n = arrays["q"].size if "q" in arrays else 0
-        if n == 0:
+        given = (P, q, G, h, A, b, lb, ub)
+        arrays = [
+            v if v is None or (type(v) is np.ndarray and v.dtype is _FLOAT) else numbers(name, v)
+            for name, v in zip(FIELDS, given, strict=True)
+        ]
+        if arrays[1] is None or arrays[1].size == 0:
             raise InvalidInputError("q", "is empty", q)
-        rows = {name: _rows(name, arrays.get(name), n) for name in "PGA"}
-        self.sizes = (n, len(rows["G"]), len(rows["A"]))
-        none = {"h": np.empty(0), "b": np.empty(0)}
-        unbounded = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf)}
-        arrays = {**none, **unbounded, **arrays, **rows}
-        for name, (_, shape) in zip(FIELDS, _places(self.sizes), strict=True):
-            if arrays[name].size != math.prod(shape):
-                raise InvalidInputError(name, f"has shape {arrays[name].shape}, not {shape}")
-        self.data = np.concatenate([arrays[name].ravel() for name in FIELDS])
+        require_pairs(arrays)
+        n = arrays[1].size
+        _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
+        self.sizes = n, m, p
+        counts, absent = _absent(self.sizes)
+        full = [absent[i] if array is None else array for i, array in enumerate(arrays)]
+        if [array.size for array in full] != counts:
+            for name, array, (_, shape) in zip(FIELDS, full, _places(self.sizes), strict=True):
+                if array.size != math.prod(shape):
+                    raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
+        self.data = np.concatenate(full, axis=None)
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
@@ -207,7 +226,7 @@ class QP:
                 not positive semidefinite, or a lower bound exceeds its upper bound. The message
                 names the argument.
         """
-        if self.data.size < _WITH_LOOPS and _well_formed(self.data, *self.sizes):
+        if _well_formed(self.data, *self.sizes):
             return
         for name in ("P", "q", "G", "A", "b"):
             if not np.isfinite(getattr(self, name)).all():
@@ -258,20 +277,20 @@ def numbers(name: str, value: Any) -> NDArray[np.float64]:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
 
 
-def require_pairs(given: Container[str]) -> None:
+def require_pairs(arrays: Sequence[NDArray[np.float64] | None]) -> None:
     """Raise InvalidInputError where rows are given without right-hand side, or the reverse."""
-    for left, right in (("G", "h"), ("A", "b")):
-        if (left in given) != (right in given):
-            missing, other = (left, right) if right in given else (right, left)
+    for left in (2, 4):
+        if (arrays[left] is None) is not (arrays[left + 1] is None):
+            missing, other = FIELDS[left : left + 2][:: -1 if arrays[left + 1] is None else 1]
             raise InvalidInputError(missing, f"is missing though {other} is given")
 
 
-def _rows(name: str, rows: Matrix | None, columns: int) -> Matrix:
-    """Return rows with so many columns; a vector is one row, nothing is none."""
+def _rows(name: str, rows: NDArray[np.float64] | None, columns: int) -> int:
+    """Count the rows, which have so many columns; a vector is one row, nothing is none."""
     if rows is None:
-        return np.empty((0, columns))
+        return 0
     if rows.ndim == 1 and rows.size == columns:
-        return rows.reshape(1, columns)
+        return 1
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise InvalidInputError(name, f"has shape {rows.shape}, not (rows, {columns})", rows)
-    return rows
+    return len(rows)

@@ -142,7 +142,7 @@ class Solution(NamedTuple):
             problem,
             extras,
             found=True,
-            obj=float(0.5 * x @ (problem.P @ x) + problem.q @ x),
+            obj=float(x.dot(0.5 * problem.P.dot(x) + problem.q)),
             x=x,
             y=self.y,
             z=self.z,

@@ -182,26 +182,12 @@ class _Run:
         bounds[1, self.lower] = z_u_l[2] / (self.d[self.lower] * self.c)
         bounds[0, self.fixed] = np.maximum(multipliers[p:], 0.0)
         bounds[1, self.fixed] = np.maximum(-multipliers[p:], 0.0)
-        residuals = kkt_point(self.qp.data, n, m, p, s, self.point)
-        # Sums in another order round otherwise: the worse counts, so that a claim holds for all.
-        residuals = tuple(np.maximum(residuals, self.summed(self.point)).tolist())
+        residuals = worse(self.qp, self.point, kkt_point(self.qp.data, n, m, p, s, self.point))
         largest = max(residuals) if sum(residuals) < np.inf else np.inf
         if largest < self.best:
             self.best, self.residuals = largest, residuals
             self.state[:] = s
         return largest
-
-    def summed(self, point: Vector) -> Triple:
-        """Compute the residuals of ``[x | y | z | z_box]`` with numpy's sums."""
-        n, m, p = self.qp.sizes
-        P, q, G, h, A, b, lb, ub = self.qp.arrays()
-        x, y, z, z_box = np.split(point, [n, n + p, n + p + m])
-        Px, down, up = P @ x, np.minimum(z_box, 0.0), np.maximum(z_box, 0.0)
-        primal = max(np.abs(A @ x - b).max(initial=0.0), (G @ x - h).max(initial=0.0))
-        gap, low, high = x @ Px + q @ x, np.isfinite(lb), np.isfinite(ub)
-        gap = gap + h[self.rows] @ z[self.rows] + b @ y + lb[low] @ down[low] + ub[high] @ up[high]
-        dual = np.abs(Px + q + G.T @ z + A.T @ y + z_box).max()
-        return primal, float(dual), abs(float(gap))
 
     def start(self, delta: float) -> tuple[Vector, Vector, Vector, Vector]:
         """Find x and y that balance cost and limits, and positive mu and slacks around them."""
@@ -278,6 +264,26 @@ class _Run:
             active = mu + self.times(x) - self.chi > 0.0
             mu = np.where(active, mu, 0.0)
         return self.best <= self.tol
+
+
+def worse(qp: QP, point: Vector, residuals: Triple) -> Triple:
+    """Return the residuals of ``[x | y | z | z_box]``, or those of numpy's sums where larger.
+
+    Sums in another order round otherwise, and a claim has to hold for all: to the dual residual,
+    whose multipliers may be very large, its rounding is added.
+    """
+    n, m, p = qp.sizes
+    P, q, G, h, A, b, lb, ub = qp.arrays()
+    x, y, z, z_box = np.split(point, [n, n + p, n + p + m])
+    Px, down, up = P @ x, np.minimum(z_box, 0.0), np.maximum(z_box, 0.0)
+    rows, low, high = np.isfinite(h), np.isfinite(lb), np.isfinite(ub)
+    primal = max(np.abs(A @ x - b).max(initial=0.0), (G @ x - h).max(initial=0.0))
+    gap = x @ Px + q @ x + h[rows] @ z[rows] + b @ y + lb[low] @ down[low] + ub[high] @ up[high]
+    sizes = np.abs(z_box) + np.abs(G).T @ np.abs(z) + np.abs(A).T @ np.abs(y)
+    rounding = 0.25 * np.finfo(float).eps * sizes.max()
+    dual = np.abs(Px + q + G.T @ z + A.T @ y + z_box).max() + rounding
+    first, second, third = np.maximum(residuals, (primal, dual, abs(gap))).tolist()
+    return first, second, third
 
 
 def _length(v: Vector, dv: Vector) -> float:

@@ -35,7 +35,7 @@ from iiwa_dnn.qp.layout import Vector, check_size, compiled
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
-FIRST_STEP, GROWTH = 10.0, 10.0
+FIRST_STEP, GROWTH = 30.0, 10.0
 """Length of the first backward Euler step [rho], and its growth from round to round."""
 MAX_NEWTON = 50
 """Newton iterations of one backward Euler step of `settle`, half as many as one of `advance`."""
@@ -179,9 +179,7 @@ def settle_implicit(
         count, before = min(MAX_NEWTON, max_systems - systems), rate
         for i in range(size):
             new[i] = s[i]
-        solved_in = backward_euler(
-            data, n, m, p, s, step, new, min(1e-2, 0.1 * rate), count, counted, gram, K
-        )
+        solved_in = backward_euler(data, n, m, p, s, step, new, 0.1 * rate, count, counted, gram, K)
         if solved_in < 0:
             step *= 0.1
             continue

@@ -175,7 +175,7 @@ def backward_euler(
         for i in range(n):
             direction[i] = -direction[i]
         rows_times(data, n, m, p, direction, change)
-        length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient)
+        length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient, active)
         for i in range(n):
             new[i] += length * direction[i]
         for k in range(rows):
@@ -236,25 +236,25 @@ def _gradient(
 @compiled
 def _line_search(
     data: Vector, n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector,
-    direction: Vector, gradient: Vector,
+    direction: Vector, gradient: Vector, active: Vector,
 ) -> float:  # fmt: skip
-    """Minimise the step's convex function along `direction`.
+    """Minimise the step's convex function along the Newton `direction` of an active set (m + 2n,).
 
     Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
     inside a bracket ends at the root. `change` is [A; G; I; -I] direction.
     """
     keep = 1.0 / (1.0 + step)
-    start, curvature = 0.0, 0.0
+    start, shortest = 0.0, 0.0
     for i in range(n):
         start += gradient[i] * direction[i]
-        value = direction[i] / step + dot(data, i * n, direction, n)
-        curvature += value * direction[i]
-    for j in range(p):
-        curvature += step * change[j] * change[j]
-    constant = start
+        shortest += direction[i] * direction[i]
+    # direction^T K direction is -start: that is the curvature where the active rows stay active.
+    constant, curvature = start, -start
     for k in range(p, p + m + 2 * n):
         old = s[n + k]
         constant -= max(old * keep, old + step * slacks[k]) * change[k]
+        curvature -= step * active[k - p] * change[k] * change[k]
+    curvature = max(curvature, shortest / step)
     low, high, length = 0.0, np.inf, 1.0
     for _ in range(50):
         slope = constant + length * curvature
