@@ -163,9 +163,12 @@ class DNNSolver:
         state, point = self._take(network, qp), np.empty(2 * n + m + p)
         settled = self._settle(network, qp, state, point)
         primal, dual, gap = settled[2:]
-        if 0.1 * tol < primal + dual + gap <= 3.0 * tol:
-            primal, dual, gap = barrier.worse(qp, point, (primal, dual, gap))
-            settled = *settled[:2], primal, dual, gap
+        if 0.1 * tol < primal + dual + gap <= 3.0 * tol:  # rounding may decide: try for better
+            worse = barrier.worse(qp, point, (primal, dual, gap))
+            if not within(*worse, tol):
+                again = self._second_try(network, qp, state, point, (*settled[:2], *worse))
+                settled = (again[0], *settled[1:]) if again[2:] == worse else again
+                primal, dual, gap = settled[2:]
         # The state is not kept without a solution: the multipliers grow without bound then, or are
         # no numbers any more, and would spoil every later call.
         if not within(primal, dual, gap, tol):
