@@ -2,12 +2,11 @@
 
 from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.networks.dual import DualNetwork
+from iiwa_dnn.networks.dual import DualNetwork, SimplifiedDualNetwork
 from iiwa_dnn.networks.gradient import GradientNetwork
 from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.projection import ProjectionNetwork
-from iiwa_dnn.networks.simplified_dual import SimplifiedDualNetwork
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 
 __all__ = [

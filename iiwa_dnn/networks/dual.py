@@ -1,35 +1,65 @@
-r"""The single-layer dual network.
+r"""The dual networks: a state for each row, x is their output.
 
 Equalities, inequalities and bounds are one set of two-sided rows, :math:`\zeta^- \le E x \le
 \zeta^+` with :math:`E = [A; G; I]`, :math:`\zeta^- = [b; -\infty; lb]` and :math:`\zeta^+ = [b; h;
-ub]`. The state holds one number u for each row, and x is its output:
+ub]`. The state holds one number u for each row:
 
 .. math::
 
-    \rho\,\dot u = \Pi_{[\zeta^-,\,\zeta^+]}(E x - u) - E x, \qquad x = P^{-1}(E^T u - q) .
+    \rho\,\dot u = \Pi_{[\zeta^-,\,\zeta^+]}(E x - u) - E x, \qquad x = M E^T u + s,
 
-At rest :math:`E x = \Pi(E x - u)`, so a row is inside its limits and u is zero, or it is at one of
-them and :math:`-u` is its multiplier with the right sign; :math:`P x + q - E^T u = 0` holds always.
-The equilibria are exactly the KKT points. P has to be positive definite.
+with :math:`M = P^{-1},\ s = -P^{-1} q`. At rest :math:`E x = \Pi(E x - u)`, so a row is inside its
+limits and u is zero, or it is at one of them and :math:`-u` is its multiplier with the right sign;
+:math:`P x + q - E^T u = 0` holds always. The equilibria are exactly the KKT points. P has to be
+positive definite.
 
-Source: Y. Zhang, J. Wang, Y. Xia, "A dual neural network for redundancy resolution of kinematically
-redundant manipulators subject to joint limits and joint velocity limits", IEEE Transactions on
-Neural Networks 14 (2003), with the inequality rows of Y. Zhang, J. Wang, "A dual neural network for
-convex quadratic programming subject to linear equality and inequality constraints", Physics
-Letters A 298 (2002).
+The simplified network solves the equalities, so that :math:`E = [G; I]`. With
+:math:`S = A P^{-1} A^T`
+
+.. math::
+
+    M = P^{-1} - P^{-1} A^T S^{-1} A P^{-1}, \qquad s = P^{-1} A^T S^{-1} b - M q .
+
+Sources: Y. Zhang, J. Wang, Y. Xia, "A dual neural network for redundancy resolution of
+kinematically redundant manipulators subject to joint limits and joint velocity limits", IEEE
+Transactions on Neural Networks 14 (2003), with the inequality rows of Y. Zhang, J. Wang, "A dual
+neural network for convex quadratic programming subject to linear equality and inequality
+constraints", Physics Letters A 298 (2002); S. Liu, J. Wang, "A simplified dual neural network for
+quadratic programming with its KWTA application", IEEE Transactions on Neural Networks 17 (2006).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import lru_cache
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network, read_point
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size
+from iiwa_dnn.qp.layout import Matrix, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
+
+
+class _Dual(NamedTuple):
+    """A program as its dual network has it.
+
+    Attributes:
+        lifted: M E^T, (n, rows).
+        offset: s, (n,).
+        gram: E M E^T, (rows, rows).
+        base: E s, (rows,).
+        lower: Lower limits of E x, (rows,).
+        upper: Upper limits, (rows,).
+    """
+
+    lifted: Matrix
+    offset: Vector
+    gram: Matrix
+    base: Vector
+    lower: Vector
+    upper: Vector
 
 
 @dataclass(frozen=True)
@@ -41,25 +71,27 @@ class DualNetwork(Network):
     """
 
     carries_x: ClassVar[bool] = False
+    simplified: ClassVar[bool] = False
 
     def state_size(self, qp: QP) -> int:
         """Count the states: one for each row and each variable."""
         n, m, p = qp.sizes
-        return n + m + p
+        return n + m + (0 if self.simplified else p)
+
+    def _dual(self, qp: QP) -> _Dual:
+        return _lift(qp.data.tobytes(), qp.sizes, self.simplified)
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""
-        rows, lower, upper = _two_sided(qp)
-        lifted = _solved(qp, rows.T)
-        gram, offset = rows @ lifted, rows @ _solved(qp, qp.q)
+        _, _, gram, base, lower, upper = self._dual(qp)
 
         def rates(state: Vector) -> Vector:
-            values = gram @ state - offset
+            values = gram @ state + base
             result: Vector = np.clip(values - state, lower, upper) - values
             return result
 
         def jacobian(state: Vector) -> Matrix:
-            aim = gram @ state - offset - state
+            aim = gram @ state + base - state
             inside = (aim > lower) & (aim < upper)
             result: Matrix = -gram
             result[inside] = 0.0
@@ -71,39 +103,52 @@ class DualNetwork(Network):
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
         n, m, p = qp.sizes
-        check_size("state", state, n + m + p)
-        rows, _, _ = _two_sided(qp)
-        x = _solved(qp, rows.T @ state - qp.q)
-        known = np.concatenate([x, -state[: p + m]])
-        return read_point(qp, known, point, n + m + p)
+        check_size("state", state, self.state_size(qp))
+        dual = self._dual(qp)
+        x, z = dual.lifted @ state + dual.offset, -state[: state.size - n]
+        if self.simplified:
+            gradient = qp.P @ x + qp.q - qp.G.T @ state[:m] - state[m:]
+            z = np.concatenate([np.linalg.lstsq(qp.A.T, -gradient, rcond=1e-10)[0], z])
+        return read_point(qp, np.concatenate([x, z]), point, n + m + p)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho, on every active set.
 
-        Rows at a limit follow :math:`-E P^{-1} E^T`, the others decay at rate one: all eigenvalues
-        are real, and none is below minus the largest of both.
+        Rows at a limit follow :math:`-E M E^T`, the others decay at rate one: all eigenvalues are
+        real, and none is below minus the largest of both.
         """
-        rows, _, _ = _two_sided(qp)
-        largest = float(np.linalg.eigvalsh(rows @ _solved(qp, rows.T))[-1])
-        return 2.0 / max(largest, 1.0)
+        return 2.0 / max(float(np.linalg.eigvalsh(self._dual(qp).gram)[-1]), 1.0)
 
 
-def _two_sided(qp: QP) -> tuple[Matrix, Vector, Vector]:
-    """Stack all constraints as rows with two limits, ``(E, lower, upper)``."""
-    rows = np.vstack([qp.A, qp.G, np.eye(qp.q.size)])
-    lower = np.concatenate([qp.b, np.full(qp.h.size, -np.inf), qp.lb])
-    return rows, lower, np.concatenate([qp.b, qp.h, qp.ub])
+@dataclass(frozen=True)
+class SimplifiedDualNetwork(DualNetwork):
+    """The simplified dual network, with m + n states: 7 for seven joints and seven task rows."""
+
+    simplified: ClassVar[bool] = True
 
 
-def _solved(qp: QP, right: Matrix) -> Matrix:
-    """Multiply vectors by the inverse of P."""
-    from scipy import linalg  # 0.05 s that only this network needs
-
+@lru_cache(maxsize=4)  # a step of the network asks several times
+def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
+    """Lift a program; dependent equalities are solved in the least-squares sense."""
+    qp = QP.from_data(np.frombuffer(data), sizes)
     try:
-        factor = linalg.cho_factor(qp.P, check_finite=False)
+        inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
     except np.linalg.LinAlgError:
-        raise InvalidInputError(
-            "P", "is singular, and the dual network needs its inverse; take another network"
-        ) from None
-    solved: Matrix = linalg.cho_solve(factor, right, check_finite=False)
-    return solved
+        problem = "is singular, and a dual network needs its inverse; take another network"
+        raise InvalidInputError("P", problem) from None
+    M = inverse.T @ inverse
+    offset = -M @ qp.q
+    rows, lower, upper = np.eye(qp.q.size), qp.lb, qp.ub
+    if simplified:
+        scaled = qp.A @ inverse.T
+        lifted = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
+        M = M - lifted @ scaled @ inverse
+        offset = lifted @ qp.b - M @ qp.q
+    if qp.h.size:
+        rows = np.vstack([qp.G, rows])
+        lower, upper = np.append(np.full(qp.h.size, -np.inf), lower), np.append(qp.h, upper)
+    if not simplified:
+        rows = np.vstack([qp.A, rows])
+        lower, upper = np.append(qp.b, lower), np.append(qp.b, upper)
+    lifted = M @ rows.T
+    return _Dual(lifted, offset, rows @ lifted, rows @ offset, lower, upper)

@@ -52,17 +52,9 @@ class KktSystem:
 
     def __init__(self, qp: QP, form: Form, rate: QP | None = None) -> None:
         """Take a program and, where it moves, its rate of change (zero where it is infinite)."""
-        self._form, self.size, self._n = form, system_size(qp, form), qp.sizes[0]
-        self.qp, self._rows, self._right = qp, *_rows(qp, form, 1.0)
-        self._rate = None if rate is None else (rate, *_rows(rate, form, 0.0))
-        n, p = self._n, qp.b.size
-        self._base = np.zeros((self.size, self.size))
-        self._base[:n, :n], self._base[:n, n : n + p], self._base[n : n + p, :n] = (
-            qp.P, qp.A.T, qp.A
-        )  # fmt: skip
-        self._base[:n, n + p :] = self._rows.T
-        at = np.arange(n, n + p)
-        self._base[at, at] = -REGULAR
+        self._form, self.size, self.qp, self._rate = form, system_size(qp, form), qp, rate
+        self._affine = _affine(qp, form, 1.0)
+        self._drift = None if rate is None else _affine(rate, form, 0.0)
 
     def evaluate(self, s: Vector) -> tuple[Vector, Vector]:
         """Compute the residual at a point, and its drift: its rate at a point that stays.
@@ -74,60 +66,63 @@ class KktSystem:
             Residual and drift, (size,) both; `matrix` becomes the residual's derivative.
         """
         check_size("state", s, self.size)
-        n, p = self._n, self.qp.b.size
-        x, w = s[:n], s[n + p :]
-        self.matrix = matrix = self._base.copy()
-        error: Vector = np.concatenate([self.qp.q, np.zeros(self.size - n)]) + matrix @ s
-        error[n : n + p] = self.qp.A @ x - self.qp.b
+        n, _, p = self.qp.sizes
+        base, constant = self._affine
+        error: Vector = base @ s + constant
         drift: Vector = np.zeros(self.size)
-        moved: Vector = np.zeros(self._right.size)
-        if self._rate is not None:
-            rate, rows, right = self._rate
-            drift[:n] = rate.P @ x + rate.q + rate.A.T @ s[n : n + p] + rows.T @ w
-            drift[n : n + p] = rate.A @ x - rate.b
-            moved = rows @ x - right
-        over = self._rows @ x - self._right
-        if self._form == "smooth":
-            self._smooth(matrix, error, drift, w, over, moved)
-        else:
-            self._projected(matrix, error, drift, x, w, over, moved)
+        if self._drift is not None:
+            moved, shifted = self._drift
+            drift = moved @ s + shifted
+        self.matrix = base.copy()
+        np.einsum("ii->i", self.matrix)[n : n + p] = -REGULAR
+        (self._smooth if self._form == "smooth" else self._projected)(s, error, drift)
         return error, drift
 
-    def _smooth(
-        self, matrix: Matrix, error: Vector, drift: Vector, w: Vector, over: Vector, moved: Vector
-    ) -> None:
-        at = np.arange(self.size - w.size, self.size)
-        ends = np.isfinite(over)
-        slack = np.where(ends, -over, 0.0)
+    def _smooth(self, s: Vector, error: Vector, drift: Vector) -> None:
+        """Put the complementarity in place of the rows C x - d."""
+        n, _, p = self.qp.sizes
+        at, w = np.arange(n + p, self.size), s[n + p :]
+        ends = np.isfinite(error[at])
+        slack = np.where(ends, -error[at], 0.0)
         root = np.sqrt(w**2 + slack**2 + EPSILON**2)
         error[at] = np.where(ends, w + slack - root, w)
         share = np.where(ends, 1.0 - slack / root, 0.0)
-        matrix[at, : self._n] = -share[:, None] * self._rows
-        matrix[at, at] = np.where(ends, 1.0 - w / root, 1.0)
-        drift[at] = -share * moved
+        self.matrix[at, :n] *= -share[:, None]
+        self.matrix[at, at] = np.where(ends, 1.0 - w / root, 1.0)
+        drift[at] *= -share
 
-    def _projected(
-        self, matrix: Matrix, error: Vector, drift: Vector, x: Vector, w: Vector, over: Vector,
-        moved: Vector,
-    ) -> None:  # fmt: skip
-        n, qp = self._n, self.qp
+    def _projected(self, s: Vector, error: Vector, drift: Vector) -> None:
+        """Put the projections in place of the rows g and G x - h."""
+        (n, m, p), qp, matrix, rate = self.qp.sizes, self.qp, self.matrix, self._rate
+        x = s[:n]
         aim = x - error[:n]
-        for name, at in ("lb", aim <= qp.lb), ("ub", aim >= qp.ub):
-            out = np.flatnonzero(at)
-            error[out] = x[out] - getattr(qp, name)[out]
-            matrix[out], matrix[out, out] = 0.0, 1.0
-            drift[out] = 0.0 if self._rate is None else -getattr(self._rate[0], name)[out]
-        rows = np.arange(self.size - w.size, self.size)
-        active = w + over > 0.0
-        error[rows] = np.where(active, over, -w)
-        matrix[rows, :n] = np.where(active[:, None], self._rows, 0.0)
-        matrix[rows, rows] = np.where(active, -REGULAR, -1.0)
-        drift[rows] = np.where(active, moved, 0.0)
+        for name, bound in ("lb", qp.lb), ("ub", qp.ub):
+            out = np.flatnonzero(aim <= bound if name == "lb" else aim >= bound)
+            if out.size:
+                error[out] = x[out] - bound[out]
+                matrix[out], matrix[out, out] = 0.0, 1.0
+                drift[out] = 0.0 if rate is None else -getattr(rate, name)[out]
+        if m:
+            rows, z = np.arange(n + p, self.size), s[n + p :]
+            idle = ~(z + error[rows] > 0.0)
+            error[rows] = np.where(idle, -z, error[rows])
+            matrix[rows[idle], :n], drift[rows[idle]] = 0.0, 0.0
+            matrix[rows, rows] = np.where(idle, -1.0, -REGULAR)
 
 
-def _rows(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
-    """Stack the inequality rows of a form; `unit` is 0 for a rate, whose bounds' rows stay."""
-    if form == "projected":
-        return qp.G, qp.h
-    eye = unit * np.eye(qp.q.size)
-    return np.vstack([qp.G, eye, -eye]), np.concatenate([qp.h, qp.ub, -qp.lb])
+def _affine(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
+    """Stack gradient and rows, A x - b and C x - d, as a matrix and a constant.
+
+    `unit` is 0 for a rate of change: the rows of the bounds stay.
+    """
+    n, m, p = qp.sizes
+    matrix, A, G = np.zeros((system_size(qp, form),) * 2), qp.A, qp.G
+    constant = [qp.q, -qp.b, -qp.h]
+    matrix[:n, :n], matrix[:n, n : n + p], matrix[n : n + p, :n] = qp.P, A.T, A
+    if m:
+        matrix[:n, n + p : n + p + m], matrix[n + p : n + p + m, :n] = G.T, G
+    if form == "smooth":
+        bounds = unit * np.vstack([np.eye(n), -np.eye(n)])
+        matrix[:n, n + p + m :], matrix[n + p + m :, :n] = bounds.T, bounds
+        constant += [-qp.ub, qp.lb]
+    return matrix, np.concatenate(constant)

@@ -10,15 +10,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
-from iiwa_dnn.networks import DualNetwork, Network, PrimalDualNetwork, ProjectionNetwork
+from iiwa_dnn.networks import (
+    DualNetwork,
+    Network,
+    PrimalDualNetwork,
+    ProjectionNetwork,
+    SimplifiedDualNetwork,
+)
 from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.activations import (
     FixedTime,
@@ -30,7 +35,6 @@ from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.gradient import GradientNetwork
 from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.one_layer import OneLayerNetwork
-from iiwa_dnn.networks.simplified_dual import SimplifiedDualNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import (
     EULER,
@@ -44,24 +48,24 @@ from iiwa_dnn.networks.tracking import (
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Heart
-from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.atlas_disturbances import (
+    DISTURBANCES,
+    DT,
+    as_measured,
+    learn,
+    noise_of,
+    other_arm,
+    place,
+)
 from iiwa_dnn.studies.atlas_schemes import SCHEMES
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.sweeps import Outcome
 
-DT, DURATION, PERIOD = 2e-3, 1.0, 2.0
-"""Control period, length of a run and time of a whole heart [s]."""
-
-DISTURBANCES = ("none", "constant", "ramp", "sinusoid", "white", "measurement", "parameter")
-"""The first five but none disturb the network's rates, the others the loop around it:
-
-constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
-the states that the seed draws; white, 0.01 rad/s a control period (the paper's); measurement,
-1e-4 rad on the joint positions; parameter, links 5 % longer or shorter than the controller's model,
-the tool's pose being measured.
-"""
+DURATION, PERIOD = 0.5, 2.0
+"""Length of a run and time of a whole heart [s]."""
 
 
 @dataclass(frozen=True)
@@ -238,7 +242,7 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     kind, rng = settings["disturbance"], np.random.default_rng(seed)
     robot, scheme = paper_robot(), SCHEMES[settings["scheme"]]()
     solver = NETWORKS[settings["network"]].make(settings["evaluations"])
-    arm = Kinematics(_other_arm(robot, rng) if kind == "parameter" else robot)
+    arm = Kinematics(other_arm(robot, rng) if kind == "parameter" else robot)
     q = np.array(paper.START)
     plan = Plan(robot, scheme, solver, DT, False, q)
     steps = round(DURATION / DT)
@@ -247,19 +251,30 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     heart = Heart(period=PERIOD).anchored(Configuration(arm.robot, q))
     targets = heart.sample(DT * np.arange(steps)).data
     errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
-    noise, point = _noise(kind, rng, steps), np.empty(2 * n + m + p)
+    noise, point = noise_of(kind, rng, steps), np.empty(2 * n + m + p)
     width = q.size if solver.network.carries_x else 0
+    joint, locked = int(rng.integers(q.size)), int(rng.integers(steps // 2))
+    before, was = q, np.empty(0)
+    believed: Matrix = np.empty((0, 6))
     for k in range(steps):
         seen = q + (1e-4 * rng.standard_normal(q.size) if kind == "measurement" else 0.0)
         arm.update(q)
-        tool, target = arm.placements[arm.frame_ids[0]], targets[k].copy()
+        tool, target = arm.placements[arm.frame_ids[0]].copy(), targets[k].copy()
         errors[k] = np.linalg.norm(target[:3] - tool[9:])
         if not errors[k] < 1.0:
             raise IiwaDnnError(f"the tool is {errors[k]:.2g} m away")
         plan.update(seen)
         if kind == "parameter":
-            _as_measured(target, tool, plan.kinematics.placements[robot.tip_id])
+            as_measured(target, tool, plan.kinematics.placements[robot.tip_id])
+        if kind == "estimated":
+            if k == 0:
+                believed = arm.jacobian * (1.0 + 0.1 * rng.standard_normal((q.size, 6)))
+            else:
+                learn(believed, q - before, place(tool) * place(was).inverse())
+            plan.kinematics.jacobian[:], was, before = believed, tool, q
         plan.build(data.data, target, k * DT)
+        if kind == "locked" and k >= locked:
+            data.lb[joint] = data.ub[joint] = 0.0
         began = time.perf_counter()
         answer = solver.advance(data, DT)
         spent += time.perf_counter() - began
@@ -272,6 +287,8 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
             residuals[k] = max(solver.network.read(data, state, point))
             x = point
         plan.last[:] = x[: q.size]
+        if kind == "locked" and k >= locked:
+            plan.last[joint] = 0.0
         q = q + DT * plan.last
     half = slice(steps // 2, None)
     return {
@@ -280,29 +297,3 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
         "rms_residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
         "advance_us": 1e6 * spent / steps,
     }
-
-
-def _noise(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
-    """Draw what is added to the states after each step, (steps, 100)."""
-    direction, t = rng.standard_normal(100) / np.sqrt(7.0), DT * np.arange(steps)
-    shapes = {"constant": np.ones(steps), "ramp": t, "sinusoid": np.sin(10.0 * np.pi * t)}
-    if kind in shapes:
-        return DT * np.outer(shapes[kind], direction)
-    return 0.01 * rng.standard_normal((steps, 100)) if kind == "white" else None
-
-
-def _other_arm(robot: Robot, rng: np.random.Generator) -> Robot:
-    """Return an arm whose links are 5 % longer or shorter."""
-    model = pin.Model(robot.model)
-    for i, sign in enumerate(rng.choice([-1.0, 1.0], robot.dof)):
-        place = model.jointPlacements[i + 1]
-        place.translation = (1.0 + 0.05 * sign) * place.translation
-        model.jointPlacements[i + 1] = place
-    return replace(robot, model=model)
-
-
-def _as_measured(target: Vector, tool: Vector, believed: Vector) -> None:
-    """Move a target (18,) so that the model's error from it is the one that was measured."""
-    target[:3] += believed[9:] - tool[9:]
-    turn = tool[:9].reshape(3, 3) @ believed[:9].reshape(3, 3).T  # both by columns
-    target[3:12] = (target[3:12].reshape(3, 3) @ turn).ravel()

@@ -12,7 +12,8 @@ import numpy as np
 from iiwa_dnn.files import write_text
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.report import markdown_table
-from iiwa_dnn.studies.atlas import DISTURBANCES, DT, MEASURES, NETWORKS
+from iiwa_dnn.studies.atlas import MEASURES, NETWORKS
+from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
