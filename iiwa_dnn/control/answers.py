@@ -32,9 +32,17 @@ class Answers:
     """
 
     def __init__(
-        self, sizes: tuple[int, int, int], joints: int, status: Status, targets: Matrix
+        self,
+        sizes: tuple[int, int, int],
+        joints: int,
+        status: Status,
+        targets: Matrix,
+        accelerates: bool = False,
     ) -> None:
-        """Allocate a row for each row of the targets (k, 18 frames); nothing is answered yet."""
+        """Allocate a row for each row of the targets (k, 18 frames); nothing is answered yet.
+
+        Where the programs are of the acceleration level, `all_dq` lies in an array of its own.
+        """
         self.count, self.sizes, self.status = 0, sizes, status
         n, m, p = sizes
         program, point = (n + m + p) * (n + 1) + 2 * n, 2 * n + m + p
@@ -47,6 +55,8 @@ class Answers:
         self.at_targets = self._q.stop
         self.rows: Matrix = np.empty((len(targets), self.at_targets + targets.shape[1]))
         self.rows[:, self.at_targets :] = targets
+        x = self.rows[:, self._x]
+        self._dq: Matrix = np.zeros_like(x) if accelerates else x
         self.unsolved: dict[int, Solution] = {}
         self.resolved: dict[int, Resolution] = {}
 
@@ -86,7 +96,7 @@ class Answers:
 
     def dq(self, i: int) -> Vector:
         """Return the joint velocity of answer i [rad/s], (joints,)."""
-        dq: Vector = self.rows[i, self._x]
+        dq: Vector = self._dq[i]
         return dq
 
     @property
@@ -103,7 +113,7 @@ class Answers:
     @property
     def all_dq(self) -> Matrix:
         """Joint velocities [rad/s], (count, joints)."""
-        return self.rows[: self.count, self._x]
+        return self._dq[: self.count]
 
     @property
     def bound_multipliers(self) -> Matrix:
@@ -136,5 +146,6 @@ class Answers:
         """Put answer `first` in the place of all after it."""
         for i in range(first + 1, self.count):
             self.rows[i] = self.rows[first]
+            self._dq[i] = self._dq[first]
             self.unsolved.pop(i, None)
             self.resolved.pop(i, None)

@@ -2,35 +2,29 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import computeJointJacobians, log3, updateFramePlacement, updateFramePlacements
+from pinocchio import computeJointJacobians, updateFramePlacement, updateFramePlacements
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import POLICIES, Policy
+from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.recourse import answer
 from iiwa_dnn.control.room import SIZE, Room
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes import OrientationTask, Scheme
+from iiwa_dnn.schemes import Scheme
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
-
-References = Reference | Mapping[str, Reference]
-
-FAR, TURNED = 0.05, 0.2
-"""Distance [m] and angle [rad] of a first target from which on a warning is given."""
 
 
 class Controller:
@@ -94,7 +88,11 @@ class Controller:
             self._room: Room | None = None
 
     def step(
-        self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None = None
+        self,
+        q: ArrayLike,
+        t: float,
+        target: Target | Mapping[str, Target] | None = None,
+        dq: ArrayLike | None = None,
     ) -> Command:
         """Compute the command for joint positions at a time.
 
@@ -102,6 +100,9 @@ class Controller:
             q: Measured joint positions [rad], (n,).
             t: Time [s]; the reference is asked for the time `delay` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
+                At the acceleration level it has no acceleration.
+            dq: Measured joint velocities [rad/s], (n,), at the acceleration level; None takes the
+                last command.
 
         Returns:
             The command.
@@ -124,6 +125,10 @@ class Controller:
             room.targets[index] = self.targets(t - self.delay, target)
         elif t - self.delay != room.times[index]:
             room.look_ahead(t - self.delay, index)
+        if plan.accelerates:
+            plan.wanted[:] = self._accelerations(t) if target is None else 0.0
+        if dq is not None:
+            plan.measure(dq)
         try:
             self._answer(plan, room, index, t)
         except BaseException:
@@ -144,7 +149,7 @@ class Controller:
             if target is None:
                 self.warn_if_far(start, t, stacklevel=4)
         base: Vector
-        plan, given = self.plan, self._references
+        plan, given = self.plan, by_frame(self.reference, self.robot.tip)
         seen = [self._ahead(name, given[name]) for name in plan.frames if name in given]
         paths = [(one.compiled, one.numbers) for one in seen if one.compiled is not None]
         if not paths or len(paths) < len(plan.frames):
@@ -156,18 +161,7 @@ class Controller:
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
         """Warn where a first target is far from its frame: most likely it was not anchored."""
-        turns = any(isinstance(task, OrientationTask) for task in getattr(self.scheme, "tasks", ()))
-        for name, data in zip(self.plan.frames, self.targets(t).reshape(-1, 18), strict=True):
-            frame, target = start.frame(name), Target.from_data(data)
-            distance = float(np.linalg.norm(target.position - frame.position))
-            angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
-            if distance > FAR or angle > TURNED:
-                where = "tip" if name == self.robot.tip else f"frame {name}"
-                message = (
-                    f"the reference begins {distance:.3g} m from the {where}, {angle:.3g} rad "
-                    "turned; to begin where it is: reference.anchored(configuration)"
-                )
-                warnings.warn(message, stacklevel=stacklevel)
+        warn_if_far(self.scheme, self.plan.frames, start, self.targets(t), stacklevel + 1)
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
@@ -209,7 +203,7 @@ class Controller:
     def answers(self, targets: Matrix) -> Answers:
         """Return room for the answers to a stretch of targets, (k, 18 frames)."""
         plan = self.plan
-        return Answers(plan.sizes, self._q.size, plan.expected, targets)
+        return Answers(plan.sizes, self._q.size, plan.expected, targets, plan.accelerates)
 
     def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Vector:
         """Return the targets of a time, (18 frames,): those given, else the reference's."""
@@ -225,20 +219,14 @@ class Controller:
         Raises:
             InvalidInputError: There is no reference, or none for a frame that a task tracks.
         """
-        if self.reference is None:
-            raise InvalidInputError("reference", "is missing: give one, or a target to each step")
-        given = self._references
-        for name in self.plan.frames:
-            if name not in given:
-                raise InvalidInputError("reference", f"is missing for frame {name!r}")
-        seen = (self._ahead(name, given[name]).sample(times) for name in self.plan.frames)
+        paths = paths_of(self.reference, self.robot.tip, self.plan.frames)
+        seen = (self._ahead(name, path).sample(times) for name, path in paths.items())
         return np.concatenate([targets.data for targets in seen], axis=1)
 
-    @property
-    def _references(self) -> Mapping[str, Reference]:
-        """References by frame name; none where every step gets a target."""
-        one = self.reference
-        return {self.robot.tip: one} if isinstance(one, Reference) else one or {}
+    def _accelerations(self, t: float) -> Vector:
+        """Return the accelerations of the targets of a time [s], (6 frames,)."""
+        paths = paths_of(self.reference, self.robot.tip, self.plan.frames).values()
+        return np.concatenate([path.accelerations(t - self.delay) for path in paths])
 
     def _ahead(self, frame: str, reference: Reference) -> Reference:
         """Return a frame's reference, one period ahead where its tasks track the next target."""
@@ -257,6 +245,8 @@ class Controller:
         """
         plan, index = self.plan, answers.count
         plan.q[:] = q
+        if plan.accelerates:
+            plan.wanted[:] = self._accelerations(t)
         self._answer(plan, answers, index, t)
         return answers.dq(index)
 
@@ -325,10 +315,16 @@ class Controller:
         duration = 0.0 if self.mode == "converged" else self.dt
         if duration == 0.0 and plan.network is not None and plan.yielding is None:
             self.solver.reset()  # compiled code has tried from the last state already
-        solution, resolution = answer(plan, qp, self.solver, self.policy, duration)
+        # The clock of an arm that is in motion cannot be slowed down at once.
+        policy = "relax" if plan.accelerates and self.policy == "slow" else self.policy
+        solution, resolution = answer(plan, qp, self.solver, policy, duration)
         if resolution is not None:
             qp, answers.resolved[index] = resolution.qp, resolution
+            if plan.accelerates and resolution.action is Action.STOP:
+                solution.point[: qp.lb.size] = np.clip(-plan.last / self.dt, qp.lb, qp.ub)
         answers.add(qp, solution, plan.place, plan.q)
+        if plan.accelerates:
+            answers.dq(index)[:] = plan.last + self.dt * solution.x[: plan.q.size]
         plan.tell(answers.dq(index))
 
     def place(self, q: Vector) -> Vector:

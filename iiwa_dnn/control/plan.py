@@ -7,7 +7,9 @@ from collections.abc import Callable
 import numpy as np
 from numba import typeof
 from numba.core.dispatcher import Dispatcher
+from numpy.typing import ArrayLike
 
+from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.control.policies import Resolution
 from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step
@@ -20,6 +22,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
+from iiwa_dnn.schemes.acceleration import lift_targets, lower_limits
 from iiwa_dnn.schemes.assembly import ASSEMBLE, assemble
 
 _BUDGET = 60.0
@@ -53,6 +56,8 @@ class Plan:
         yielding: Answers where tasks yield to acceleration and jerk limits; None without those.
         stuck: Whether the task yielded at the last step.
         halted: Decision to stop, by which every step brakes; None: goes on.
+        accelerates: Whether the programs are of the acceleration level.
+        wanted: Accelerations of the next targets there, (6 frames,).
         row_weights: Weight of each task row where a policy lets the tasks yield; None: all alike.
     """
 
@@ -89,15 +94,19 @@ class Plan:
             inertia = np.zeros(dof * dof if layout.needs_inertia else 0)
         priorities = np.zeros(0, dtype=np.int64) if layout is None else layout.priorities
         self.cascade = Cascade(priorities, self.sizes, solver)
-        self.asks = layout is None or bool(layout.custom or self.cascade.levels)
+        self.asks = layout is None or bool(
+            layout.custom or self.cascade.levels or layout.damping.size
+        )
         self.frames = (robot.tip,) if layout is None else layout.target_frames
         self.ahead = frozenset() if layout is None else layout.ahead
         self.place: Vector = self.kinematics.placements[codes[5]]
         self.row_weights = None if layout is None else layout.row_weights
+        self._damping = np.zeros(0) if layout is None else layout.damping
+        self.accelerates, self.wanted = self._damping.size > 0, np.zeros_like(self._damping)
         self.version = solver.version
         self.expected = Status.SOLVED if converged else Status.ADVANCED
         # A subclass that solves in a way of its own is asked, not bypassed.
-        compiled = type(solver) is DNNSolver
+        compiled = type(solver) is DNNSolver and not self.accelerates
         self.network = solver.numbers(0.0 if converged else dt) if compiled else None
         self._numbers = self.network
         network = np.zeros(NETWORK) if self.network is None else self.network.copy()
@@ -113,7 +122,7 @@ class Plan:
         self.halted: Resolution | None = None
         self.yielding: Yielding | None = None
         self.rates: Matrix | None = None
-        if layout is not None and layout.restrained:
+        if layout is not None and layout.restrained and not self.accelerates:
             limits = layout.blocks[-1].part.numbers(robot)
             self.rates = limits[3 * dof :].reshape(2, dof)
             self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
@@ -132,8 +141,8 @@ class Plan:
             self.step = control_step.compile(tuple(map(typeof, given)))
 
     def halt(self, decision: Resolution) -> None:
-        """Brake at every step from now on, where acceleration or jerk is limited."""
-        if self.yielding is not None and self.halted is None:
+        """Brake at every step from now on, where the arm cannot stop at once."""
+        if (self.yielding is not None or self.accelerates) and self.halted is None:
             self.halted, self.network = decision, None
 
     def stick(self, stuck: bool) -> None:
@@ -156,6 +165,12 @@ class Plan:
         self.past[dq.size :] = self.last
         self.last[:] = dq
 
+    def measure(self, dq: ArrayLike) -> None:
+        """Take measured joint velocities (n,) [rad/s] for those after the last command."""
+        if not self.accelerates:
+            raise InvalidInputError("dq", "is for schemes of the acceleration level", dq)
+        self.last[:] = checks.finite_array("dq", dq, self.shape)
+
     def update(self, q: Vector) -> None:
         """Bring the kinematics to joint positions q (n,) [rad]."""
         self.q[:] = q
@@ -171,8 +186,14 @@ class Plan:
     def assemble(self, data: Vector, targets: Vector) -> None:
         """Write the program of the compiled parts into `data`."""
         codes, work, jacobian, placements = self.compiled
+        q = self.q
+        if self.accelerates:
+            targets = lift_targets(
+                self.kinematics, self.frames, self._damping, targets, self.wanted, q, self.last
+            )
+            q = q + 0.5 * self._dt * self.last
         assemble(
-            data, codes, self._constants, self.q, jacobian, placements, self.inertia, targets,
+            data, codes, self._constants, q, jacobian, placements, self.inertia, targets,
             work[0], self.past,
         )  # fmt: skip
 
@@ -191,6 +212,8 @@ class Plan:
             by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(self.frames)}
             step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
             self.layout.fill(data, step)
+        if self.accelerates:
+            lower_limits(QP.from_data(data, self.sizes), self.last, self._dt)
         if self.cascade.levels:
             self.cascade.resolve(QP.from_data(data, self.sizes))
 

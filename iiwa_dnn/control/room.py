@@ -34,9 +34,10 @@ class Room(Answers):
         self, plan: Plan, dt: float, paths: Sequence[tuple[Any, Vector]], base: Vector
     ) -> None:
         """Allocate for a plan; base (18 frames,) is the targets' at the paths' origins."""
-        super().__init__(plan.sizes, plan.q.size, plan.expected, np.tile(base, (SIZE, 1)))
+        targets = np.tile(base, (SIZE, 1))
+        super().__init__(plan.sizes, plan.q.size, plan.expected, targets, plan.accelerates)
         self.paths, self.times = paths, [math.nan] * SIZE
-        self.commands = list(self.rows[:, self._x])
+        self.commands = list(self._dq)
         self._arguments = (plan, dt, paths, base)
         self._periods, self._ahead, self._next = np.arange(SIZE + 1), 1, math.nan
 

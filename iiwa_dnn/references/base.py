@@ -197,6 +197,17 @@ class Reference(ABC):
         """
         return Targets.from_data(self._targets(finite_array("times", times, (-1,)).copy()))
 
+    def accelerations(self, t: float) -> NDArray[np.float64]:
+        """Compute the acceleration, linear [m/s^2] and angular [rad/s^2], at a time [s], (6,).
+
+        By a difference of the exact twists to the fourth order, forward at t = 0, where many a path
+        begins.
+        """
+        h = 1e-3
+        nodes, weights = ((-2, -1, 1, 2), (1, -8, 8, -1)) if t >= 2 * h else (_AHEAD, _FORWARD)
+        twists = self._targets(t + h * np.array(nodes, dtype=np.float64))[:, 12:]
+        return np.array(weights) @ twists / (12.0 * h)
+
     def _targets(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
         """Compute `Target.data` at times (k,), one a row."""
         targets = np.empty((times.size, _AT_REST.size))
@@ -217,6 +228,8 @@ class Reference(ABC):
         values = {name: getattr(self, name) for name in parameters}
         return {"name": self.name} | {name: _plain(value) for name, value in values.items()}
 
+
+_AHEAD, _FORWARD = (0, 1, 2, 3, 4), (-25, 48, -36, 16, -3)
 
 _COMPUTING = ("displacement", "velocity", "turn", "angular_velocity", "_targets")
 

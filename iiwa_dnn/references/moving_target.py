@@ -110,6 +110,10 @@ class MovingTarget(Reference):
         position, rotation = self._now
         return np.concatenate([position, rotation.ravel(), self._velocity])
 
+    def accelerations(self, t: float) -> NDArray[np.float64]:
+        """Return zeros, (6,): it is not known how the target will move on."""
+        return np.zeros(6)
+
     def settings(self) -> dict[str, Any]:
         """Return name and speeds, in values that JSON knows."""
         limits = {"acceleration": self.acceleration, "jerk": self.jerk}

@@ -61,6 +61,9 @@ class Record:
         objective_gap: Difference in the objective to each reference, (N, k).
         reference_residual: Largest KKT residual of each reference's own answer, (N, k).
         settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
+        ddq: Joint accelerations that the network answered [rad/s^2], (N, n), of a scheme of the
+            acceleration level; `dq` is then the mean velocity of each step, and `dq_solver` the
+            velocity after it.
         torque: Joint torques of a run in physics [N m], (N, n), the largest of each step.
         bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
             one, negative at a lower one, 0 at an inactive one; the decrease of the objective per
@@ -104,6 +107,7 @@ class Record:
     objective_gap: Annotated[FloatArray, ("N", "k"), np.float64]
     reference_residual: Annotated[FloatArray, ("N", "k"), np.float64]
     settings: dict[str, Any]
+    ddq: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
     torque: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
     bound_multiplier: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
     clipped: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None

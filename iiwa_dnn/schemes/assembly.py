@@ -18,6 +18,7 @@ from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.compiling import Apart
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.acceleration import check_parts, damping_of
 from iiwa_dnn.schemes.collisions import COLLISION, collision_rows
 from iiwa_dnn.schemes.costs import (
     CYCLIC_MOTION,
@@ -86,7 +87,8 @@ class Layout:
         row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
         priorities: Level of each equality row, (p,); 0 for one that has to hold.
         ahead: Names of the frames whose tasks track the next target.
-        needs_period: Whether a task asks for the next target, which needs a control period.
+        needs_period: Whether a program needs a control period.
+        damping: `damping_of` at the acceleration level, (6 frames,); empty at the velocity level.
     """
 
     def __init__(
@@ -96,6 +98,7 @@ class Layout:
         tasks: Sequence[Task],
         limits: Sequence[Limit],
         slack: int,
+        accelerates: bool = False,
     ) -> None:
         """Lay the parts out.
 
@@ -103,6 +106,8 @@ class Layout:
             NotFoundError: A part names a frame that the robot does not have.
             InvalidInputError: A parameter of a part does not fit the robot.
         """
+        if accelerates:
+            check_parts(costs, tasks)
         self.robot = robot
         limits = merged(limits)
         hard = [task for task in tasks if task.weight is None]
@@ -132,7 +137,11 @@ class Layout:
         self.frames = tuple(dict.fromkeys([robot.tip, *self.target_frames, *more]))
         tracked = {(task.frame_name(robot), task.tracking) for task in tasks if task.tracks}
         self.ahead = frozenset(name for name, tracking in tracked if tracking == "next")
-        self.needs_period = any(task.tracking == "next" for task in tasks)
+        self.needs_period = accelerates or any(task.tracking == "next" for task in tasks)
+        by_name = [(task.frame_name(robot), task) for task in tasks]
+        self.damping: Vector = (
+            damping_of(self.target_frames, by_name) if accelerates else np.zeros(0)
+        )
         if len(tracked) > len(names):
             problem = f"must be the same of all tasks of a frame: {sorted(tracked)}"
             raise InvalidInputError("tracking", problem)
@@ -144,6 +153,9 @@ class Layout:
 
         compiled = [block for block in self.blocks if block.part.kind != CUSTOM]
         constants = [block.part.numbers(self.robot) for block in compiled]
+        if self.damping.size:  # `iiwa_dnn.schemes.acceleration`: the gain of a task, squared
+            for block, gains in zip(compiled, constants, strict=True):
+                gains[0] **= 1 + isinstance(block.part, Task)
         starts = [0, *accumulate(map(len, constants))]
         self.numbers: Vector = np.concatenate([np.zeros(0), *constants])
         self.moving = [

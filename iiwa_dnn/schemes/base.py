@@ -14,6 +14,7 @@ from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.acceleration import LEVELS, Level, lift_targets, lower_limits
 from iiwa_dnn.schemes.assembly import Layout, assemble
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
@@ -25,19 +26,22 @@ class Scheme:
     """A way to choose joint velocities among those that fulfil the tasks inside the limits.
 
     The program's variables are the n joint velocities [rad/s], then `slack` further variables that
-    costs and limits of one's own may use; the command is the first n of the solution.
+    costs and limits of one's own may use; the command is the first n of the solution. At the
+    acceleration level they are the joint accelerations [rad/s^2] (`iiwa_dnn.schemes.acceleration`).
 
     Attributes:
         costs: Terms of the cost.
         tasks: Equality rows, or soft tasks.
         limits: Bounds and inequality rows.
         slack: Number of slack variables.
+        level: ``"velocity"`` or ``"acceleration"``.
     """
 
     costs: tuple[Cost, ...]
     tasks: tuple[Task, ...]
     limits: tuple[Limit, ...]
     slack: int = 0
+    level: Level = "velocity"
 
     def __init__(
         self,
@@ -45,14 +49,18 @@ class Scheme:
         tasks: Sequence[Task] = (),
         limits: Sequence[Limit] = (),
         slack: int = 0,
+        level: Level = "velocity",
     ) -> None:
         """Compose the parts.
 
         Raises:
-            InvalidInputError: A part is of another kind than its list, or `slack` is negative.
+            InvalidInputError: A part is of another kind than its list, or has no meaning at the
+                level, there is no such level, or `slack` is negative.
         """
         self._compose(costs, tasks, limits)
         self.slack = checks.integer("slack", slack, 0)
+        checks.one_of("level", level, LEVELS)
+        self.level = level
 
     def _compose(
         self, costs: Sequence[Cost], tasks: Sequence[Task], limits: Sequence[Limit]
@@ -93,18 +101,27 @@ class Scheme:
             NotFoundError: A part names a frame that the robot does not have.
             InvalidInputError: A parameter of a part does not fit the robot.
         """
-        return Layout(robot, self.costs, self.tasks, self.limits, self.slack)
+        accelerates = self.level == "acceleration"
+        return Layout(robot, self.costs, self.tasks, self.limits, self.slack, accelerates)
 
     def build_qp(
-        self, conf: Configuration, target: Target | Mapping[str, Target], dt: float = np.inf
+        self,
+        conf: Configuration,
+        target: Target | Mapping[str, Target],
+        dt: float = np.inf,
+        dq: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
     ) -> QP:
         """Build the program of one instant; it is not solved here.
 
         Args:
             conf: Where the robot is, n joints.
             target: Where the tip should be; with tasks of other frames, a target by frame name.
-            dt: Control period [s], which tasks that track the next target need; `target` is then
-                one of `Reference.ahead`.
+            dt: Control period [s], which the acceleration level needs, and tasks that track the
+                next target; `target` is then one of `Reference.ahead`.
+            dq: Joint velocities [rad/s], (n,), or the last command; None: rest.
+            acceleration: Accelerations of the targets, linear and angular, (6 frames,), for the
+                acceleration level; None: zero.
 
         Returns:
             A QP in n + slack variables: the rows of the tasks in A, of the limits in G.
@@ -119,15 +136,27 @@ class Scheme:
         q = conf.arrays[0]
         kinematics.update(q)
         targets = targets_of(layout, target)
-        data = np.empty(layout.size)
+        data, given = np.empty(layout.size), np.concatenate(list(targets.values()))
+        moving = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
+        if layout.damping.size:
+            size = layout.damping.size
+            wanted = np.zeros(size) if acceleration is None else acceleration
+            wanted = checks.finite_array("acceleration", wanted, (size,))
+            given = lift_targets(
+                kinematics, layout.target_frames, layout.damping, given, wanted, q, moving
+            )
+            q = q + 0.5 * dt * moving
         assemble(
             data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
-            kinematics.inertia.ravel(), np.concatenate(list(targets.values())),
-            1.0 / dt if dt < np.inf else np.inf, np.zeros(2 * q.size),
+            kinematics.inertia.ravel(), given, 1.0 / dt if dt < np.inf else np.inf,
+            np.tile(moving, 2),
         )  # fmt: skip
         if layout.custom:
-            layout.fill(data, Step(kinematics, targets, 0.0, dt, q, np.zeros_like(q)))
-        return QP.from_data(data, layout.sizes)
+            layout.fill(data, Step(kinematics, targets, 0.0, dt, conf.arrays[0], moving))
+        qp = QP.from_data(data, layout.sizes)
+        if layout.damping.size:
+            lower_limits(qp, moving, dt)
+        return qp
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """Compute dq^T G(q) dq of a joint velocity dq (n,) [rad/s].
@@ -148,7 +177,10 @@ class Scheme:
 
     def settings(self) -> dict[str, Any]:
         """Return name, parts and parameters, as values that JSON can hold."""
-        parts = {name: [part.settings() for part in getattr(self, name)] for name in _LISTS}
+        parts: dict[str, Any] = {
+            name: [part.settings() for part in getattr(self, name)] for name in _LISTS
+        }
+        parts |= {"level": self.level} if self.level != "velocity" else {}
         return {"name": type(self).__name__, **parts, "slack": self.slack, "kinetic": self.kinetic}
 
 

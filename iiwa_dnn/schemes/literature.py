@@ -13,6 +13,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
@@ -118,6 +119,27 @@ def minimum_acceleration_norm(gain: float = 10.2, damping: float = 1e-3) -> Sche
     that of the difference of two commands.
     """
     return Scheme([VelocityChange(), KineticEnergy(damping)], _tasks(gain), [JointLimits()])
+
+
+def resolved_acceleration(gain: float = 10.2, damping: float = 5.0) -> Scheme:
+    """Compose the scheme of least joint acceleration norm, of the acceleration level.
+
+    Source: that of `minimum_acceleration_norm`; `damping` [1/s] is that of `JointAcceleration`.
+    """
+    return _second_order(gain, [JointAcceleration(damping=damping)])
+
+
+def minimum_torque(gain: float = 10.2, weight: float = 10.0, damping: float = 5.0) -> Scheme:
+    """Compose the scheme of least joint torque norm, of the acceleration level.
+
+    Source: that of `minimum_acceleration_norm`. A `JointAcceleration` of a weight [(N m s^2)^2]
+    keeps the joints from racing.
+    """
+    return _second_order(gain, [JointTorque(), JointAcceleration(weight, damping)])
+
+
+def _second_order(gain: float, costs: list[Cost]) -> Scheme:
+    return Scheme(costs, _tasks(gain), [JointLimits()], level="acceleration")
 
 
 def _tasks(gain: float) -> list[Task]:

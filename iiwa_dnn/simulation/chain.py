@@ -24,6 +24,7 @@ class SignalChain:
 
     Attributes:
         misleads: Whether the controller may see another posture than the robot has.
+        changes: Whether a velocity is changed on its way to the robot.
         alters: Whether something but the controller's own answer, which keeps the limits, may move
             the robot.
     """
@@ -52,7 +53,9 @@ class SignalChain:
         self._window = min(filter_window, steps)
         noisy, estimates = self._noise is not None, estimator is not None
         self.misleads = estimates or (noisy and noise_at == "measurement")
-        self.alters = noisy or estimates or disturbance is not None or filter_window > 1
+        self.changes = estimates or disturbance is not None or filter_window > 1
+        self.changes |= noisy and noise_at != "measurement"
+        self.alters = noisy or self.changes
 
     def restart(self) -> None:
         """Forget the past of a run."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.control.answers import FIGURES, Answers
-from iiwa_dnn.control.controller import Controller, References
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.paths import References
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled, larger
@@ -31,6 +33,7 @@ class History:
         q: Joint positions [rad], (N+1, n).
         dq: Joint velocities that moved the robot [rad/s], (N, n).
         dq_solver: Joint velocities that the controller answered [rad/s], (N, n).
+        ddq: Joint accelerations [rad/s^2], (N, n), of a scheme of the acceleration level.
         torque: Joint torques [N m], (N, n), of a plant that has them.
         stops: Steps at which the run stopped.
     """
@@ -43,6 +46,7 @@ class History:
         self.q[0] = q0
         self.dq, self.dq_solver = np.zeros((steps, n)), np.zeros((steps, n))
         self.torque = np.zeros((steps, n)) if torques else None
+        self.ddq = np.zeros((steps, n)) if controller.plan.accelerates else None
         self._position, self._rotation = np.empty((steps + 1, 3)), np.empty((steps + 1, 3, 3))
         self._position_desired = np.empty((steps + 1, 3))
         self._rotation_desired = np.empty((steps + 1, 3, 3))
@@ -102,8 +106,8 @@ class History:
             "kkt_residual": self._kkt_residual,
             "iterations": self._iterations,
         }
-        if self.torque is not None:
-            of_steps["torque"] = self.torque
+        optional = {"torque": self.torque, "ddq": self.ddq}
+        of_steps |= {name: array for name, array in optional.items() if array is not None}
         for array in (*samples.values(), *of_steps.values()):
             array.setflags(write=False)  # so that the record need not copy it
         cut = {name: array[: steps + 1] for name, array in samples.items()}
@@ -169,6 +173,14 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
         "scheme": controller.scheme.settings(),
         "reference": _settings_of(controller.reference),
     }
+
+
+def versions(packages: tuple[str, ...]) -> dict[str, str]:
+    """Return the versions of what a run computes with, and of further packages."""
+    return {name: version(name) for name in (*_PACKAGES, *packages)}
+
+
+_PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
 
 def _settings_of(reference: References | None) -> dict[str, Any]:

@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
@@ -78,3 +80,31 @@ MOTIONS: dict[str, Method] = {
     "midpoint": Method(midpoint, (0.0, 0.5)),
     "rk4": Method(rk4, (0.0, 0.5, 0.5, 1.0)),
 }
+
+
+def accelerated(
+    method: Method, ask: VelocityField, last: Vector, q: Vector, t: float, dt: float
+) -> tuple[Vector, Vector]:
+    """Integrate joint positions and velocities over one step of the acceleration level.
+
+    Args:
+        method: The method.
+        ask: Velocity that the controller wants dt after it is at joint positions and a time.
+        last: Joint velocities [rad/s], (n,), from which the controller starts; overwritten.
+        q: Joint positions [rad], (n,).
+        t: Time [s].
+        dt: Length of the step [s].
+
+    Returns:
+        Joint velocities after the step [rad/s], (n,), and their mean in it; Euler holds one
+        acceleration.
+    """
+    n, before = q.size, last.copy()
+
+    def rate(state: Vector, time: float) -> Vector:
+        last[:] = state[n:]
+        return np.append(state[n:], (ask(state[:n], time) - state[n:]) / dt)
+
+    mean = method.step(rate, np.append(q, before), t, dt)
+    change = dt * mean[n:]
+    return before + change, before + 0.5 * change if method.stages == 1 else mean[:n]

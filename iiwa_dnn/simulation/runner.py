@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.controller import Controller, Mode, References
+from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.feedback import IntegralFeedback
+from iiwa_dnn.control.paths import References
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -25,10 +25,10 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import recorded, stated
 from iiwa_dnn.simulation.chain import SignalChain
-from iiwa_dnn.simulation.history import COMPLETED, History, settings_of, step_count
+from iiwa_dnn.simulation.history import COMPLETED, History, settings_of, step_count, versions
 from iiwa_dnn.simulation.incidents import Incidents
 from iiwa_dnn.simulation.judgement import Judgement
-from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
+from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated, check_motion
 from iiwa_dnn.simulation.noise import NoiseEntry, VelocityDisturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
 
@@ -75,8 +75,8 @@ class Simulation:
     ) -> None:
         """Check the arguments, those of `simulate`, and draw the noise; q0 has the shape (n,)."""
         checks.positive("dt", dt)
-        several = reference if isinstance(reference, Mapping) else {"": reference}
-        length = max(r.duration for r in several.values()) if duration is None else duration
+        paths = reference.values() if isinstance(reference, Mapping) else [reference]
+        length = max(path.duration for path in paths) if duration is None else duration
         checks.positive("duration", length)
         self._ideal = plant is None or isinstance(plant, IdealPlant)
         checks.not_negative("integral_gain", integral_gain)
@@ -92,21 +92,23 @@ class Simulation:
             robot, scheme, reference, dt=dt, mode=mode, policy=policy, solver=solver
         )
         self._controller.anchor(start)
-        layout = self._controller.plan.layout
-        one_clock = mode != "converged" or not self._ideal
-        check_motion(motion, one_clock, layout is not None and layout.needs_period)
+        plan = self._controller.plan
+        check_motion(motion, mode != "converged" or not self._ideal, bool(plan.ahead))
         self._plant.start(robot, self._q0, dt, seed)
         self._controller.warn_if_far(start, 0.0, stacklevel=4)
-        if integral_gain and len(self._controller.plan.frames) > 1:
+        if integral_gain and len(plan.frames) > 1:
             raise InvalidInputError("integral_gain", "is for one tracked frame", integral_gain)
         self._motion = MOTIONS[motion]
         self._integral = IntegralFeedback(integral_gain) if integral_gain else None
         self._chain = chain = SignalChain(
             steps, robot.dof, dt, noise, noise_at, disturbance, filter_window, estimator, seed
         )
+        if plan.accelerates and (chain.changes or integral_gain):
+            problem = "is of the acceleration level: it takes no noise but of measurements"
+            raise InvalidInputError("scheme", problem, scheme)
         self._misled = chain.misleads or not self._ideal
-        self._altered = chain.alters or motion != "euler"
-        self._rows = [] if layout is None else layout.row_names()
+        self._altered = (chain.alters or motion != "euler") and not plan.accelerates
+        self._rows = [] if plan.layout is None else plan.layout.row_names()
         shared = {
             "dt": dt, "duration": length, "mode": mode, "noise": noise, "noise_at": noise_at,
             "motion": motion if self._ideal else "physics", "filter_window": filter_window,
@@ -114,10 +116,9 @@ class Simulation:
             "disturbance": None if disturbance is None else disturbance.settings(),
             "estimator": None if estimator is None else estimator.settings(),
             "rows": self._rows, "check": self._check.settings(), **stated(scheme, robot),
+            "versions": versions(self._plant.packages),
         }  # fmt: skip
         self._settings = shared | settings_of(self._controller, self._q0) | self._plant.settings()
-        packages = (*_PACKAGES, *self._plant.packages)
-        self._settings["versions"] = {name: version(name) for name in packages}
 
     def run(self, progress: Progress | None = None) -> Record:
         """Take every step, or those until a policy stops or the plant diverges; see `simulate`."""
@@ -163,8 +164,8 @@ class Simulation:
         if self._integral is not None:
             self._integral.reset()
         self._incidents = Incidents(self.steps, self._robot, self._rows)
-        torques = self._plant.torque is not None
-        self._history = History(self.steps, self._controller, self._q0, torques)
+        with_torques = self._plant.torque is not None
+        self._history = History(self.steps, self._controller, self._q0, with_torques)
 
     def _take_plain_steps(self, done: int, taken: int, count: int) -> int:
         """Take Euler steps of the ideal plant that nothing alters, as many as compiled code can."""
@@ -173,8 +174,6 @@ class Simulation:
         if not plain or not isinstance(plant, IdealPlant):
             return 0
         steps = self._controller.follow(plant.state, self._answers, count - taken)
-        if not steps:
-            return 0
         history, answers, rows = self._history, self._answers, slice(taken, taken + steps)
         to = slice(done + taken, done + taken + steps)
         history.q[to], history.q[to.stop] = answers.q[rows], plant.state
@@ -183,12 +182,16 @@ class Simulation:
 
     def _step(self, k: int) -> str:
         """Take step k and return the status that the run has after it."""
-        history, answers = self._history, self._answers
-        q, t, first, plan = history.q[k], k * self._dt, answers.count, self._controller.plan
+        history, answers, plan, dt = self._history, self._answers, self._controller.plan, self._dt
+        q, t, first, ask = history.q[k], k * dt, answers.count, self._velocity_at
         plan.begin()
+        before = mean = plan.last.copy()
         seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
-            velocity = self._motion.step(self._velocity_at, seen, t, self._dt)
+            if plan.accelerates:
+                velocity, mean = accelerated(self._motion, ask, plan.last, seen, t, dt)
+            else:
+                velocity = self._motion.step(ask, seen, t, dt)
         except NoSolutionError as error:
             raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
         if self._misled:
@@ -201,12 +204,15 @@ class Simulation:
             return self._incidents.status(k, t)
         plan.rewind()
         command = self._command(k, first, velocity) if self._altered else velocity
-        if plan.yielding is not None:
+        if plan.yielding is not None or plan.accelerates:
             plan.tell(command)
+        if history.ddq is not None:
+            history.ddq[k] = (velocity - before) / dt
+            if self._ideal:
+                command = 0.5 * (before + velocity) if self._incidents.pending else mean
         self._plant.move(command)
-        torque = self._plant.torque
-        if torque is not None and history.torque is not None:
-            history.torque[k] = torque
+        if history.torque is not None:
+            history.torque[k] = self._plant.torque
         if self._plant.diverged:
             history.stay(k)
             return f"stopped at step {k} (t = {t:g} s): the physics diverged"
@@ -253,8 +259,8 @@ class Simulation:
         """The velocity of step k on its way to the plant, kept within the limits at its true q."""
         controller, qp = self._controller, self._answers.qp(first)
         if self._misled:
-            targets = self._answers.targets[first]
-            qp = controller.program_at(self._history.q[k], targets, k * self._dt)
+            q, targets = self._history.q[k], self._answers.targets[first]
+            qp = controller.program_at(q, targets, k * self._dt)
         command, clipped = self._chain.act(k, velocity, qp, controller.solver)
         self._incidents.clip(k, clipped)
         return command
@@ -274,9 +280,6 @@ class Simulation:
             **recorded(self._controller.scheme, self._robot, history.q[: steps + 1], t),
             wall_time_s=wall_time,
         )
-
-
-_PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
 
 def simulate(

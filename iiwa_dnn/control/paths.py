@@ -1,0 +1,58 @@
+"""The references of a control loop, one for each frame that tasks track."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from pinocchio import log3
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes import OrientationTask, Scheme
+
+References = Reference | Mapping[str, Reference]
+
+FAR, TURNED = 0.05, 0.2
+"""Distance [m] and angle [rad] of a first target from which on a warning is given."""
+
+
+def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
+    """Return references by frame name: one alone is the tip's; none where there is none."""
+    return {tip: reference} if isinstance(reference, Reference) else reference or {}
+
+
+def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> dict[str, Reference]:
+    """Return the reference of each frame, in their order.
+
+    Raises:
+        InvalidInputError: There is no reference, or none for one of the frames.
+    """
+    if reference is None:
+        raise InvalidInputError("reference", "is missing: give one, or a target to each step")
+    given = by_frame(reference, tip)
+    for name in frames:
+        if name not in given:
+            raise InvalidInputError("reference", f"is missing for frame {name!r}")
+    return {name: given[name] for name in frames}
+
+
+def warn_if_far(
+    scheme: Scheme, frames: Sequence[str], start: Configuration, targets: Vector, stacklevel: int
+) -> None:
+    """Warn where a first target, of (18 frames,), is far from its frame in a configuration."""
+    turns = any(isinstance(task, OrientationTask) for task in getattr(scheme, "tasks", ()))
+    for name, data in zip(frames, targets.reshape(-1, 18), strict=True):
+        frame, target = start.frame(name), Target.from_data(data)
+        distance = float(np.linalg.norm(target.position - frame.position))
+        angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
+        if distance > FAR or angle > TURNED:
+            where = "tip" if name == start.robot.tip else f"frame {name}"
+            message = (
+                f"the reference begins {distance:.3g} m from the {where}, {angle:.3g} rad "
+                "turned; to begin where it is: reference.anchored(configuration)"
+            )
+            warnings.warn(message, stacklevel=stacklevel)
