@@ -1,6 +1,7 @@
 """Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
 from iiwa_dnn.robot.obstacles import Box, Capsule, ConvexMesh, HalfSpace, Obstacle, Sphere
+from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, Manipulability
@@ -32,8 +33,10 @@ __all__ = [
     "ElbowAngleTask",
     "HalfSpace",
     "JerkLimits",
+    "JointAcceleration",
     "JointCouplingTask",
     "JointLimits",
+    "JointTorque",
     "KineticEnergy",
     "Limit",
     "Manipulability",

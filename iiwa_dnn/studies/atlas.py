@@ -79,8 +79,14 @@ class Paced(ExplicitEuler):
     base: Network | None = None
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
-        """Advance `state` (size,) in place, whatever the duration; returns the steps taken."""
+        """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
+
+        Raises:
+            InvalidInputError: The network knows no stable step.
+        """
         step, count = SAFETY * (self.base or network).stable_step(qp, state), self.substeps or 1
+        if not step > 0.0:
+            raise InvalidInputError("network", "knows no stable step: take `settled`", network)
         rates = network.flow(qp).rates
         for _ in range(count):
             state += step * rates(state)
@@ -112,6 +118,11 @@ class Entry(NamedTuple):
 def still(network: Network, systems: bool = False) -> Entry:
     """Return the entry of a network for a program that stands still."""
     return Entry(lambda count: DNNSolver(network, follower=Paced(count)), systems)
+
+
+def settled(network: Network) -> Entry:
+    """Return the entry of a network that is integrated implicitly towards rest."""
+    return Entry(lambda count: DNNSolver(network, follower=CutOff(max_steps=count)), systems=True)
 
 
 def activated(network: Network, activation: Any) -> Entry:
@@ -156,12 +167,7 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, noise-tolerant": zeroing(0.5, integral=0.25),
     "zeroing, growing gain": zeroing(0.05, growth=0.5),
     "zeroing, smooth": zeroing(1.0, form="smooth"),
-    "projection, implicit Euler": Entry(
-        lambda count: DNNSolver(
-            ProjectionNetwork(primal_projection=False), follower=CutOff(max_steps=count)
-        ),
-        systems=True,
-    ),
+    "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
     "ADMM (OSQP)": Entry(AdmmSolver, systems=True),
 }
 """Networks of the atlas by name, and the yardstick."""
@@ -272,9 +278,12 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
             else:
                 learn(believed, q - before, place(tool) * place(was).inverse())
             plan.kinematics.jacobian[:], was, before = believed, tool, q
+        if plan.accelerates:
+            plan.wanted[:] = heart.accelerations(k * DT)
         plan.build(data.data, target, k * DT)
+        velocity: Vector = plan.last.copy()
         if kind == "locked" and k >= locked:
-            data.lb[joint] = data.ub[joint] = 0.0
+            data.lb[joint] = data.ub[joint] = -velocity[joint] / DT if plan.accelerates else 0.0
         began = time.perf_counter()
         answer = solver.advance(data, DT)
         spent += time.perf_counter() - began
@@ -286,10 +295,10 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
             state[: width or state.size] += noise[k, : width or state.size]
             residuals[k] = max(solver.network.read(data, state, point))
             x = point
-        plan.last[:] = x[: q.size]
+        plan.last[:] = velocity + DT * x[: q.size] if plan.accelerates else x[: q.size]
         if kind == "locked" and k >= locked:
             plan.last[joint] = 0.0
-        q = q + DT * plan.last
+        q = q + DT * (0.5 * (velocity + plan.last) if plan.accelerates else plan.last)
     half = slice(steps // 2, None)
     return {
         "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),

@@ -36,5 +36,7 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
         [KineticEnergy(0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
     ),
     "pseudo-inverse": PseudoInverse,
+    "resolved acceleration": literature.resolved_acceleration,
+    "minimum torque": literature.minimum_torque,
 }
 """Schemes by name; the first is the default."""

@@ -17,7 +17,6 @@ from iiwa_dnn import (
 from iiwa_dnn.networks import (
     ActivatedNetwork,
     GradientNetwork,
-    Network,
     OneLayerNetwork,
     SimplifiedDualNetwork,
     ZeroingNetwork,
@@ -27,23 +26,7 @@ from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.kkt_system import KktSystem
 from iiwa_dnn.networks.primal_dual import coupling, limits
 
-PLAIN = [SimplifiedDualNetwork(), OneLayerNetwork(), OneLayerNetwork(corrected=False)]
 ACTIVATIONS = [SignBiPower(), FixedTime(), PredefinedTime(2.0)]
-
-
-@pytest.mark.parametrize("network", [*PLAIN, ActivatedNetwork()], ids=repr)
-def test_at_rest_exactly_at_kkt_points(network: Network) -> None:
-    rng = np.random.default_rng(0)
-    for case in range(10):
-        qp, x = known_qp(rng, 6, 2, case % 7, inequalities=3)
-        inner = network.network if isinstance(network, ActivatedNetwork) else network
-        solver = DNNSolver(inner)
-        solution = solver.solve(qp)
-        assert solution.found
-        assert np.abs(solution.x - x).max() < 1e-6
-        assert np.abs(inner.rates(qp, solver.state)).max() < 1e-8
-        moved = solver.state + 1e-2 * rng.standard_normal(solver.state.size)
-        assert np.abs(network.rates(qp, moved)).max() > 1e-5
 
 
 def test_the_simplified_dual_field_is_the_sources() -> None:
@@ -58,10 +41,6 @@ def test_the_simplified_dual_field_is_the_sources() -> None:
         lower, upper = np.r_[np.full(qp.h.size, -np.inf), qp.lb], np.r_[qp.h, qp.ub]
         expected = np.clip(rows @ x - u, lower, upper) - rows @ x
         np.testing.assert_allclose(network.rates(qp, u), expected, atol=1e-9)
-        flow = network.flow(qp)
-        for i, unit in enumerate(1e-6 * np.eye(u.size)):
-            column = (flow.rates(u + unit) - flow.rates(u - unit)) / 2e-6
-            np.testing.assert_allclose(flow.jacobian(u)[:, i], column, rtol=1e-5, atol=1e-6)
 
 
 @pytest.mark.parametrize("network", [OneLayerNetwork(), OneLayerNetwork(share=0.8)], ids=repr)
@@ -111,19 +90,10 @@ def test_the_gradient_network_lowers_its_energy_and_rests_at_kkt_points() -> Non
             state = state + 0.4 * network.stable_step(qp, state) * network.rates(qp, state)
 
 
-def settle_time(network: ActivatedNetwork, qp: QP, state: np.ndarray) -> float:
-    """Time [rho] until the rates of the network inside are 1e-6, by steps of 2 % of the way."""
-    rates, time = network.network.flow(qp).rates, 0.0
-    stable = 0.1 * network.network.stable_step(qp)
-    while (size := np.linalg.norm(rates(state))) > 1e-6:
-        # The trajectory is that of the network inside, run through at another speed.
-        time += stable * size / network.activation(np.array([size]))[0]
-        state = state + stable * rates(state + 0.5 * stable * rates(state))
-    return time
-
-
 @pytest.mark.parametrize("activation", ACTIVATIONS, ids=repr)
-def test_activated_networks_settle_below_their_bound(activation: Activation) -> None:
+def test_activated_networks_settle_below_their_bound_from_1000_starts(
+    activation: Activation,
+) -> None:
     """Equality rows only, where the two constants of the bound are known."""
     rng = np.random.default_rng(4)
     qp = QP(np.diag([1.0, 1.5, 2.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
@@ -131,10 +101,19 @@ def test_activated_networks_settle_below_their_bound(activation: Activation) -> 
     rest = -np.linalg.solve(H, np.concatenate([qp.q, qp.b]))
     field = (np.eye(4) + H.T) @ H
     kappa, c = np.linalg.svd(field)[1][-1], 1.0 / np.linalg.norm(np.eye(4) + H, 2) ** 2
-    for _ in range(3):
-        start = rest + 10.0 ** rng.uniform(-1, 1) * rng.standard_normal(4)
-        bound = activation.settle_time(kappa * np.linalg.norm(start - rest)) / (c * kappa**2)
-        assert settle_time(network, qp, start) <= bound
+    away = 10.0 ** rng.uniform(-1, 1, (1000, 1)) * rng.standard_normal((1000, 4))
+    for start in away[:20]:
+        F = -field @ start
+        scaled = activation(np.array([np.linalg.norm(F)])) * F / np.linalg.norm(F)
+        np.testing.assert_allclose(network.rates(qp, rest + start), scaled, rtol=1e-9, atol=1e-9)
+    bounds = [activation.settle_time(kappa * w) for w in np.linalg.norm(away, axis=1)]
+    # The trajectories are those of the network inside, run through at another speed.
+    time, stable = np.zeros(1000), 0.1 * network.network.stable_step(qp)
+    halfway = np.eye(4) - 0.5 * stable * field.T
+    while (left := (size := np.linalg.norm(away @ field.T, axis=1)) > 1e-6).any():
+        time += np.where(left, stable * size / activation(size), 0.0)
+        away = away - stable * away @ halfway @ field.T
+    assert (time <= np.array(bounds) / (c * kappa**2)).all()
 
 
 def test_an_activated_network_has_the_direction_of_the_one_inside() -> None:

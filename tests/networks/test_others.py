@@ -19,11 +19,12 @@ from iiwa_dnn import (
     ProjectionNetwork,
     Status,
 )
-from iiwa_dnn.networks import Network
+from iiwa_dnn.networks import ActivatedNetwork, Network, OneLayerNetwork, SimplifiedDualNetwork
 from iiwa_dnn.studies.paper import START as PAPER_START
 
 OTHERS = [DualNetwork(), PrimalDualNetwork()]
 NETWORKS = [ProjectionNetwork(), ProjectionNetwork(primal_projection=False), *OTHERS]
+ATLAS = [SimplifiedDualNetwork(), OneLayerNetwork(), OneLayerNetwork(corrected=False)]
 
 
 def dual_rates(qp: QP, u: np.ndarray) -> np.ndarray:
@@ -67,7 +68,7 @@ def test_seven_joints_and_seven_rows_make_14_states() -> None:
     assert [network.state_size(qp) for network in OTHERS] == [14, 14]
 
 
-@pytest.mark.parametrize("network", NETWORKS, ids=repr)
+@pytest.mark.parametrize("network", [*NETWORKS, *ATLAS], ids=repr)
 def test_jacobians_by_finite_differences(network: Network) -> None:
     rng = np.random.default_rng(1)
     for case in range(10):
@@ -81,16 +82,17 @@ def test_jacobians_by_finite_differences(network: Network) -> None:
             np.testing.assert_allclose(jacobian[:, i], column, rtol=1e-5, atol=1e-6)
 
 
-@pytest.mark.parametrize("network", OTHERS, ids=repr)
+@pytest.mark.parametrize("network", [*OTHERS, *ATLAS, ActivatedNetwork()], ids=repr)
 def test_at_rest_exactly_at_kkt_points(network: Network) -> None:
     rng = np.random.default_rng(2)
     for case in range(20):
         qp, x = known_qp(rng, 6, 2, case % 7, inequalities=3)
-        solver = DNNSolver(network)
+        inner = network.network if isinstance(network, ActivatedNetwork) else network
+        solver = DNNSolver(inner)
         solution = solver.solve(qp)
         assert solution.found
         assert np.abs(solution.x - x).max() < 1e-6
-        assert np.abs(network.rates(qp, solver.state)).max() < 1e-8
+        assert np.abs(inner.rates(qp, solver.state)).max() < 1e-8
         moved = solver.state + 1e-2 * rng.standard_normal(solver.state.size)
         assert np.abs(network.rates(qp, moved)).max() > 1e-5
 
