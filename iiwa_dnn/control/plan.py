@@ -122,10 +122,11 @@ class Plan:
         self.halted: Resolution | None = None
         self.yielding: Yielding | None = None
         self.rates: Matrix | None = None
-        if layout is not None and layout.restrained and not self.accelerates:
+        if layout is not None and layout.restrained:
             limits = layout.blocks[-1].part.numbers(robot)
             self.rates = limits[3 * dof :].reshape(2, dof)
-            self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
+            if not self.accelerates:
+                self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
         self._constants = work[1 + 3 * dof + NETWORK + inertia.size :][: constants.size]
         moving = () if layout is None else layout.moving
@@ -150,10 +151,15 @@ class Plan:
         self.stuck = stuck and self.yielding is not None
         self.network = None if self.stuck else self._numbers
 
-    def begin(self) -> None:
-        """Begin a step of several stages, or one whose command may be altered."""
+    def begin(self) -> Vector:
+        """Begin a step of several stages, or one whose command may be altered.
+
+        Returns:
+            The last command [rad/s], (n,), a copy.
+        """
         if self.yielding is not None:
             self._before = self.past.copy()
+        return self.last.copy()
 
     def rewind(self) -> None:
         """Let limits of the change of commands count from the last step, not the last stage."""

@@ -184,8 +184,7 @@ class Simulation:
         """Take step k and return the status that the run has after it."""
         history, answers, plan, dt = self._history, self._answers, self._controller.plan, self._dt
         q, t, first, ask = history.q[k], k * dt, answers.count, self._velocity_at
-        plan.begin()
-        before = mean = plan.last.copy()
+        before = mean = plan.begin()
         seen = self._chain.see(k, self._plant.read()) if self._misled else q
         try:
             if plan.accelerates:
