@@ -136,8 +136,10 @@ class Waypoints(Reference):
 
         quaternions = finite_array("quaternions", quaternions, (len(self.times), 4))
         norms = np.linalg.norm(quaternions, axis=1, keepdims=True)
-        if np.abs(norms - 1.0).max() > _UNIT_WITHIN:
-            raise InvalidInputError("quaternions", "must have the length 1", quaternions)
+        worst = int(np.abs(norms - 1.0).argmax())
+        if abs(norms[worst, 0] - 1.0) > _UNIT_WITHIN:
+            problem = f"must have length 1; pose {worst + 1} has {norms[worst, 0]:.6g}"
+            raise InvalidInputError("quaternions", problem, quaternions)
         unit = quaternions / norms
         if self.ends == "closed" and abs(unit[0] @ unit[-1]) < 1.0 - _CLOSED_WITHIN:
             problem = "the last one of a closed path must be the first one"
