@@ -14,7 +14,7 @@ from iiwa_dnn import (
     simulate,
 )
 from iiwa_dnn.files import prepare_folder, write_text
-from iiwa_dnn.results.report import markdown_table
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.studies import paper
 

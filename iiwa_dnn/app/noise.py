@@ -12,8 +12,8 @@ from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import write_json, write_text
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import write_figures
-from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.studies import noise_study
 from iiwa_dnn.studies.sweeps import Sweep
 

@@ -40,6 +40,7 @@ _Angles = Annotated[_Numbers, arg(metavar="RAD", help_behavior_hint="")]
 _Schemes = Annotated[tuple[str, ...], arg(metavar="NAME", help_behavior_hint="")]
 _Counts = Annotated[tuple[int, ...], arg(metavar="N")]
 _Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
+_Frames = Annotated[tuple[str, ...], arg(metavar="FRAME", help_behavior_hint="")]
 _Limit = Annotated[str | None, arg(metavar="RAD", help_behavior_hint="")]
 _AnyLimit = Annotated[str | None, arg(metavar="X|robot", help_behavior_hint="")]
 _Robot = Annotated[str, arg(metavar="NAME|URDF")]
@@ -89,6 +90,7 @@ class TrackOptions(RunOptions):
     out: Folder = Path("runs/heart")  # folder that the results are written to
     robot: _Robot = "iiwa7"  # robot, by its name or by its URDF file
     tip: _Frame = None  # frame that follows the path (none: the end of the chain)
+    frames: _Frames = ()  # names of further frames, such as a second arm's, that draw the path too
     lock: _Names = ()  # names of the joints that are held still
     q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)

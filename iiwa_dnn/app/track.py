@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -115,13 +116,20 @@ def simulation(
         avoidance = CollisionAvoidance.from_toml(options.obstacles)
         scheme = Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoidance])
     reference, start = path(options), Configuration(robot, q0)
+    further = [name for name in options.frames if name != robot.tip]
+    own = {name: reference.anchored(start.frame(name)) for name in further}
+    if own:
+        tasks: Any = scheme.tasks
+        others = [replace(task, frame=name) for name in own for task in tasks]
+        scheme = Scheme(scheme.costs, [*tasks, *others], scheme.limits)
     if getattr(reference, "quaternions", None) is None:
         reference = reference.anchored(start)
     else:
         tell_if_elsewhere(reference, start)
+    references = {robot.tip: reference, **own} if own else reference
     check = CrossCheck(CHECKS[options.check], options.tolerance)
     asked = {name: getattr(options, name) for name in _HANDED_ON}
-    return Simulation(robot, scheme, reference, q0, plant=plant, check=check, **asked)
+    return Simulation(robot, scheme, references, q0, plant=plant, check=check, **asked)
 
 
 def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:

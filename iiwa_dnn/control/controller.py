@@ -148,15 +148,13 @@ class Controller:
             self.anchor(start)
             if target is None:
                 self.warn_if_far(start, t, stacklevel=4)
-        base: Vector
         plan, given = self.plan, by_frame(self.reference, self.robot.tip)
         seen = [self._ahead(name, given[name]) for name in plan.frames if name in given]
         paths = [(one.compiled, one.numbers) for one in seen if one.compiled is not None]
-        if not paths or len(paths) < len(plan.frames):
-            paths, base = [], np.zeros(18 * len(plan.frames))
-        else:
+        base: Vector = np.zeros(18 * len(plan.frames))
+        if known := 0 < len(plan.frames) == len(paths):
             base = np.concatenate([one.base for one in seen])
-        self._room = room = Room(plan, self.dt, paths, base)
+        self._room = room = Room(plan, self.dt, paths if known else [], base)
         return plan, room
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
@@ -217,7 +215,7 @@ class Controller:
         """Return the reference's targets at many times, one frame after the other, (k, 18 frames).
 
         Raises:
-            InvalidInputError: There is no reference, or none for a frame that a task tracks.
+            InvalidInputError: A frame that a task tracks has no reference, or another one has.
         """
         paths = paths_of(self.reference, self.robot.tip, self.plan.frames)
         seen = (self._ahead(name, path).sample(times) for name, path in paths.items())

@@ -29,14 +29,15 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
     """Return the reference of each frame, in their order.
 
     Raises:
-        InvalidInputError: There is no reference, or none for one of the frames.
+        InvalidInputError: One of the frames has no reference, or another one has.
     """
     if reference is None:
         raise InvalidInputError("reference", "is missing: give one, or a target to each step")
     given = by_frame(reference, tip)
-    for name in frames:
-        if name not in given:
-            raise InvalidInputError("reference", f"is missing for frame {name!r}")
+    wrong = [name for name in frames if name not in given]
+    if wrong or (wrong := [name for name in given if name not in frames]):
+        problem = "is missing for" if wrong[0] in frames else "is given, but no task tracks"
+        raise InvalidInputError("reference", f"{problem} frame {wrong[0]!r}")
     return {name: given[name] for name in frames}
 
 

@@ -97,7 +97,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
     (torques, settled error, recovery from a push), one that tracks several frames ``frames``
-    (largest errors of those beside the first), a run in which a bound, an inequality row, a policy
+    (largest errors of those beside the first), one with priorities ``level_residual`` (the largest
+    of each level), a run in which a bound, an inequality row, a policy
     or clipping acted ``incidents``, one that avoids collisions ``collisions`` (the nearest pair,
     and by how much it came nearer than it may).
 
@@ -140,22 +141,27 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     return metrics
 
 
-def _frames(record: Record) -> dict[str, Any]:
-    """Largest errors of the tracked frames beside the first."""
+def frame_errors(record: Record) -> tuple[FloatArray, FloatArray]:
+    """Compute distances [m] and angles [rad] of the f further frames to their targets, (N+1, f)."""
     place, wanted = record.frame_position, record.frame_position_desired
     turn, desired = record.frame_rotation, record.frame_rotation_desired
     if place is None or wanted is None or turn is None or desired is None:
-        return {}
-    distances = np.linalg.norm(place - wanted, axis=2).max(axis=0)
-    angles = rotation_angle(turn, desired).max(axis=0)
-    return {
-        "frames": {
+        return np.zeros((len(record.t), 0)), np.zeros((len(record.t), 0))
+    return np.linalg.norm(place - wanted, axis=2), rotation_angle(turn, desired)
+
+
+def _frames(record: Record) -> dict[str, Any]:
+    """Largest errors of the tracked frames beside the first, and residuals of the levels."""
+    found: dict[str, Any] = {}
+    if record.frame_position is not None:
+        worst = (errors.max(axis=0) for errors in frame_errors(record))
+        found["frames"] = {
             name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
-            for name, distance, angle in zip(
-                record.settings["frames"], distances, angles, strict=True
-            )
+            for name, distance, angle in zip(record.settings["frames"], *worst, strict=True)
         }
-    }
+    if record.level_residual is not None and record.steps:
+        found["level_residual"] = record.level_residual.max(axis=0)
+    return found
 
 
 def _rate_limits(record: Record) -> dict[str, Any]:

@@ -10,6 +10,8 @@ from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.results.failures import describe, failures, path_completed
+from iiwa_dnn.results.frames import save_frames
+from iiwa_dnn.results.markdown import bullets, markdown_table, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
@@ -42,6 +44,7 @@ _CAPTIONS = {
     "torques": "Joint torques: of each step the largest.",
     "moments": "The arm, and below it the path so far, face on.",
     "position_error": "Position error, actual minus desired.",
+    "frames": "Errors of all tracked frames.",
     "distance": "Distance of the nearest pair of bodies, and the least that is allowed.",
     "convergence": "KKT residual of the network and gap to the reference: the line is the largest "
     "value, the band the range, of each short stretch of time.",
@@ -60,6 +63,7 @@ _SUMMARY = {
     "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
     "wall time": "{wall_time_s} s, {realtime_factor} x real time",
 }
+_FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"
 _NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
 _ACTED = {
     "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
@@ -124,7 +128,7 @@ def save_run(
     record.save(folder / "record.npz")
     metrics = compute_metrics(record)
     write_json(folder / "metrics.json", metrics)
-    figures = save_figures(record, folder) if plots else []
+    figures = [*save_figures(record, folder), *save_frames(record, folder)] if plots else []
     figures += more(record, folder) if more is not None else []
     write_report(record, metrics, folder, figures)
     return metrics
@@ -145,7 +149,7 @@ def write_report(
         FileError: If it cannot be written.
     """
     settings, near = metrics["settings"], "collisions" in metrics
-    results = _rows(metrics, _RESULTS) + _physics(metrics.get("physics"))
+    results = _rows(metrics, _RESULTS) + _frames(metrics) + _physics(metrics.get("physics"))
     versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
     lag = "Continuous mode: the gap is the network's lag, reported and not judged."
     parts = [
@@ -190,6 +194,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
     if check["solver"] == "none":
         lines["cross-check"] = "not asked for"
+    frames = metrics.get("frames", {}).items()
+    lines |= {name: _fill(_FRAME, errors) for name, errors in frames}
     lines |= _physics_lines(metrics.get("physics"))
     lines |= _incident_lines(metrics.get("incidents", {}))
     if "collisions" in metrics:
@@ -201,25 +207,6 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
     return "\n".join([*path_completed(metrics), *aligned])
-
-
-def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out a table in Markdown, its cells made fit to stand in one."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
-
-
-def bullets(lines: Iterable[str]) -> str:
-    """Lay out a list in Markdown."""
-    return "\n".join(f"- {line}" for line in lines)
-
-
-def show_figures(figures: Iterable[Path], captions: Mapping[str, str]) -> list[str]:
-    """Show the PNG files among some figures in Markdown, with captions by the files' stems."""
-    shown = [path for path in figures if path.suffix == ".png"]
-    named = ((path.stem.replace("_", " ").capitalize() + ".", path) for path in shown)
-    pictures = [f"![{captions.get(path.stem, name)}]({path.name})" for name, path in named]
-    return ["## Figures", *pictures] if shown else []
 
 
 def _success(metrics: Mapping[str, Any]) -> str:
@@ -280,6 +267,16 @@ def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
     return ["## Limits and policies", counts, *([bullets(lines)] if lines else [])]
 
 
+def _frames(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Lay out the report's rows on further frames and levels of priority."""
+    rows = []
+    for frame, errors in metrics.get("frames", {}).items():
+        table = [(f"{name}, {frame}", key, unit) for name, key, unit in _RESULTS if key in errors]
+        rows += _rows(errors, table)
+    levels = enumerate(metrics.get("level_residual", ()), 1)
+    return rows + [(f"largest residual, priority {k}", _number(left), "") for k, left in levels]
+
+
 def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str, str]]:
     """Lay out the report's rows on torques and recovery."""
     if physics is None:
@@ -323,10 +320,6 @@ def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
         counts = Counter(row["part"] for row in settings["rows"])
         named[_SETTINGS["rows"]] = ", ".join(f"{part}: {n}" for part, n in counts.items())
     return [(name, _text(value)) for name, value in named.items()]
-
-
-def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")
 
 
 def _number(value: float | str | None) -> str:

@@ -188,18 +188,21 @@ class RemoteCentreTask(FeedbackTask):
     With the point seen from the frame, :math:`s = R^T (c - p)`, and a basis U of the directions
     normal to the shaft, :math:`U^T s = 0` is kept:
 
-    .. math::  U^T R^T \bigl(J_v - [c - p]_\times J_\omega\bigr) \dot q = \delta\, U^T s
+    .. math::  U^T R^T \bigl(J_v - [c - p]_\times J_\omega - J_c\bigr) \dot q = \delta\, U^T s
+
+    Along the optical axis of a camera this is a task to look at the point, :math:`J_c` being the
+    point's own Jacobian where another frame carries it.
 
     Source: N. Aghakhani et al., "Task control with remote center of motion constraint for minimally
     invasive robotic surgery", ICRA 2013.
 
     Attributes:
-        point: The point in the world [m], (3,).
+        point: The point in the world [m], (3,), or the name of the frame whose origin it is.
         axis: The shaft in the frame's own coordinates, (3,), of any length.
         frame: Name of the frame; None stands for the robot's tip.
     """
 
-    point: Sequence[float]
+    point: Sequence[float] | str
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     frame: str | None = None
     tracks: bool = field(default=False, init=False, repr=False)
@@ -208,13 +211,20 @@ class RemoteCentreTask(FeedbackTask):
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
-        self._set(point=checks.vector3("point", self.point), axis=_unit("axis", self.axis))
+        self._set(axis=_unit("axis", self.axis))
+        if not isinstance(self.point, str):
+            self._set(point=checks.vector3("point", self.point))
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (2, n) and b (2,)."""
         here, normals = step.frame(self.frame), _normals(self.axis)
-        apart, back = self.point - here.position, (here.rotation @ normals).T
-        A = back @ (here.jacobian[:3] - pin.skew(apart) @ here.jacobian[3:])
+        moved, back = here.jacobian[:3], (here.rotation @ normals).T
+        if isinstance(self.point, str):
+            there = step.frame(self.point)
+            apart, moved = there.position - here.position, moved - there.jacobian[:3]
+        else:
+            apart = self.point - here.position
+        A = back @ (moved - pin.skew(apart) @ here.jacobian[3:])
         return A, self.feedback(step) * (back @ apart)
 
 

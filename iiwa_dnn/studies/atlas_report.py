@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from iiwa_dnn.files import write_text
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.studies.atlas import MEASURES, NETWORKS
 from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
 from iiwa_dnn.studies.statistics import paired_difference

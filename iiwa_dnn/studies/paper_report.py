@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import write_text
-from iiwa_dnn.results.report import bullets, markdown_table, show_figures
+from iiwa_dnn.results.markdown import bullets, markdown_table, show_figures
 
 Table = Mapping[str, Any]
 

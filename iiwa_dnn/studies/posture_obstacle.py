@@ -19,8 +19,8 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Circle
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.report import markdown_table
 from iiwa_dnn.robot import Configuration, Robot, robot_from_dh
 from iiwa_dnn.robot.configuration import FrameState
 from iiwa_dnn.schemes import JointLimits, Limit, PositionTask, Scheme, Step, Task

@@ -273,6 +273,21 @@ def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
     assert metrics["max_position_error_m"] < 1e-5
 
 
+def test_a_second_arm_draws_too_and_report_and_figures_tell_its_errors(tmp_path: Path) -> None:
+    right = "right_iiwa7_flange"
+    assert call([*SHORT, "--robot", "iiwa7_dual", "--frames", right, "--out", str(tmp_path)]) == 0
+    record, metrics = results(tmp_path)
+    moved = np.ptp(record["frame_position_desired"][:, 0], axis=0)
+    np.testing.assert_allclose(moved, np.ptp(record["position_desired"], axis=0), atol=1e-12)
+    largest = np.linalg.norm(record["frame_position"] - record["frame_position_desired"], axis=2)
+    assert metrics["frames"][right]["max_position_error_m"] == pytest.approx(largest.max())
+    assert largest.max() < 1e-5
+    report = (tmp_path / "report.md").read_text()
+    assert f"| largest position error, {right} | {largest.max():.6g} | m |" in report
+    assert "(frames.png)" in report
+    assert (tmp_path / "frames.png").stat().st_size > 10_000
+
+
 @pytest.mark.parametrize(
     ("name", "arguments", "far"),
     [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import qpsolvers
@@ -15,6 +17,8 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Heart, Target
 from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import compute_metrics
+from iiwa_dnn.results.report import write_report
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import (
     ElbowAngleTask,
@@ -89,7 +93,7 @@ def test_levels_of_conflicting_tasks_are_those_of_another_solver() -> None:
     assert compared > 50
 
 
-def test_a_run_records_its_levels_and_checks_their_programs() -> None:
+def test_a_run_records_its_levels_and_checks_their_programs(tmp_path: Path) -> None:
     conf = Configuration(ROBOT, ROBOT.start_posture())
     wanted = ElbowAngleTask().angle_of(conf) + 0.5
     tasks = [
@@ -109,6 +113,12 @@ def test_a_run_records_its_levels_and_checks_their_programs() -> None:
     assert record.level_residual[:20, 2].max() < 1e-8
     assert record.level_residual[:, 3].min() > 0.05
     assert record.crosscheck_gap.max() < 1e-6
+    metrics = compute_metrics(record)
+    write_report(record, metrics, tmp_path)
+    largest = record.level_residual[:, 3].max()
+    assert metrics["level_residual"][3] == largest
+    report = (tmp_path / "report.md").read_text()
+    assert f"| largest residual, priority 4 | {largest:.6g} |" in report
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))

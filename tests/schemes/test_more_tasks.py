@@ -36,6 +36,7 @@ ROBOT = paper_robot()
 SIX = Configuration(load_robot("ur5"), np.zeros(6))
 START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
 AXIS = np.array([0.2, -0.5, 1.0])
+RAY = START.rotation.T @ (START.frame("iiwa7_link_2").position - START.position)
 SHAFT = START.position + 0.1 * START.rotation[:, 2]
 
 TASKS: dict[str, Any] = {
@@ -44,6 +45,7 @@ TASKS: dict[str, Any] = {
     "axis in the world": AxisTask(AXIS, START.rotation @ AXIS, gain=1.0),
     "relative pose": RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
     "remote centre": RemoteCentreTask(SHAFT, gain=1.0),
+    "looking at a frame": RemoteCentreTask("iiwa7_link_2", RAY, gain=1.0),
     "posture": PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
     "coupling": JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
     "elbow": ElbowAngleTask(gain=1.0).anchored(START),

@@ -93,5 +93,7 @@ def test_a_frame_without_a_reference_and_an_integral_over_two_frames_are_refused
     paths = references(robot.tip, ELBOW)
     with pytest.raises(InvalidInputError, match=rf"^reference.*{ELBOW}"):
         simulate(robot, scheme(None, ELBOW), {robot.tip: paths[robot.tip]}, start.q)
+    with pytest.raises(InvalidInputError, match=rf"^reference.*no task tracks.*{ELBOW}"):
+        simulate(robot, scheme(None), paths, start.q)
     with pytest.raises(InvalidInputError, match=r"^integral_gain"):
         simulate(robot, scheme(None, ELBOW), paths, start.q, integral_gain=1.0)

@@ -1,0 +1,29 @@
+"""Tables, lists and pictures in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Lay out a table in Markdown, its cells made fit to stand in one."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
+
+
+def bullets(lines: Iterable[str]) -> str:
+    """Lay out a list in Markdown."""
+    return "\n".join(f"- {line}" for line in lines)
+
+
+def show_figures(figures: Iterable[Path], captions: Mapping[str, str]) -> list[str]:
+    """Show the PNG files among some figures in Markdown, with captions by the files' stems."""
+    shown = [path for path in figures if path.suffix == ".png"]
+    named = ((path.stem.replace("_", " ").capitalize() + ".", path) for path in shown)
+    pictures = [f"![{captions.get(path.stem, name)}]({path.name})" for name, path in named]
+    return ["## Figures", *pictures] if shown else []
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
