@@ -58,6 +58,16 @@ def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vect
     return x, y, z
 
 
+def direction(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:
+    """The value (3,) as a tuple of length one, or an InvalidInputError if that is impossible."""
+    vector = np.array(vector3(argument, value))
+    if not vector.any():
+        raise InvalidInputError(argument, "must not be zero", value)
+    vector /= np.abs(vector).max()  # its square may not underflow
+    x, y, z = (vector / np.linalg.norm(vector)).tolist()
+    return x, y, z
+
+
 def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """A read-only copy of the value, or an InvalidInputError unless it is finite and of this shape.
 

@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.checks import Vector3, positive, vector3
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.checks import Vector3, direction, positive, vector3
 from iiwa_dnn.references.base import Array, Reference
 
 
@@ -57,10 +56,7 @@ class Circle(Reference):
     def __post_init__(self) -> None:
         self._set(radius=positive("radius", self.radius), period=positive("period", self.period))
         self._set(normal=vector3("normal", self.normal))
-        if not any(self.normal):
-            raise InvalidInputError("normal", "must not be zero", self.normal)
-        normal = np.array(self.normal) / np.abs(self.normal).max()  # its square may not underflow
-        normal /= np.linalg.norm(normal)
+        normal = np.array(direction("normal", self.normal))
         axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)

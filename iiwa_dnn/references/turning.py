@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Vector3, positive, vector3
+from iiwa_dnn.checks import Vector3, direction, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Array, Reference
 from iiwa_dnn.references.circle import Circle
@@ -128,7 +128,7 @@ class Tilting(_OnPath):
         rate = 2.0 * np.pi * checks.integer("turns", self.turns, 1) / self.along.duration
         self._set(along=self.along.at_rest(), angle=_acute(self.angle))
         self._set(axis=vector3("axis", self.axis))
-        self._set(numbers=np.array([self.angle, rate, *_unit("axis", self.axis)]))
+        self._set(numbers=np.array([self.angle, rate, *direction("axis", self.axis)]))
 
     def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
         _tilt(times, numbers, self.along._targets(times), out, row, column)
@@ -213,7 +213,7 @@ class OnSurface(_OnPath):
         normal: Array = np.zeros(3)
         if self.normal is not None:
             self._set(normal=vector3("normal", self.normal))
-            normal = _unit("normal", self.normal)
+            normal = np.array(direction("normal", self.normal))
         self._set(numbers=np.array([curvature, self._lead, *normal]))
 
     @property
@@ -240,13 +240,3 @@ def _acute(angle: float) -> float:
     if not 0.0 < positive("angle", angle) < 0.5 * math.pi:
         raise InvalidInputError("angle", f"must be below pi / 2, not {angle}", angle)
     return float(angle)
-
-
-def _unit(name: str, vector: Vector3) -> Array:
-    """Return a vector's direction, or raise InvalidInputError where it has none."""
-    array = np.array(vector)
-    if not array.any():
-        raise InvalidInputError(name, "must not be zero", vector)
-    array /= np.abs(array).max()  # its square may not underflow
-    unit: Array = array / np.linalg.norm(array)
-    return unit

@@ -15,8 +15,6 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Vector3
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.robot import Configuration
@@ -106,9 +104,9 @@ class AxisTask(FeedbackTask):
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
-        self._set(axis=_unit("axis", self.axis))
+        self._set(axis=checks.direction("axis", self.axis))
         if self.direction is not None:
-            self._set(direction=_unit("direction", self.direction), tracks=False)
+            self._set(direction=checks.direction("direction", self.direction), tracks=False)
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (2, n) and b (2,)."""
@@ -211,7 +209,7 @@ class RemoteCentreTask(FeedbackTask):
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
-        self._set(axis=_unit("axis", self.axis))
+        self._set(axis=checks.direction("axis", self.axis))
         if not isinstance(self.point, str):
             self._set(point=checks.vector3("point", self.point))
 
@@ -233,16 +231,6 @@ def _log(desired: Matrix, here: Any) -> Vector:
     error = np.empty(3)
     rotation_log(desired @ here.rotation.T, error)
     return error
-
-
-def _unit(name: str, value: Sequence[float]) -> Vector3:
-    """Return a direction as a tuple of length one, or raise InvalidInputError."""
-    vector = checks.finite_array(name, value, (3,))
-    length = float(np.linalg.norm(vector))
-    if length == 0.0:
-        raise InvalidInputError(name, "has no length", value)
-    x, y, z = (vector / length).tolist()
-    return x, y, z
 
 
 def _normals(axis: Sequence[float]) -> NDArray[np.float64]:
