@@ -28,7 +28,7 @@ $(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS))
 		{ echo 'setup: the OpenMP library that Pinocchio and ProxQP load is missing; on Debian and Ubuntu: apt-get install libgomp1' >&2; exit 1; }
 	@echo 'setup: making $(VENV) with the extras $(EXTRAS)'
 	@$(VENV_PYTHON) -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
-	@echo 'setup: 0.9 GB on disk in the end, 2.3 GB with all extras; the first time takes some minutes'
+	@echo 'setup: 2.3 GB on disk with all extras, 1.0 GB with EXTRAS=view; the first time takes some minutes'
 	@$(VENV_PYTHON) -m pip install -q --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]' & \
 		pip=$$!; seconds=0; while kill -0 $$pip 2>/dev/null; do \
 		printf '\rsetup: %s s, %s MB in $(VENV)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
