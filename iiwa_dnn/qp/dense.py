@@ -12,8 +12,9 @@ from numba import njit
 
 from iiwa_dnn.qp.layout import ONE, Vector, compiled, larger
 
-ROUNDING = 1e-10
-"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry."""
+ROUNDING = 1e-5
+"""Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry: a
+matrix that was computed in single precision has them. The answer is a KKT point of P as given."""
 
 TWO, THREE = np.uint64(2), np.uint64(3)
 

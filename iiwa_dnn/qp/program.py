@@ -223,8 +223,8 @@ class QP:
 
         Raises:
             InvalidInputError: A value is NaN, a coefficient is infinite, P is not symmetric or
-                not positive semidefinite, or a lower bound exceeds its upper bound. The message
-                names the argument.
+                not positive semidefinite to 1e-5 of its largest entry, or a lower bound exceeds
+                its upper bound. The message names the argument.
         """
         if _well_formed(self.data, *self.sizes):
             return

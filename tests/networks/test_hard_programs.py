@@ -1,7 +1,12 @@
 """Degenerate, badly scaled and large programs, each judged by qpsolvers' residuals."""
 
+import signal
+import subprocess
+import sys
+
 import numpy as np
 import pytest
+import qpsolvers
 
 import iiwa_dnn
 from benchmarks import programs
@@ -58,3 +63,69 @@ def test_a_batch_leaves_no_degenerate_member_behind() -> None:
         qp.P, np.stack([qp.q, 2.0 * qp.q]), qp.G, qp.h, qp.A, qp.b, tol=1e-6
     )
     assert batch.found.all()
+
+
+@pytest.mark.parametrize("kind", ["asymmetric", "indefinite", "single precision"])
+def test_rounding_of_single_precision_in_the_cost_is_no_error(kind: str) -> None:
+    rng = np.random.default_rng(4)
+    J = rng.standard_normal((4, 10)).astype(np.float32)
+    P = {
+        "asymmetric": np.eye(10) + 1e-9 * np.eye(10, k=1),
+        "indefinite": np.diag([-1.5e-6, *np.ones(9)]),
+        "single precision": (J.T @ J).astype(float),
+    }[kind]
+    bounds = np.full(10, 2.0)
+    problem = qpsolvers.Problem(P, rng.standard_normal(10), lb=-bounds, ub=bounds)
+    assert iiwa_dnn.solve_problem(problem, tol=1e-9).is_optimal(1e-9)
+    with pytest.raises(iiwa_dnn.errors.InvalidInputError, match="semidefinite"):
+        iiwa_dnn.solve_problem(qpsolvers.Problem(P - 2.0 * np.eye(10), problem.q))
+
+
+PRELUDE = """
+import os, signal, sys, numpy as np, iiwa_dnn
+rng = np.random.default_rng(0)
+"""
+
+
+def run(code: str) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, "-c", PRELUDE + code], stdout=subprocess.PIPE, text=True
+    )
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="fork")
+def test_a_forked_child_may_use_the_batch_solver_too() -> None:
+    child = run(
+        """
+P, q = np.eye(3), rng.standard_normal((1000, 3))
+iiwa_dnn.solve_batch(P, q)
+child = os.fork()
+if child == 0:
+    os._exit(0 if iiwa_dnn.solve_batch(P, q).found.all() else 3)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+    )
+    assert child.wait(timeout=60.0) == 0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="signals")
+def test_an_interrupt_ends_a_long_settle() -> None:
+    # A tolerance below rounding: the whole budget is used up, for minutes.
+    child = run(
+        """
+n = 300
+G, h, q = rng.standard_normal((2 * n, n)), np.ones(2 * n), rng.standard_normal(n)
+qp = iiwa_dnn.QP(np.eye(n), q, G, h)
+solver = iiwa_dnn.DNNSolver(tol=1e-9)
+solver.solve(qp)  # compiled
+solver = iiwa_dnn.DNNSolver(tol=1e-30, settler=iiwa_dnn.ImplicitEuler(max_steps=100_000))
+print("begun", flush=True)
+solver.solve(qp)
+"""
+    )
+    assert child.stdout is not None
+    assert child.stdout.readline() == "begun\n"
+    with pytest.raises(subprocess.TimeoutExpired):
+        child.wait(timeout=1.0)
+    child.send_signal(signal.SIGINT)
+    assert child.wait(timeout=20.0) in (1, 130, -signal.SIGINT)
