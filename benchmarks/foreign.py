@@ -1,11 +1,15 @@
 """Programs that nobody here wrote, and badly posed ones: this solver beside its peers.
 
-``python -m benchmarks.foreign [--degenerate N] [--maros FOLDER]``. FOLDER is a copy of the public
-repository qpsolvers/maros_meszaros_qpbenchmark; of its programs those with at most 1000 variables
-and 1000 rows are taken, dense. All run in this process, one after another on each program, through
-qpsolvers. Solved means that qpsolvers' three residuals are at most the tolerance; a false claim is
-an answer called found that is not solved. The shifted geometric mean (10 s) counts a failure as
-10 s. With OPENBLAS_NUM_THREADS=1 all solvers have one thread.
+``python -m benchmarks.foreign [--degenerate N] [--pink STEPS] [--maros FOLDER]``. ``--pink``
+records the inverse-kinematics programs that Pink builds while four arms follow a circle with the
+tip, and solves each arm's sequence in order; "iiwa_dnn, warm" keeps the network's state from one
+program to the next. FOLDER is a copy of the public repository qpsolvers/maros_meszaros_qpbenchmark;
+of its programs those with at most 1000 variables and 1000 rows are taken, dense.
+
+All run in this process, one after another on each program, through qpsolvers. Solved means that
+qpsolvers' three residuals are at most the tolerance; a false claim is an answer called found that
+is not solved. The shifted geometric mean (10 s) counts a failure as 10 s. With
+OPENBLAS_NUM_THREADS=1 all solvers have one thread.
 """
 
 from __future__ import annotations
@@ -13,7 +17,8 @@ from __future__ import annotations
 import argparse
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +29,7 @@ from scipy.io import loadmat
 import iiwa_dnn
 from benchmarks import programs
 
+ARMS = ("iiwa7", "panda", "ur5", "xarm7")
 LARGEST, FAILED, SHIFT = 1000, 10.0, 10.0
 OPTIONS = {
     "iiwa_dnn": lambda tol: {"eps_abs": tol},
@@ -61,17 +67,57 @@ def maros(folder: Path) -> Iterator[tuple[str, qpsolvers.Problem]]:
             )  # fmt: skip
 
 
-def measure(title: str, problems: list[tuple[str, qpsolvers.Problem]], tol: float) -> None:
+def recorded(arm: str, steps: int) -> list[tuple[str, qpsolvers.Problem]]:
+    """Programs of Pink's differential inverse kinematics along a circle of 0.1 m, every 5 ms."""
+    import pink
+    from pink.tasks import FrameTask, PostureTask
+
+    robot, dt = iiwa_dnn.load_robot(arm), 5e-3
+    start = robot.start_posture()
+    configuration = pink.Configuration(robot.model, robot.model.createData(), start)
+    tip = FrameTask(robot.tip, position_cost=1.0, orientation_cost=1.0)
+    posture = PostureTask(cost=1e-3)
+    tip.set_target_from_configuration(configuration)
+    posture.set_target(start)
+    center, found = tip.transform_target_to_world.copy(), []
+    for step in range(steps):
+        target, angle = center.copy(), 2.0 * np.pi * step * dt / 4.0
+        target.translation = center.translation + 0.1 * np.array(
+            [0, np.sin(angle), np.cos(angle) - 1]
+        )
+        tip.set_target(target)
+        problem = pink.build_ik(configuration, [tip, posture], dt)
+        found.append((str(step), problem))
+        answer = qpsolvers.solve_problem(problem, "quadprog")
+        configuration.integrate_inplace(answer.x / dt, dt)
+    return found
+
+
+def kept(tol: float) -> Callable[[qpsolvers.Problem], qpsolvers.Solution]:
+    """Make a solver that begins each program where the last one ended."""
+    solver = iiwa_dnn.DNNSolver(tol=tol)
+    return lambda problem: solver.solve(iiwa_dnn.QP.from_qpsolvers(problem)).to_qpsolvers(problem)
+
+
+def measure(
+    title: str, problems: list[tuple[str, qpsolvers.Problem]], tol: float, warm: bool = False
+) -> None:
     """Print a line for each solver: solved, false claims, times, and the names that failed."""
     print(f"\n{title}: {len(problems)} programs at {tol:g}")
-    times: dict[str, list[float]] = {name: [] for name in OPTIONS}
-    failed: dict[str, list[str]] = {name: [] for name in OPTIONS}
-    false = dict.fromkeys(OPTIONS, 0)
+    solve = {
+        name: partial(qpsolvers.solve_problem, solver=name, **options(tol))
+        for name, options in OPTIONS.items()
+    }
+    if warm:
+        solve["iiwa_dnn, warm"] = kept(tol)
+    times: dict[str, list[float]] = {name: [] for name in solve}
+    failed: dict[str, list[str]] = {name: [] for name in solve}
+    false = dict.fromkeys(solve, 0)
     for name, problem in problems:
-        for solver, options in OPTIONS.items():
+        for solver, call in solve.items():
             start, solution = time.perf_counter(), None
             try:
-                solution = qpsolvers.solve_problem(problem, solver, **options(tol))
+                solution = call(problem)
             except Exception as error:
                 reason = type(error).__name__
             else:
@@ -82,10 +128,10 @@ def measure(title: str, problems: list[tuple[str, qpsolvers.Problem]], tol: floa
             times[solver].append(took if solved else FAILED)
             if not solved:
                 failed[solver].append(f"{name} ({reason})")
-    for solver in OPTIONS:
+    for solver in solve:
         mean = np.exp(np.mean(np.log(np.array(times[solver]) + SHIFT))) - SHIFT
         print(
-            f"{solver:10} solved {len(problems) - len(failed[solver]):6}"
+            f"{solver:14} solved {len(problems) - len(failed[solver]):6}"
             f"  false claims {false[solver]:4}  median {1e3 * np.median(times[solver]):9.3f} ms"
             f"  shifted geometric mean {mean:.3f} s  {', '.join(failed[solver][:12])}"
         )
@@ -96,6 +142,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, prog="benchmarks.foreign")
     parser.add_argument("--degenerate", type=int, default=1000, help="number of programs")
     parser.add_argument("--maros", type=Path, help="folder of the Maros-Meszaros repository")
+    parser.add_argument("--pink", type=int, default=0, help="steps of each arm's recording")
     given = parser.parse_args()
     iiwa_dnn.qp.register()
     for solver in set(OPTIONS) - set(qpsolvers.available_solvers):
@@ -108,6 +155,8 @@ def main() -> None:
         rngs = [np.random.default_rng([8, i]) for i in range(40)]
         qps = [programs.badly_scaled(rng, kind) for rng in rngs]
         measure(kind, [(str(i), qp.to_qpsolvers()) for i, qp in enumerate(qps)], 1e-6)
+    for arm in ARMS if given.pink else ():
+        measure(f"Pink, {arm}", recorded(arm, given.pink), 1e-9, warm=True)
     if given.maros:
         for tol in (1e-6, 1e-9):
             measure("Maros-Meszaros", list(maros(given.maros)), tol)

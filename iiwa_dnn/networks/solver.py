@@ -163,7 +163,8 @@ class DNNSolver:
         state, point = self._take(network, qp), np.empty(2 * n + m + p)
         settled = self._settle(network, qp, state, point)
         primal, dual, gap = settled[2:]
-        if 0.1 * tol < primal + dual + gap <= 3.0 * tol:  # rounding may decide: try for better
+        doubtful = 0.1 * tol < primal + dual + gap <= 3.0 * tol
+        if doubtful and point.dot(point) > (1e13 * tol) ** 2:  # rounding may decide: try for better
             worse = barrier.worse(qp, point, (primal, dual, gap))
             if not within(*worse, tol):
                 again = self._second_try(network, qp, state, point, (*settled[:2], *worse))
