@@ -33,6 +33,7 @@ _Verbose = Annotated[bool, arg(aliases=["-v"], help_behavior_hint=""), FlagCreat
 _Numbers = tuple[float, ...]
 _Vector = Annotated[_Numbers, arg(metavar="X Y Z")]
 _Normal = Annotated[_Numbers, arg(metavar="X Y Z", help_behavior_hint="")]
+_Pose = Annotated[_Numbers, arg(metavar="X Y Z R P Y", help_behavior_hint="")]
 _Angle = Annotated[float, arg(metavar="RAD")]
 _TipSpeed = Annotated[float, arg(metavar="M/S")]
 _Push = Annotated[_Numbers | None, arg(metavar="FX FY FZ", help_behavior_hint="")]
@@ -88,10 +89,11 @@ class TrackOptions(RunOptions):
 
     command: ClassVar[str] = "track"
     out: Folder = Path("runs/heart")  # folder that the results are written to
-    robot: _Robot = "iiwa7"  # robot, by its name or by its URDF file
+    robot: _Robot = "iiwa7"  # robot, by its name or by its file: URDF, xacro, MJCF
     tip: _Frame = None  # frame that follows the path (none: the end of the chain)
     frames: _Frames = ()  # names of further frames, such as a second arm's, that draw the path too
     lock: _Names = ()  # names of the joints that are held still
+    tool: _Pose = ()  # pose of a tool in that frame, which takes its place [m, rad] (none: no tool)
     q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
     reference: _Path = "heart"
@@ -213,6 +215,7 @@ class ViewOptions:
     robot: _AnyRobot = None  # robot, by its name or by its URDF file (none: the record's, or iiwa7)
     tip: _Frame = None  # frame that follows the target (none: the record's, or the chain's end)
     lock: _Names = ()  # names of the joints that are held still
+    tool: _Pose = ()  # pose of a tool in that frame, which takes its place [m, rad] (none: no tool)
     host: Annotated[str, arg(metavar="ADDRESS")] = "127.0.0.1"
     """address to listen on; 0.0.0.0 lets other machines in"""
     port: Count = 8080  # port to listen on; 0 takes a free one

@@ -222,7 +222,9 @@ def path(options: TrackOptions) -> Reference:
 
 def arm(options: TrackOptions) -> tuple[Robot, Vector]:
     """Return the robot with its limits, and its start posture [rad], (n,)."""
-    robot = load_robot(options.robot, tip=options.tip, locked=options.lock)
+    robot = load_robot(
+        options.robot, tip=options.tip, locked=options.lock, tool=options.tool or None
+    )
     q0 = np.array(options.q0) if options.q0 else robot.start_posture()
     speed = checks.positive("speed", options.speed) * robot.dq_max
     return limited(robot, options.joint_limit).with_limits(velocity=speed), q0

@@ -21,7 +21,9 @@ def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     record = None if options.run is None else load_run(options.run)
     recorded = {} if record is None else record.settings
     name, tip = options.robot or recorded.get("robot", "iiwa7"), options.tip or recorded.get("tip")
-    robot = load_robot(name, tip=tip, locked=options.lock)
+    if options.tool:
+        tip = options.tip  # the record's is the tool
+    robot = load_robot(name, tip=tip, locked=options.lock, tool=options.tool or None)
     if record is None:
         page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
     elif robot.dof != record.dof:

@@ -23,7 +23,7 @@ from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, Record
-from iiwa_dnn.results.scenery import SCENERY_GROUP, add_obstacles, add_scenery
+from iiwa_dnn.results.scenery import SCENERY_GROUP, add_meshes, add_obstacles, add_scenery
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
 from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
 from iiwa_dnn.robot.robot import Robot
@@ -206,11 +206,15 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
         spec.visual.quality.offsamples = 4 if smooth else 0
         spec.visual.quality.shadowsize = 4096 if smooth else 1024
+        if view == "arm":
+            add_meshes(mj, spec, robot)
         add_scenery(mj, spec, record)
         self._obstacles = add_obstacles(mj, spec, record)
         self._model = spec.compile()
         self._data = mj.MjData(self._model)
         self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
+        if view == "arm":
+            self._show_all()
         if view == "path":
             self._camera.distance *= max(1.0, height / width)  # its angle is that of the height
         turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
@@ -227,6 +231,15 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._opengl = open_context(width, height)
         self._drawing = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
         mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
+
+    def _show_all(self) -> None:
+        """Step back where parts of the robot are far above the arm's reach: a head, for example."""
+        self._data.qpos[:] = self._record.q[0]
+        self._mj.mj_kinematics(self._model, self._data)
+        top, reach = float(self._data.xpos[:, 2].max()), self._camera.distance / 1.8
+        if top > 1.1 * reach:
+            self._camera.lookat[2] = 0.5 * top
+            self._camera.distance = 1.8 * top
 
     def __exit__(self, *_: object) -> None:
         """Give the OpenGL context back."""

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import pinocchio as pin
+
 from iiwa_dnn.results.record import Record
+from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
+from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.shapes import STICK_COLOUR, visual_shapes
 
 if TYPE_CHECKING:
     import mujoco
@@ -36,6 +41,29 @@ def add_obstacles(mj: Any, spec: mujoco.MjSpec, record: Record) -> list[Obstacle
             group=SCENERY_GROUP, contype=0, conaffinity=0,
         )  # fmt: skip
     return obstacles
+
+
+def add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
+    """Add the meshes of a robot, or sticks where it has no shapes; its primitives are there."""
+    joints = {joint.name: joint.parent for joint in spec.joints}
+    drawn = {"group": VISUAL_GROUP, "contype": 0, "conaffinity": 0}
+    for number, shape in enumerate(visual_shapes(robot)):
+        if shape.mesh is None and shape.colour != STICK_COLOUR:
+            continue
+        x, y, z, w = pin.Quaternion(shape.rotation).coeffs()
+        body = joints[robot.model.names[shape.joint]] if shape.joint else spec.worldbody
+        place = {"pos": shape.position, "quat": [w, x, y, z], "rgba": [*shape.colour, 1.0], **drawn}
+        if shape.mesh is None:
+            radius, length = shape.size
+            kind, size = mj.mjtGeom.mjGEOM_CYLINDER, [radius, 0.5 * length, 0.0]
+            body.add_geom(type=kind, size=size, **place)
+            continue
+        corners, faces = shape.mesh
+        spec.add_mesh(
+            name=f"shape_{number}", uservert=corners.ravel(), userface=faces.ravel(),
+            inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+        )  # fmt: skip
+        body.add_geom(type=mj.mjtGeom.mjGEOM_MESH, meshname=f"shape_{number}", **place)
 
 
 def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:

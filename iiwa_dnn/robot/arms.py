@@ -26,11 +26,13 @@ class Arm:
         file: The URDF's path in the package's folder of robots.
         tip: Frame that follows references.
         start: Posture away from limits and singular postures [rad], (n,); empty: none is chosen.
+        mobile: Whether the robot stands on a base that moves in the plane.
     """
 
     file: str
     tip: str
     start: tuple[float, ...] = ()
+    mobile: bool = False
 
     @property
     def path(self) -> Path:
@@ -46,6 +48,8 @@ class Arm:
 
 
 _TALOS, _BAXTER = "talos_data/robots/talos_reduced.urdf", "baxter_description/urdf/baxter.urdf"
+_TIAGO = "tiago_description/robots/tiago.urdf"
+_LIFT_AND_ARM = (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6)
 
 ARMS = {
     "baxter_left": Arm(_BAXTER, "left_gripper"),
@@ -63,11 +67,8 @@ ARMS = {
         (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
     ),
     "talos_right": Arm(_TALOS, "gripper_right_base_link"),
-    "tiago": Arm(
-        "tiago_description/robots/tiago.urdf",
-        "arm_tool_link",
-        (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6),
-    ),
+    "tiago": Arm(_TIAGO, "arm_tool_link", _LIFT_AND_ARM),
+    "tiago_mobile": Arm(_TIAGO, "arm_tool_link", (0.0, 0.0, 0.0, *_LIFT_AND_ARM), mobile=True),
     "ur3": Arm("ur_description/urdf/ur3_robot.urdf", "tool0"),
     "ur5": Arm("ur_description/urdf/ur5_robot.urdf", "tool0", (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)),
     "ur10": Arm("ur_description/urdf/ur10_robot.urdf", "tool0"),

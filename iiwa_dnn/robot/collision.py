@@ -28,7 +28,7 @@ from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.enclosing import enclosing_capsule
 from iiwa_dnn.robot.loading import robots_folder
-from iiwa_dnn.robot.robot import Robot, file_of
+from iiwa_dnn.robot.robot import Robot, file_of, tree_of
 
 SAMPLES, CLEARANCE, ALWAYS = 10_000, 0.02, 0.95
 """Random postures; distance that a pair never meets beyond [m]; share of one that always does."""
@@ -206,7 +206,7 @@ def _joint(robot: Robot, link: str) -> int:
 def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
     """Fit capsules to the <collision> shapes of the URDF, in the frames of their links."""
     path = file_of(robot)
-    root = urdf.read(path)
+    root = tree_of(robot)
     folders = [str(parent) for parent in path.parents]
     try:
         found = pin.buildGeomFromUrdfString(

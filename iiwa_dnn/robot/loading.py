@@ -40,15 +40,16 @@ def load_robot(
     locked: Iterable[str] = (),
     verify: bool = False,
     tool: pin.SE3 | ArrayLike | None = None,
+    mobile: bool = False,
 ) -> Robot:
-    """Load a robot by its name or from a URDF file.
+    """Load a robot by its name or from a file: URDF, xacro or MuJoCo's MJCF.
 
     Limits are the URDF's. A joint whose ``<limit>`` gives neither ``lower`` nor ``upper`` has no
     position limit, and a ``velocity`` of 0 stands for "not given": no velocity limit.
 
     Args:
-        name_or_path: A name out of `available_robots`, or the path of a URDF file: a `Path`, or a
-            string that ends in ``.urdf`` or has a separator in it.
+        name_or_path: A name out of `available_robots`, or the path of a file: a `Path`, or a string
+            that ends in ``.urdf``, ``.xacro`` or ``.xml`` or has a separator in it.
         tip: Frame that follows references. Default: that of the name (`iiwa_dnn.robot.arms`), or
             the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it;
@@ -57,6 +58,8 @@ def load_robot(
             extra ``verify``.
         tool: Pose of a tool in the frame `tip`, whose place it takes (`Robot.with_tool`): an SE3,
             or x, y, z [m], roll, pitch, yaw [rad], (6,).
+        mobile: Put the robot on a base that moves in the plane: joints ``base_x``, ``base_y`` [m]
+            and ``base_yaw`` [rad] without position limits, at 1 m/s and 1 rad/s at most.
 
     Raises:
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
@@ -69,7 +72,8 @@ def load_robot(
     """
     arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
     path = _find(name_or_path) if arm is None else arm.path
-    root = urdf.read(path)
+    mobile = mobile or (arm is not None and arm.mobile)
+    root = urdf.read(path, mobile)
     full = urdf.build_model(path, root)
     chosen = (locked,) if isinstance(locked, str) else tuple(locked)
     frozen = tuple(dict.fromkeys((*(_still(full, arm.tip) if arm is not None else ()), *chosen)))
@@ -81,7 +85,7 @@ def load_robot(
     lower, upper, velocity = _limits(path, model, joints)
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = model.name if arm is None else str(name_or_path)
-    robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked)
+    robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked, mobile=mobile)
     if name in RATES and len(RATES[name][0]) == robot.dof:
         robot = robot.with_limits(acceleration=RATES[name][0], jerk=RATES[name][1])
     _check_no_mimic(robot, joints)
@@ -104,7 +108,11 @@ def _find(name_or_path: str | os.PathLike[str]) -> Path:
     if not isinstance(name_or_path, str | os.PathLike):
         raise InvalidInputError("name_or_path", "must be a robot's name or a path", name_or_path)
     text = os.fspath(name_or_path)
-    if isinstance(name_or_path, os.PathLike) or text.endswith(".urdf") or {"/", os.sep} & set(text):
+    if (
+        isinstance(name_or_path, os.PathLike)
+        or text.endswith((".urdf", ".xacro", ".xml"))
+        or {"/", os.sep} & set(text)
+    ):
         return Path(text)
     if text not in (available := package_robots()):
         raise NotFoundError("robot", text, (*available, *ARMS))

@@ -20,7 +20,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.offscreen import import_mujoco
-from iiwa_dnn.robot.robot import Robot, file_of
+from iiwa_dnn.robot.robot import Robot, tree_of
 
 if TYPE_CHECKING:
     import mujoco
@@ -73,9 +73,10 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
         InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
         FileError: If the file cannot be read any more.
     """
-    mj, root = import_mujoco(), urdf.read(file_of(robot))
+    mj, root = import_mujoco(), tree_of(robot)
     urdf.weld(root, dict(zip(robot.locked, robot.q_locked, strict=True)))
     urdf.drop_meshes(root)
+    urdf.mend_inertias(root)
     extension = ET.SubElement(root, "mujoco")
     # Not fused: links keep their names, and the base can be told from the world.
     ET.SubElement(extension, "compiler", fusestatic="false", discardvisual="false")

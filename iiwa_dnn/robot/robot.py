@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import STARTS
 
 SINGULAR = 0.05
@@ -38,6 +40,7 @@ class Robot:
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
         ddq_max: Joint acceleration limits [rad/s^2], (n,); inf where there is none.
         dddq_max: Joint jerk limits [rad/s^3], (n,); inf where there is none.
+        mobile: Whether the first three joints are a mobile base, which the file does not have.
         tip_id: Pinocchio's index of the tip frame.
         limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
@@ -57,6 +60,7 @@ class Robot:
     q_locked: tuple[float, ...] = ()
     ddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
     dddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
+    mobile: bool = False
     tip_id: int = field(init=False)
     limits: _Array = field(init=False)
 
@@ -209,6 +213,11 @@ def file_of(robot: Robot) -> Path:
     if robot.path is None:
         raise InvalidInputError("robot", "must come from a URDF file", robot)
     return robot.path
+
+
+def tree_of(robot: Robot) -> ET.Element:
+    """Read the URDF of a robot again, with its mobile base; errors as of `file_of`, `urdf.read`."""
+    return urdf.read(file_of(robot), robot.mobile)
 
 
 def _limit(argument: str, value: ArrayLike, size: int) -> _Array:

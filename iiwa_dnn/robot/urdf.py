@@ -6,18 +6,22 @@ that were not given, joints that follow others.
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import FileError
+from iiwa_dnn.errors import FileError, MissingDependencyError
+from iiwa_dnn.files import one_line
+
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 # Attributes that name a link or a joint, by element.
 _NAMES = {
@@ -33,8 +37,17 @@ class _NoDoctype(ET.TreeBuilder):
         raise ET.ParseError("a DOCTYPE is not accepted")
 
 
-def read(path: Path) -> ET.Element:
+BASE = ("base_x", "base_y", "base_yaw")
+"""Joints of a mobile base."""
+
+_SPEED, _TURN = 1.0, 1.0  # of a mobile base: estimates [m/s, rad/s]
+
+
+def read(path: Path, mobile: bool = False) -> ET.Element:
     """Read a URDF file as XML; return the element ``<robot>``, which has joints.
+
+    A file that ends in ``.xacro`` goes through xacro, one in MuJoCo's MJCF through MuJoCo. A
+    `mobile` robot has the joints ``BASE`` between the world and its first link.
 
     ``<include file="other.urdf" prefix="left_"/>``, which is no URDF, stands for the links and
     joints of another file, their names with the prefix. A continuous joint becomes a revolute one
@@ -43,6 +56,7 @@ def read(path: Path) -> ET.Element:
     Raises:
         FileError: If the file cannot be read, is not XML, has a DOCTYPE or is not a robot with
             joints, or a file that it includes includes others.
+        MissingDependencyError: If xacro or MuJoCo is needed and not installed.
     """
     root = _read(path)
     for include in root.findall("include"):
@@ -62,13 +76,48 @@ def read(path: Path) -> ET.Element:
         for key in ("lower", "upper"):
             limit.attrib.pop(key, None)
         joint.set("type", "revolute")
+    if mobile:
+        _put_on_wheels(root)
     return root
+
+
+def _put_on_wheels(root: ET.Element) -> None:
+    """Add the joints of a base that moves in the plane, with light links between them."""
+    children = {joint.find("child").get("link") for joint in root.findall("joint")}  # type: ignore[union-attr]
+    links = [link.get("name", "") for link in root.findall("link")]
+    below = next(name for name in links if name not in children)
+    chain = ["base_floor", "base_rail", "base_plate", below]
+    for name in chain[:3]:
+        inertial = ET.SubElement(ET.SubElement(root, "link", name=name), "inertial")
+        ET.SubElement(inertial, "mass", value="0.1")
+        moments = {key: "1e-3" if key[1] == key[2] else "0" for key in _MOMENTS}
+        ET.SubElement(inertial, "inertia", moments)
+    kinds = (("prismatic", "1 0 0"), ("prismatic", "0 1 0"), ("revolute", "0 0 1"))
+    for name, (kind, axis), parent, child in zip(BASE, kinds, chain, chain[1:], strict=False):
+        joint = ET.SubElement(root, "joint", name=name, type=kind)
+        ET.SubElement(joint, "parent", link=parent)
+        ET.SubElement(joint, "child", link=child)
+        ET.SubElement(joint, "axis", xyz=axis)
+        speed = _SPEED if kind == "prismatic" else _TURN
+        ET.SubElement(joint, "limit", effort="1000", velocity=repr(speed))
+
+
+def mend_inertias(root: ET.Element) -> None:
+    """Raise principal moments of inertia that no body has: 0 by rounding, or A + B below C."""
+    for inertia in root.findall("link/inertial/inertia"):
+        xx, xy, xz, yy, yz, zz = (float(inertia.get(key, "0")) for key in _MOMENTS)
+        moments, axes = np.linalg.eigh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        # A link without any, fixed to another, is none of MuJoCo's worries.
+        if moments[2] > 0.0 and (moments[0] <= 0.0 or moments[0] + moments[1] < moments[2]):
+            mended = axes @ np.diag(np.maximum(moments, 0.51 * moments[2])) @ axes.T
+            for key, value in zip(_MOMENTS, mended[np.triu_indices(3)], strict=True):
+                inertia.set(key, repr(float(value)))
 
 
 def _read(path: Path) -> ET.Element:
     """Read one file; see `read`."""
     try:
-        content = path.read_bytes()
+        content = _expanded(path) if path.suffix == ".xacro" else path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
         raise FileError(path, getattr(error, "strerror", None) or str(error)) from error
     try:
@@ -76,11 +125,31 @@ def _read(path: Path) -> ET.Element:
         text_of(root)  # elements nested too deeply can be read, but not written
     except (ET.ParseError, LookupError, ValueError, RecursionError) as error:
         raise FileError(path, f"not XML that can be read: {error}") from error
+    if root.tag == "mujoco":
+        from iiwa_dnn.robot.mjcf import as_urdf  # MuJoCo is in an extra
+
+        root = as_urdf(path)
     if root.tag != "robot":
         raise FileError(path, f"not a URDF: its first element is <{root.tag}>, not <robot>")
     if root.find("joint") is None:
         raise FileError(path, "the robot has no joints")
     return root
+
+
+def _expanded(path: Path) -> bytes:
+    """Expand a xacro file."""
+    try:
+        import xacro
+    except ImportError as error:
+        package = "the Python package xacro"
+        raise MissingDependencyError(package, "pip install 'iiwa-dnn[xacro]'") from error
+    try:
+        with redirect_stderr(io.StringIO()):
+            return bytes(xacro.process_file(str(path)).toxml(encoding="utf-8"))
+    except OSError:
+        raise
+    except Exception as error:  # whatever an expression in the file raises
+        raise FileError(path, f"xacro cannot expand it: {one_line(error)}") from error
 
 
 def text_of(root: ET.Element) -> str:

@@ -12,7 +12,7 @@ import pinocchio as pin
 
 from iiwa_dnn.errors import FileError, MissingDependencyError
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.robot import Robot, file_of
+from iiwa_dnn.robot.robot import Robot, file_of, tree_of
 
 try:
     import yourdfpy
@@ -35,7 +35,7 @@ def verify_robot(robot: Robot) -> None:
     """
     path = file_of(robot)
     try:
-        text = io.BytesIO(urdf.text_of(urdf.read(path)).encode())
+        text = io.BytesIO(urdf.text_of(tree_of(robot)).encode())
         file = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
         for joint in file.joints:
             joint.mimic = None  # every joint is given its position

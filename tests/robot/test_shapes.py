@@ -60,8 +60,12 @@ def test_a_locked_joint_takes_its_shapes_along():
         np.testing.assert_allclose(one[2], two[2], atol=1e-12)
 
 
-def test_an_arm_of_meshes_is_drawn_with_sticks():
-    robot = load_robot(example_urdf("ur_description/urdf/ur5_robot.urdf"), tip="tool0")
+def test_an_arm_without_its_meshes_is_drawn_with_sticks(tmp_path):
+    file = example_urdf("ur_description/urdf/ur5_robot.urdf")
+    assert {shape.kind for shape in visual_shapes(load_robot(file, tip="tool0"))} == {"mesh"}
+    alone = tmp_path / "ur5.urdf"
+    alone.write_bytes(file.read_bytes())
+    robot = load_robot(alone, tip="tool0")
     q = np.linspace(-1.0, 1.0, robot.dof)
     found = placed(robot, q)
     assert {kind for kind, _, _ in found} == {"cylinder"}

@@ -74,7 +74,9 @@ class Stage:
             "wxyz": wxyz(shape.rotation),
             **options,
         }  # fmt: skip
-        if shape.kind == "cylinder":
+        if shape.mesh is not None:
+            scene.add_mesh_simple(vertices=shape.mesh[0], faces=shape.mesh[1], **place)
+        elif shape.kind == "cylinder":
             scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **place)
         elif shape.kind == "sphere":
             scene.add_icosphere(radius=shape.size[0], subdivisions=4, **place)
