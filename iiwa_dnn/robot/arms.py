@@ -48,12 +48,14 @@ class Arm:
 
 
 _TALOS, _BAXTER = "talos_data/robots/talos_reduced.urdf", "baxter_description/urdf/baxter.urdf"
+# Stretched farther out, Baxter's motors do not hold its arms: a real one has springs.
+_BENT = (0.0, -1.0, 0.0, 1.9, 0.0, 0.67, 0.0)
 _TIAGO = "tiago_description/robots/tiago.urdf"
 _LIFT_AND_ARM = (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6)
 
 ARMS = {
-    "baxter_left": Arm(_BAXTER, "left_gripper"),
-    "baxter_right": Arm(_BAXTER, "right_gripper"),
+    "baxter_left": Arm(_BAXTER, "left_gripper", _BENT),
+    "baxter_right": Arm(_BAXTER, "right_gripper", _BENT),
     "kinova": Arm("kinova_description/robots/kinova.urdf", "j2s6s200_end_effector"),
     "panda": Arm(
         "panda_description/urdf/panda.urdf",
