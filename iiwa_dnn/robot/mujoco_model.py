@@ -97,7 +97,7 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
     x, y, z, w = pin.Quaternion(frame.placement.rotation).coeffs()
     carrier = joints[robot.model.names[frame.parentJoint]].parent
     carrier.add_site(name=TIP_SITE, pos=frame.placement.translation, quat=[w, x, y, z])
-    for first, second in combinations([body.name for body in spec.bodies], 2):
+    for first, second in combinations([body.name for body in spec.bodies[1:]], 2):
         if {first, second} not in _COLLISION_PAIRS.get(robot.name, []):
             spec.add_exclude(bodyname1=first, bodyname2=second)
     return spec
