@@ -45,7 +45,7 @@ def test_each_scheme_is_the_best_at_what_it_minimises() -> None:
         assert compute_metrics(record)["max_position_error_m"] < 5e-5
     moving = Target(START.position, START.rotation, np.array([0.02, -0.03, 0.01]), np.zeros(3))
     first = {
-        name: DNNSolver().solve(scheme.build_qp(START, moving)).x[:7]
+        name: DNNSolver(tol=1e-11).solve(scheme.build_qp(START, moving)).x[:7]
         for name, scheme in SCHEMES.items()
     }
     norm = {name: np.linalg.norm(dq) for name, dq in first.items()}
