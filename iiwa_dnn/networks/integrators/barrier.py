@@ -35,7 +35,7 @@ from iiwa_dnn.qp.layout import Triple, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
-ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2))
+ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2), (1e-9, 0.9, 0.0))
 """Inverse of the steps' length [1/rho], share of the way to the boundary that is gone, and
 least fall of the barrier, of one attempt after another."""
 EPS = 1e-16
