@@ -4,6 +4,7 @@ import sys
 from itertools import islice
 from pathlib import Path
 
+import tyro
 from PIL import Image
 
 from iiwa_dnn import IiwaDnnError, Record, load_robot
@@ -16,7 +17,10 @@ COLOURS = 160
 REST = 1500  # how long the last picture stands [ms]
 
 
-def main(run: str = "runs/heart", out: str = "docs/images/heart.gif") -> int:
+def main(
+    run: tyro.conf.Positional[str] = "runs/heart",
+    out: tyro.conf.Positional[str] = "docs/images/heart.gif",
+) -> int:
     """Draw and write; 2 if there is no such run, or nothing to draw with."""
     try:
         record = Record.load(Path(run) / "record.npz")
@@ -43,4 +47,4 @@ def main(run: str = "runs/heart", out: str = "docs/images/heart.gif") -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(tyro.cli(main))

@@ -11,6 +11,7 @@ import sys
 import warnings
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 
@@ -68,7 +69,7 @@ def scene(name, dt):
     )
 
 
-def main(duration=10.0, dt=5e-3):
+def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[float] = 5e-3):
     """Run all scenes for `duration` seconds; 1 where a check failed."""
     warnings.simplefilter("ignore")  # the targets begin away from the tools
     failed = []
@@ -86,4 +87,4 @@ def main(duration=10.0, dt=5e-3):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(float, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 from iiwa_dnn.results.pictures import ArmRenderer, sample_at
@@ -46,7 +47,10 @@ def draw(robot, records, names, distances):
     return figure
 
 
-def main(folder="runs/avoid_obstacle", dt=1e-3):
+def main(
+    folder: tyro.conf.Positional[str] = "runs/avoid_obstacle",
+    dt: tyro.conf.Positional[float] = 1e-3,
+):
     """Run both, draw them into a folder; 1 where a check failed or something came too near."""
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     avoid = iiwa_dnn.CollisionAvoidance([BALL, FLOOR], distance=DISTANCE)
@@ -68,4 +72,4 @@ def main(folder="runs/avoid_obstacle", dt=1e-3):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:2], *map(float, sys.argv[2:])))
+    sys.exit(tyro.cli(main))

@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+import tyro
+
 from iiwa_dnn import (
     Configuration,
     CrossCheck,
@@ -65,4 +67,4 @@ def draw(name, start, orientation):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(tyro.cli(main))

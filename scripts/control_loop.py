@@ -8,6 +8,7 @@ import sys
 import time
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 
@@ -29,7 +30,7 @@ class Arm:
         self.q += DT * dq
 
 
-def main(steps=1000):
+def main(steps: tyro.conf.Positional[int] = 1000):
     """Draw the heart's first steps in real time; 1 where a command was not a solved one."""
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
@@ -57,4 +58,4 @@ def main(steps=1000):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(int, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import tyro
 from PIL import Image, ImageDraw
 from scipy.spatial.transform import Rotation
 
@@ -147,7 +148,7 @@ def scenes(csv):
     )
 
 
-def main(folder="docs/images/gallery"):
+def main(folder: tyro.conf.Positional[str] = "docs/images/gallery"):
     """Draw every scene and the contact sheet."""
     out = prepare_folder(folder)
     csv = prepare_folder("runs/gallery") / "path.csv"
@@ -169,4 +170,4 @@ def main(folder="docs/images/gallery"):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    tyro.cli(main)

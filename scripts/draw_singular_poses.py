@@ -1,8 +1,7 @@
 """Draw what happens in singular poses into a folder: docs/images, or the one that is given."""
 
-import sys
-
 import numpy as np
+import tyro
 
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
@@ -34,12 +33,16 @@ def draw(vertical, stretched):
     return figure
 
 
-if __name__ == "__main__":
+def main(folder: tyro.conf.Positional[str] = "docs/images"):
+    """Run and draw them."""
     vertical = {
         f"{form}, {mode}": tilted_run(form, mode)
         for form in ("so3", "block")
         for mode in ("converged", "continuous")
     }
     stretched = {policy: stretched_run(policy) for policy in ("slow", "relax")}
-    folder = sys.argv[1] if len(sys.argv) > 1 else "docs/images"
     print(*write_figures({"singular": lambda: draw(vertical, stretched)}, folder), sep="\n")
+
+
+if __name__ == "__main__":
+    tyro.cli(main)

@@ -21,12 +21,12 @@ performance for fault-tolerant redundant manipulators", IEEE Access 10 (2022).
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
+import tyro
 
 from iiwa_dnn import checks, load_robot
 from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point
@@ -207,7 +207,7 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
     return np.array(states), np.array(errors)
 
 
-def main(seconds: float) -> None:
+def main(seconds: tyro.conf.Positional[float] = 10.0) -> None:
     """Run the arm and print what it does."""
     states, errors = by_network(round(seconds / DT))
     shares = np.abs(states[:, :7] / FASTEST).max(axis=0)
@@ -217,4 +217,4 @@ def main(seconds: float) -> None:
 
 
 if __name__ == "__main__":
-    main(float(sys.argv[1]) if len(sys.argv) > 1 else 10.0)
+    tyro.cli(main)

@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 from iiwa_dnn.networks.base import Flow
@@ -51,7 +52,7 @@ class SaddleNetwork(iiwa_dnn.Network):
         return 0.0  # no step is known to be stable for explicit Euler
 
 
-def main(steps=300):
+def main(steps: tyro.conf.Positional[int] = 300):
     """Compare both networks over the heart's first steps; 1 where they differ."""
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, START))
@@ -70,4 +71,4 @@ def main(steps=300):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(int, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

@@ -4,9 +4,8 @@ A reference that turns gives two things: the turn since t = 0, about the world's
 angular velocity. One sees that the tool follows the turning target, and that ProxQP agrees.
 """
 
-import sys
-
 import numpy as np
+import tyro
 from scipy.spatial.transform import Rotation
 
 import iiwa_dnn
@@ -27,13 +26,18 @@ class Nodding(iiwa_dnn.Heart):
         return LARGEST * RATE * np.cos(RATE * np.asarray(t))[..., np.newaxis] * AXIS
 
 
-duration = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0  # [s]
-robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-start = iiwa_dnn.Configuration(robot, robot.start_posture())
-scheme = iiwa_dnn.DoubleIndicator(tracking="next")
-record = iiwa_dnn.simulate(
-    robot, scheme, Nodding().anchored(start), start.q, dt=1e-3, duration=duration
-)
-turned = orientation_error(record).max()
-moved = iiwa_dnn.compute_metrics(record)["max_position_error_m"]
-print(f"largest error {moved:.2e} m, {turned:.2e} rad, failures {iiwa_dnn.failures(record)}")
+def main(duration: tyro.conf.Positional[float] = 10.0):
+    """Draw it; the duration is in seconds."""
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    start = iiwa_dnn.Configuration(robot, robot.start_posture())
+    scheme = iiwa_dnn.DoubleIndicator(tracking="next")
+    record = iiwa_dnn.simulate(
+        robot, scheme, Nodding().anchored(start), start.q, dt=1e-3, duration=duration
+    )
+    turned = orientation_error(record).max()
+    moved = iiwa_dnn.compute_metrics(record)["max_position_error_m"]
+    print(f"largest error {moved:.2e} m, {turned:.2e} rad, failures {iiwa_dnn.failures(record)}")
+
+
+if __name__ == "__main__":
+    tyro.cli(main)

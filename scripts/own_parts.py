@@ -9,6 +9,7 @@ away from it, d shrinks no faster than gain (d - distance), which is one row of 
 import sys
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 
@@ -43,7 +44,7 @@ def scheme(*limits):
     )
 
 
-def main(duration=10.0, dt=1e-3):
+def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[float] = 1e-3):
     """Draw the heart in `duration` seconds; 1 where a check failed or the elbow came too near."""
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     heart = iiwa_dnn.Heart(period=duration).anchored(iiwa_dnn.Configuration(robot, START))
@@ -58,4 +59,4 @@ def main(duration=10.0, dt=1e-3):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(float, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

@@ -6,10 +6,10 @@ QALL1.mat to QALL4.mat as fourth argument, their joint angles are compared one b
     python scripts/posture_obstacle.py [FOLDER [DT [SECONDS [AUTHORS]]]]
 """
 
-import sys
 from pathlib import Path
 
 import numpy as np
+import tyro
 from scipy.io import loadmat
 
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
@@ -41,7 +41,12 @@ def draw(curves):
     return figure
 
 
-def main(folder="runs/posture_obstacle", dt=5e-4, duration=10.0, authors=None):
+def main(
+    folder: tyro.conf.Positional[str] = "runs/posture_obstacle",
+    dt: tyro.conf.Positional[float] = 5e-4,
+    duration: tyro.conf.Positional[float] = 10.0,
+    authors: tyro.conf.Positional[str | None] = None,
+):
     """Run the four variants, print the table and draw the figure."""
     found, curves = {}, {}
     for number, variant in enumerate(study.VARIANTS, 1):
@@ -59,4 +64,4 @@ def main(folder="runs/posture_obstacle", dt=5e-4, duration=10.0, authors=None):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:2], *map(float, sys.argv[2:4]), *sys.argv[4:5])
+    tyro.cli(main)

@@ -6,13 +6,14 @@ One sees how far the axis passes from the point, and that the orientation is fre
 import sys
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 
 
-def main(duration=10.0, dt=1e-3):
+def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[float] = 1e-3):
     """Draw the heart in `duration` seconds; 1 where a check failed."""
     robot = iiwa_dnn.load_robot("iiwa7")
     start = iiwa_dnn.Configuration(robot, START)
@@ -40,4 +41,4 @@ def main(duration=10.0, dt=1e-3):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(float, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

@@ -8,6 +8,7 @@ Finished cells are kept in the folder, so that a sweep that was cut short goes o
 import sys
 from pathlib import Path
 
+import tyro
 from matplotlib.figure import Figure
 
 import iiwa_dnn
@@ -32,7 +33,9 @@ def heart(cell):
     return Outcome(numbers)
 
 
-def main(folder="runs/sweep_weight", dt=1e-2):
+def main(
+    folder: tyro.conf.Positional[str] = "runs/sweep_weight", dt: tyro.conf.Positional[float] = 1e-2
+):
     """Run the sweep on every core and write weight.png; 1 where a run failed."""
     cells = [{"weight": weight, "dt": dt} for weight in WEIGHTS]
     outcomes = Sweep(heart, Path(folder)).run(cells)
@@ -53,4 +56,4 @@ def main(folder="runs/sweep_weight", dt=1e-2):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    sys.exit(tyro.cli(main))

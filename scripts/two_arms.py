@@ -7,6 +7,7 @@ as seen from the left one, which hard rows of the program keep.
 import sys
 
 import numpy as np
+import tyro
 
 import iiwa_dnn
 
@@ -19,7 +20,7 @@ def scheme(*tasks):
     return iiwa_dnn.Scheme(costs, tasks, [iiwa_dnn.JointLimits()])
 
 
-def main(duration=10.0, dt=1e-3):
+def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[float] = 1e-3):
     """Run both scenes for `duration` seconds; 1 where a check failed."""
     robot = iiwa_dnn.load_robot("iiwa7_dual")
     q0 = robot.start_posture()
@@ -53,4 +54,4 @@ def main(duration=10.0, dt=1e-3):
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(float, sys.argv[1:])))
+    sys.exit(tyro.cli(main))

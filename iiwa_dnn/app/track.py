@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +15,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, TrackOptions
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
@@ -25,6 +27,7 @@ from iiwa_dnn.references import (
     Lissajous,
     OnSurface,
     Reference,
+    Target,
     Tilting,
     Waypoints,
 )
@@ -76,6 +79,9 @@ _CSV = (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_
 _HERE = 1e-3, 1e-2
 """Distance [m] and angle [rad] up to which a path of poses begins where the tip is."""
 
+_REST = 1e-6
+"""Joint velocity [rad/s] below which an arm has come to rest."""
+
 # Options that are arguments of a simulation under the same name.
 _HANDED_ON = (
     "dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "integral_gain",
@@ -115,21 +121,24 @@ def simulation(
     if options.obstacles is not None:
         avoidance = CollisionAvoidance.from_toml(options.obstacles)
         scheme = Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoidance])
-    reference, start = path(options), Configuration(robot, q0)
+    reference, start, elsewhere = path(options), Configuration(robot, q0), False
     further = [name for name in options.frames if name != robot.tip]
     own = {name: reference.anchored(start.frame(name)) for name in further}
+    if getattr(reference, "quaternions", None) is None:
+        reference = reference.anchored(start)
+    else:
+        elsewhere = tell_if_elsewhere(reference, start, scheme)
     if own:
         tasks: Any = scheme.tasks
         others = [replace(task, frame=name) for name in own for task in tasks]
         scheme = Scheme(scheme.costs, [*tasks, *others], scheme.limits)
-    if getattr(reference, "quaternions", None) is None:
-        reference = reference.anchored(start)
-    else:
-        tell_if_elsewhere(reference, start)
     references = {robot.tip: reference, **own} if own else reference
     check = CrossCheck(CHECKS[options.check], options.tolerance)
     asked = {name: getattr(options, name) for name in _HANDED_ON}
-    return Simulation(robot, scheme, references, q0, plant=plant, check=check, **asked)
+    with warnings.catch_warnings():
+        if elsewhere:  # said already
+            warnings.simplefilter("ignore", UserWarning)
+        return Simulation(robot, scheme, references, q0, plant=plant, check=check, **asked)
 
 
 def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
@@ -152,17 +161,35 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
     return tuple(limits)
 
 
-def tell_if_elsewhere(reference: Reference, start: Configuration) -> None:
-    """Print one line where a path of poses in the base frame begins elsewhere than the tip."""
+def tell_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> bool:
+    """Say where a path of poses in the base frame begins elsewhere than the tip, and return it."""
     first = reference.at(0.0)
     distance = float(np.linalg.norm(first.position - start.position))
     angle = float(rotation_angle(start.rotation, first.rotation))
-    if distance > _HERE[0] or angle > _HERE[1]:
-        print(
-            f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, at "
-            f"{np.round(first.position, 4).tolist()} m: --q0 takes the joint positions there",
-            file=sys.stderr,
-        )
+    if not (elsewhere := distance > _HERE[0] or angle > _HERE[1]):
+        return False
+    away = f"{distance:.3g} m and {angle:.3g} rad from the tip"
+    there = f"{np.round(first.position, 4).tolist()} m"
+    q = _posture_at(first, start, scheme)
+    found = "no way there was found from here"
+    if q is not None:
+        found = "to begin there: --q0 " + " ".join(f"{value:.6f}" for value in q)
+    print(f"the path begins {away}, at {there}; {found}", file=sys.stderr)
+    return elsewhere
+
+
+def _posture_at(target: Target, start: Configuration, scheme: Scheme) -> Vector | None:
+    """Let the controller take the tip to a target; the posture (n,) [rad] there, or None."""
+    q, dt = start.q.copy(), 0.02
+    controller = Controller(start.robot, scheme, dt=dt)
+    for k in range(1000):
+        dq = controller.step(q, k * dt, target).dq
+        q = q + dt * dq
+        if np.abs(dq).max() < _REST:
+            break
+    there = Configuration(start.robot, q)
+    near = float(np.linalg.norm(there.position - target.position)) < _HERE[0]
+    return q if near and rotation_angle(there.rotation, target.rotation) < _HERE[1] else None
 
 
 def draw(
@@ -227,7 +254,12 @@ def arm(options: TrackOptions) -> tuple[Robot, Vector]:
     )
     q0 = np.array(options.q0) if options.q0 else robot.start_posture()
     speed = checks.positive("speed", options.speed) * robot.dq_max
-    return limited(robot, options.joint_limit).with_limits(velocity=speed), q0
+    robot = limited(robot, options.joint_limit).with_limits(velocity=speed)
+    q0 = checks.finite_array("--q0", q0, (robot.dof,))
+    if options.q0 and not ((q0 >= robot.q_lower) & (q0 <= robot.q_upper)).all():
+        problem = f"must be within {robot.q_lower.tolist()} and {robot.q_upper.tolist()} rad"
+        raise InvalidInputError("--q0", problem, options.q0)
+    return robot, q0
 
 
 def limited(robot: Robot, limit: str | None = None) -> Robot:

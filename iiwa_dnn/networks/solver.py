@@ -73,9 +73,13 @@ class DNNSolver:
         """Start from the network's initial state.
 
         Raises:
-            InvalidInputError: `tol` is not a positive number.
+            InvalidInputError: `tol` is not a positive number, or `network` is not a network.
         """
         checks.positive("tol", tol)
+        given: object = network
+        if not isinstance(given, Network | None):
+            problem = f"must be an object of a Network's class, not {network!r}"
+            raise InvalidInputError("network", problem, network)
         self._kept: deque[tuple[Network, Sizes, Vector]]
         self.__dict__.update(  # not through __setattr__, which counts
             _kept=deque(maxlen=1),

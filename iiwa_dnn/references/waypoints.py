@@ -202,7 +202,8 @@ class Waypoints(Reference):
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
-            InvalidInputError: If ``ends`` is not one of its values, or a speed is not above zero.
+            InvalidInputError: If ``ends`` is not one of its values, or a speed is not above zero,
+                or given for a file with times.
         """
         positive("speed", speed)
         positive("rate", rate)
@@ -222,7 +223,11 @@ class Waypoints(Reference):
             raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
         times, points = rows[:, 0], rows[:, 1:4]
         quaternions = rows[:, 4:] if rows.shape[1] > 4 else None
-        if quaternions is not None and np.isnan(times[0]):
+        untimed = quaternions is not None and np.isnan(times[0])
+        for name, value, usual in (("speed", speed, SPEED), ("rate", rate, RATE)):
+            if value != usual and not untimed:
+                raise InvalidInputError(name, f"is for a file without times, not {path}", value)
+        if quaternions is not None and untimed:
             times = _times_at(points, quaternions, speed, rate)
         try:
             return cls(times, points, ends, quaternions)

@@ -213,7 +213,9 @@ def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
             robot.model, urdf.text_of(root), pin.GeometryType.COLLISION, package_dirs=folders
         )
     except (ValueError, RuntimeError) as error:
-        raise FileError(path, f"a shape cannot be read: {one_line(error)}") from error
+        problem = f"a shape cannot be read: {one_line(error)}"
+        hint = "; ROS_PACKAGE_PATH names the folder of its packages" * ("package://" in problem)
+        raise FileError(path, problem + hint) from error
     by_link: dict[int, list[pin.GeometryObject]] = {}
     for shape in found.geometryObjects:
         by_link.setdefault(shape.parentFrame, []).append(shape)

@@ -108,6 +108,10 @@ class Layout:
         """
         if accelerates:
             check_parts(costs, tasks)
+        for limit in limits:
+            own = type(limit).inequalities is not Limit.inequalities
+            if own and limit.row_count(robot) < 1:
+                raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
         self.robot = robot
         limits = merged(limits)
         hard = [task for task in tasks if task.weight is None]
@@ -209,7 +213,7 @@ class Layout:
         """Ask the parts without a compiled form, and add what they say to an assembled program.
 
         Raises:
-            InvalidInputError: A part answers with an array of a wrong shape; it is named.
+            InvalidInputError: A part answers with a wrong shape, or with NaN; it is named.
         """
         qp = QP.from_data(data, self.sizes)
         n, dof = self.sizes[0], self.robot.dof
@@ -254,6 +258,8 @@ def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matr
     array = np.asarray(value, dtype=np.float64)
     if array.shape != shape:
         raise InvalidInputError(part, f"{name} has shape {array.shape}, not {shape}", value)
+    if np.isnan(array).any():
+        raise InvalidInputError(part, f"{name} holds NaN", value)
     return array
 
 

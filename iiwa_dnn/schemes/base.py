@@ -70,6 +70,8 @@ class Scheme:
             ("tasks", tasks, Task),
             ("limits", limits, Limit),
         ):
+            if isinstance(parts, Part):
+                raise InvalidInputError(name, f"must be a list of parts, not {parts!r}", parts)
             for part in parts:
                 if not isinstance(part, kind):
                     problem = f"must hold iiwa_dnn.{kind.__name__} objects, not {part!r}"

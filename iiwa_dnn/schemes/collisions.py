@@ -69,7 +69,8 @@ class CollisionAvoidance(Limit):
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        given: tuple[object, ...] = tuple(self.obstacles)
+        one = isinstance(self.obstacles, Obstacle)
+        given: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
         for number, obstacle in enumerate(given, 1):
             if not isinstance(obstacle, Obstacle):
                 problem = f"number {number} must be a Sphere, Capsule, Box, ConvexMesh or HalfSpace"

@@ -76,6 +76,9 @@ class DoubleIndicator(Scheme):
         checks.one_of("kinetic", self.kinetic, KINETICS)
         cyclic = CyclicMotion(1.0 - self.weight, self.drift_gain, self.home)
         object.__setattr__(self, "home", cyclic.home)
+        if isinstance(self.extra_limits, Limit):
+            problem = f"must be a tuple of limits, not {self.extra_limits!r}"
+            raise InvalidInputError("extra_limits", problem, self.extra_limits)
         tasks = tip_tasks(self)
         costs = [KineticEnergy(self.weight, self.kinetic), cyclic]
         self._compose(costs, tasks, [JointLimits(self.limit_gain), *self.extra_limits])

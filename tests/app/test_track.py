@@ -760,3 +760,25 @@ def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
         assert ("begins 0.02 m and" in told) == (shift > 0.0)
         desired = Record.load(out / "record.npz").position_desired[0]
         np.testing.assert_allclose(desired, place + [shift, 0.0, 0.0], rtol=0, atol=1e-15)
+    # Begun where it says, the run has nothing to say, and begins there.
+    posture = told.split("--q0 ")[1].split("\n")[0].split()
+    out = tmp_path / "there"
+    more = ["--duration", "0.01", "--dt", "1e-3", "--no-plots", "--out", str(out)]
+    assert call([*arguments, "--q0", *posture, *more]) == 0
+    assert "begins" not in capsys.readouterr().err
+    record = Record.load(out / "record.npz")
+    np.testing.assert_allclose(record.position[0], desired, rtol=0, atol=2e-6)
+
+
+@pytest.mark.parametrize(
+    ("q0", "said"),
+    [("18", "error: --q0: must be within"), ("0 0", r"error: --q0: must have shape (7,)")],
+)
+def test_a_start_that_is_none_is_refused(
+    q0: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    posture = q0.split() if " " in q0 else [q0, *"000000"]
+    out = tmp_path / "run"
+    assert call([*QUICK, "--q0", *posture, "--out", str(out)]) == 2
+    assert said in capsys.readouterr().err
+    assert not out.exists()

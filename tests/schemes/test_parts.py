@@ -13,11 +13,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from helpers_kinematics import PAPER_Q0, Array, dh_pose
 from helpers_simulation import UNCHECKED, heart, near_target, paper_robot, paper_start, run
 from iiwa_dnn import (
+    AccelerationLimits,
     Configuration,
     Controller,
     Cost,
     CrossCheck,
     CyclicMotion,
+    DNNSolver,
     DoubleIndicator,
     InvalidInputError,
     JointLimits,
@@ -26,6 +28,7 @@ from iiwa_dnn import (
     NotFoundError,
     OrientationTask,
     PositionTask,
+    ProjectionNetwork,
     PseudoInverse,
     Scheme,
     Step,
@@ -191,6 +194,33 @@ def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
         Scheme(tasks=[JointLimits()])
     with pytest.raises(InvalidInputError, match=r"^slack"):
         Scheme(slack=-1)
+    with pytest.raises(InvalidInputError, match=r"^limits: must be a list of parts"):
+        Scheme(limits=JointLimits())  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"^extra_limits: must be a tuple"):
+        DoubleIndicator(extra_limits=AccelerationLimits(5.0))  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"^network: must be an object"):
+        DNNSolver(ProjectionNetwork)  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"^solver: must be DNNSolver\(network\)"):
+        Controller(paper_robot(), DoubleIndicator(), solver=ProjectionNetwork())  # type: ignore[arg-type]
+
+
+class Rowless(Limit):
+    """Without `rows` its inequalities would not be asked for, and the limit not be kept."""
+
+    def inequalities(self, step: Step) -> tuple[Array, Array]:
+        return np.eye(7)[:1], np.zeros(1)
+
+
+class Undefined(Cost):
+    def quadratic(self, step: Step) -> tuple[Array, Array]:
+        return np.eye(7), np.full(7, np.nan)
+
+
+def test_a_limit_without_rows_and_a_cost_of_nan_are_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^Rowless: has inequalities but no rows"):
+        run(Scheme([KineticEnergy()], [PositionTask()], [JointLimits(), Rowless()]))
+    with pytest.raises(InvalidInputError, match=r"^Undefined: q holds NaN"):
+        run(Scheme([Undefined()], [PositionTask()], [JointLimits()]))
 
 
 class Misshaped(Limit):

@@ -29,6 +29,12 @@ def number(pattern: str, text: str) -> float:
     return float(found[1])
 
 
+@pytest.mark.parametrize("name", ["control_loop.py", "own_parts.py", "sweep_weight.py"])
+def test_what_an_example_takes_is_told(name: str, tmp_path: Path) -> None:
+    assert "positional arguments" in example(tmp_path, name, "--help")
+    assert not any(tmp_path.iterdir())
+
+
 def test_a_control_loop(tmp_path: Path) -> None:
     text = example(tmp_path, "control_loop.py", "200")
     assert 0.0 < number(r"median ([\d.]+) us", text) <= number(r"p99 ([\d.]+) us", text)
