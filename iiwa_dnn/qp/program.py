@@ -278,7 +278,7 @@ def numbers(name: str, value: Any) -> NDArray[np.float64]:
 
 
 def require_pairs(arrays: Sequence[NDArray[np.float64] | None]) -> None:
-    """Raise InvalidInputError where rows are given without right-hand side, or the reverse."""
+    """Raise InvalidInputError where G (m, n) or A (p, n) lacks its h or b, or the reverse."""
     for left in (2, 4):
         if (arrays[left] is None) is not (arrays[left + 1] is None):
             missing, other = FIELDS[left : left + 2][:: -1 if arrays[left + 1] is None else 1]

@@ -53,8 +53,7 @@ class Record:
         rotation: Tip orientation, tip axes to world axes, (N+1, 3, 3).
         position_desired: Desired tip position [m], (N+1, 3).
         rotation_desired: Desired tip orientation, (N+1, 3, 3).
-        kinetic_index: dqᵀ G(q) dq of each step, (N,): [rad²/s²] with G = I, [J] with G the
-            inertia matrix.
+        kinetic_index: dqᵀ G(q) dq of each step, (N,): [rad²/s²] with G = I, [J] with inertia.
         kkt_residual: Largest KKT residual of the network's answer, (N,).
         iterations: Network iterations (sub-steps) spent on each step, (N,), integers.
         solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
@@ -78,14 +77,12 @@ class Record:
         row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
             (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
         blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
-        level_residual: Largest residual of the task rows of each of the l levels of priority,
-            (N, l): what the levels above and the limits took from it.
-        frame_position: Positions of the f tracked frames that ``settings["frames"]`` names, beside
-            the one that ``settings["tip"]`` names [m], (N+1, f, 3).
+        level_residual: Largest residual of the task rows of each of l priority levels, (N, l).
+        frame_position: Positions [m] of the f tracked frames ``settings["frames"]``, (N+1, f, 3).
         frame_rotation: Their orientations, (N+1, f, 3, 3).
         frame_position_desired: Their desired positions [m], (N+1, f, 3).
         frame_rotation_desired: Their desired orientations, (N+1, f, 3, 3).
-        distance: Distance of the nearest pair of bodies [m], (N+1,), where collisions are avoided.
+        distance: Distance of the nearest pair of bodies [m], (N+1,).
         nearest: Index of that pair in ``settings["collisions"]["pairs"]``, (N+1,).
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none

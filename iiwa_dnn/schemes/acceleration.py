@@ -128,7 +128,7 @@ def lift_targets(
         dq: Joint velocities [rad/s], (n,).
 
     Returns:
-        The targets, a copy.
+        The targets, a copy, (18 frames,).
     """
     model, data, *_ = kinematics.pinocchio
     pin.forwardKinematics(model, data, q, dq, np.zeros(dq.size))
@@ -144,7 +144,7 @@ def lift_targets(
 
 
 def lower_limits(qp: QP, dq: Vector, dt: float) -> None:
-    """Turn limits of the velocity after a period of dt [s] into limits of the acceleration."""
+    """Turn limits of the velocity after a period dt [s] into those of the change from dq (n,)."""
     n = dq.size
     for bound in (qp.lb, qp.ub):
         bound[:n] = (bound[:n] - dq) / dt

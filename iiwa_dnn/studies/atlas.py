@@ -200,7 +200,7 @@ def cells(
     """
     for name in schemes or [""]:
         if name not in SCHEMES:
-            raise InvalidInputError("schemes", f"must be of {', '.join(SCHEMES)}, not {name!r}")
+            raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {name!r}")
     middle = evaluations[len(evaluations) // 2]
     whole = [
         cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
