@@ -118,15 +118,7 @@ class Plan:
         work = np.concatenate([head, network, inertia, constants, np.zeros(3 * n + m + p)])
         self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]
         self.last = self.past[:dof]
-        self.stuck = False
-        self.halted: Resolution | None = None
-        self.yielding: Yielding | None = None
-        self.rates: Matrix | None = None
-        if layout is not None and layout.restrained:
-            limits = layout.blocks[-1].part.numbers(robot)
-            self.rates = limits[3 * dof :].reshape(2, dof)
-            if not self.accelerates:
-                self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
+        self._restrain(dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
         self._constants = work[1 + 3 * dof + NETWORK + inertia.size :][: constants.size]
         moving = () if layout is None else layout.moving
@@ -136,10 +128,28 @@ class Plan:
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
         codes[7:9] = ASSEMBLE.address, (SETTLE if converged else FOLLOW).address
-        self.step: Callable[..., bool] = control_step
-        if isinstance(control_step, Dispatcher):
-            given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)
-            self.step = control_step.compile(tuple(map(typeof, given)))
+        self.step = self._entrance()
+
+    def _restrain(self, dt: float) -> None:
+        """Prepare for acceleration and jerk limits, where there are some."""
+        self.rates: Matrix | None = None
+        self.yielding: Yielding | None = None
+        self.stuck = False
+        self.halted: Resolution | None = None
+        layout, dof = self.layout, self.q.size
+        if layout is not None and layout.restrained:
+            limits = layout.blocks[-1].part.numbers(layout.robot)
+            self.rates = limits[3 * dof :].reshape(2, dof)
+            if not self.accelerates:
+                self.yielding = Yielding(limits, self.past, self.q, layout.row_weights, dt)
+
+    def _entrance(self) -> Callable[..., bool]:
+        """Compile the control step for the types of its arguments."""
+        if not isinstance(control_step, Dispatcher):
+            return control_step
+        given = (np.empty((1, 1)), 0, *self.compiled, np.empty(1), False, 0.0)
+        compiled: Callable[..., bool] = control_step.compile(tuple(map(typeof, given)))
+        return compiled
 
     def halt(self, decision: Resolution) -> None:
         """Brake at every step from now on, where the arm cannot stop at once."""

@@ -90,18 +90,9 @@ def control_step(
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
         past = work[1 : 1 + 2 * dof]
         _enter_assemble(
-            codes[7],
-            data,
-            codes,
-            constants,
-            q,
-            jacobian,
-            placements,
-            inertia,
-            targets,
-            work[0],
+            codes[7], data, codes, constants, q, jacobian, placements, inertia, targets, work[0],
             past,
-        )
+        )  # fmt: skip
     for i in range(state.size):
         before[i] = state[i]
     if network[3] > 0.0:
