@@ -33,7 +33,7 @@ $(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS))
 		pip=$$!; seconds=0; while kill -0 $$pip 2>/dev/null; do \
 		printf '\rsetup: %s s, %s MB in $(VENV)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
 		sleep 3; seconds=$$((seconds + 3)); done; echo; wait $$pip
-	@echo 'setup: compiling the numerical code, once; about a minute'
+	@echo 'setup: compiling the numerical code, once; a minute or two'
 	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
 

@@ -6,6 +6,7 @@ import contextlib
 import os
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES
-from iiwa_dnn.robot.robot import Robot
+from iiwa_dnn.robot.robot import Mimic, Robot
 
 _Joints = dict[str, ET.Element]
 _Array = NDArray[np.float64]
@@ -66,7 +67,7 @@ def load_robot(
         FileError: If the file cannot be read, is not a URDF, its limits make no sense, or the
             second reader disagrees.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
-            left free has more or less than one coordinate, or follows another joint.
+            left free has more or less than one coordinate, or follows a joint that is locked.
         MissingDependencyError: If the arm of that name, or the second reader, is in a package that
             is not installed.
     """
@@ -88,7 +89,7 @@ def load_robot(
     robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked, mobile=mobile)
     if name in RATES and len(RATES[name][0]) == robot.dof:
         robot = robot.with_limits(acceleration=RATES[name][0], jerk=RATES[name][1])
-    _check_no_mimic(robot, joints)
+    robot = replace(robot, mimics=_mimics(robot, joints))
     if verify:
         from iiwa_dnn.robot.verification import verify_robot  # slow to import
 
@@ -153,14 +154,19 @@ def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[f
     return reduced, tuple(map(float, q_locked))
 
 
-def _check_no_mimic(robot: Robot, joints: _Joints) -> None:
-    """Refuse a joint that moves the tip and follows another: here it would move on its own."""
-    model = robot.model
+def _mimics(robot: Robot, joints: _Joints) -> tuple[Mimic, ...]:
+    """Find the joints that move the tip and follow another; that one must be free as well."""
+    model, found = robot.model, []
     for index in list(model.supports[model.frames[robot.tip_id].parentJoint])[1:]:
         name = model.names[index]
-        if (mimic := joints[name].find("mimic")) is not None:
-            problem = f"joint {name!r} follows {mimic.get('joint')!r} (<mimic>): lock it"
+        if (mimic := joints[name].find("mimic")) is None:
+            continue
+        leader, ratio, offset = (mimic.get(key) for key in ("joint", "multiplier", "offset"))
+        if leader not in robot.joint_names:
+            problem = f"joint {name!r} follows {leader!r} (<mimic>), which is locked: lock it too"
             raise InvalidInputError("locked", problem, name)
+        found.append(Mimic(name, str(leader), float(ratio or 1.0), float(offset or 0.0)))
+    return tuple(found)
 
 
 def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[_Array, _Array, _Array]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -20,6 +20,15 @@ SINGULAR = 0.05
 """Smallest singular value of the tip's Jacobian below which a posture is no start."""
 
 _Array = NDArray[np.float64]
+
+
+class Mimic(NamedTuple):
+    """A joint that follows another: q = multiplier q_leader + offset [rad]; see URDF's <mimic>."""
+
+    joint: str
+    leader: str
+    multiplier: float
+    offset: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,6 +50,7 @@ class Robot:
         ddq_max: Joint acceleration limits [rad/s^2], (n,); inf where there is none.
         dddq_max: Joint jerk limits [rad/s^3], (n,); inf where there is none.
         mobile: Whether the first three joints are a mobile base, which the file does not have.
+        mimics: Joints between base and tip that follow others; schemes hold them to it.
         tip_id: Pinocchio's index of the tip frame.
         limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
@@ -61,6 +71,7 @@ class Robot:
     ddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
     dddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
     mobile: bool = False
+    mimics: tuple[Mimic, ...] = ()
     tip_id: int = field(init=False)
     limits: _Array = field(init=False)
 
@@ -181,7 +192,8 @@ class Robot:
         mixes [m/rad] with [rad/rad] here, and collisions are not considered.
         """
         known = np.array(STARTS.get(self.name, ()))
-        if known.size == self.dof and (self.q_lower < known).all() and (known < self.q_upper).all():
+        fits = known.size == self.dof and not self.mimics
+        if fits and (self.q_lower < known).all() and (known < self.q_upper).all():
             return known
         nearest, turn = np.clip(0.0, self.q_lower, self.q_upper), 2.0 * np.pi
         lower = np.maximum(self.q_lower, nearest - turn)  # a limit may be infinite
@@ -189,6 +201,9 @@ class Robot:
         middle = 0.5 * (lower + upper)
         drawn = np.random.default_rng(0).uniform(-0.3, 0.3, (200, self.dof))
         postures = np.vstack([middle, middle + (upper - lower) * drawn])
+        for joint, leader, multiplier, offset in self.mimics:
+            at, of = self.joint_names.index(joint), self.joint_names.index(leader)
+            postures[:, at] = np.clip(multiplier * postures[:, of] + offset, lower[at], upper[at])
         place = (self.tip_id, pin.LOCAL_WORLD_ALIGNED)
         data, rows = self.model.createData(), 6 if self.dof >= 6 else 3
         found = [pin.computeFrameJacobian(self.model, data, q, *place) for q in postures]

@@ -17,6 +17,7 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.acceleration import LEVELS, Level, lift_targets, lower_limits
 from iiwa_dnn.schemes.assembly import Layout, assemble
 from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")
@@ -104,7 +105,8 @@ class Scheme:
             InvalidInputError: A parameter of a part does not fit the robot.
         """
         accelerates = self.level == "acceleration"
-        return Layout(robot, self.costs, self.tasks, self.limits, self.slack, accelerates)
+        tasks = (*self.tasks, *couplings(robot))
+        return Layout(robot, self.costs, tasks, self.limits, self.slack, accelerates)
 
     def build_qp(
         self,

@@ -77,6 +77,14 @@ class JointCouplingTask(FeedbackTask):
         return A, self.feedback(step) * (self.offset - A @ step.q)
 
 
+def couplings(robot: Robot) -> list[JointCouplingTask]:
+    """Return the tasks that hold a robot's mimic joints to those they follow."""
+    return [
+        JointCouplingTask(coefficients={joint: 1.0, leader: -multiplier}, offset=offset)
+        for joint, leader, multiplier, offset in robot.mimics
+    ]
+
+
 @dataclass(frozen=True)
 class ElbowAngleTask(FeedbackTask):
     r"""Elbow (swivel) angle of an arm: of the plane shoulder, elbow, wrist about its long side.

@@ -226,8 +226,10 @@ def test_panda() -> None:
     with pytest.raises(InvalidInputError, match=r"several ends: .*panda_hand_tcp") as caught:
         load_robot(path, locked=FINGERS)
     assert caught.value.argument == "tip"
-    with pytest.raises(InvalidInputError, match="'panda_finger_joint2' follows"):
-        load_robot(path, tip="panda_rightfinger")
+    first, second = FINGERS
+    assert load_robot(path, tip="panda_rightfinger").mimics == ((second, first, 1.0, 0.0),)
+    with pytest.raises(InvalidInputError, match=f"{second!r} follows {first!r}"):
+        load_robot(path, tip="panda_rightfinger", locked=[first])
 
 
 def test_kinova_has_three_joints_without_limits() -> None:
