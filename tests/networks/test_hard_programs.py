@@ -83,6 +83,7 @@ def test_rounding_of_single_precision_in_the_cost_is_no_error(kind: str) -> None
 
 PRELUDE = """
 import os, signal, sys, numpy as np, iiwa_dnn
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
 rng = np.random.default_rng(0)
 """
 

@@ -15,7 +15,8 @@ from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.robot import SINGULAR
 
 MIDDLE = {
-    "baxter_left", "baxter_right", "panda", "talos_left", "talos_right", "tiago", "xarm7", "z1"
+    "baxter_left", "baxter_right", "panda", "talos_left", "talos_right", "tiago", "tiago_mobile",
+    "xarm7", "z1",
 }  # fmt: skip
 """Arms whose joints can all be in the middle of their ranges."""
 

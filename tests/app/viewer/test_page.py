@@ -21,7 +21,6 @@ pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")
 selenium = pytest.importorskip("selenium", reason="pip install 'iiwa-dnn[test]'")
 
 from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
-from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 
 
@@ -83,6 +82,11 @@ def sliders(browser) -> list:
         "return [...document.querySelectorAll('[role=slider]')].filter("
         "slider => slider.offsetParent !== null)"
     )
+
+
+def press(browser, key: str) -> None:
+    """Press a key on the first slider; the page may put a new one in its place meanwhile."""
+    wait_for(lambda: sliders(browser)[0].send_keys(key) is None, "a slider")
 
 
 def arm(image: np.ndarray) -> np.ndarray:
@@ -193,7 +197,7 @@ def test_the_path_so_far_is_drawn(browser, session):
 
 @needs_browser
 def test_the_slider_moves_the_arm(browser, session):
-    sliders(browser)[0].send_keys(Keys.HOME)
+    press(browser, Keys.HOME)
     wait_for(lambda: session.replay.playback.time == 0.0, "the start")
     wait_for(lambda: red(picture(browser)).sum() == 0, "no path at the start")
     start = picture(browser)
@@ -216,7 +220,7 @@ def changed(first: np.ndarray, second: np.ndarray) -> int:
 
 @needs_browser
 def test_play_runs_and_pause_stops(browser, session):
-    sliders(browser)[0].send_keys(Keys.HOME)
+    press(browser, Keys.HOME)
     wait_for(lambda: session.replay.playback.time == 0.0, "the start")
     first = picture(browser)
     click(browser, "Play")
@@ -253,9 +257,9 @@ def test_live_the_arm_follows_the_dragged_target(browser, session):
         lambda: np.linalg.norm(follower.configuration.position - moved) < 1e-3,
         "the arm to follow",
     )
-    assert buttons(browser, "● live")
+    wait_for(lambda: buttons(browser, "● live"), "the mark of the live mode")
     before = follower.scheme.weight
-    sliders(browser)[0].send_keys(Keys.ARROW_RIGHT)
+    press(browser, Keys.ARROW_RIGHT)
     wait_for(lambda: follower.scheme.weight > before, "the weight to change")
     click(browser, "Target back to the start")
     wait_for(lambda: np.linalg.norm(follower.configuration.position - start) < 1e-3, "the way back")
@@ -355,8 +359,10 @@ def drag(browser, session: Session, metres: float) -> None:
     axes = pin.Quaternion(w, x, y, z).matrix().T
     # The axis that lies across the picture, not the one that points into it.
     axis = max(axes, key=lambda axis: np.linalg.norm(pixel(origin + axis) - pixel(origin)))
-    canvas = max(
-        browser.find_elements(By.CSS_SELECTOR, "canvas"), key=lambda canvas: canvas.size["width"]
+    # One call: the canvases of curves come and go while Python looks at them.
+    canvas = browser.execute_script(
+        "return [...document.querySelectorAll('canvas')].sort("
+        "(one, other) => other.clientWidth - one.clientWidth)[0]"
     )
     grip, goal = pixel(origin + 0.12 * axis), pixel(origin + (0.12 + metres) * axis)
     hand = ActionChains(browser).move_to_element_with_offset(canvas, *map(int, grip))
