@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import matplotlib
 import numpy as np
 
 from iiwa_dnn.files import write_text
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 Row = Mapping[str, Any]
 PAPER = "projection (the paper's)"
+_MARKERS = "os^vD*P"
 
 
 class Claim(NamedTuple):
@@ -124,6 +126,8 @@ def figure(rows: Sequence[Row]) -> Figure:
     drawn = new_figure(DOUBLE_COLUMN, 4.6)
     axes = drawn.subplots(1, 2, sharey=True)
     scheme, names = rows[0]["scheme"], list(NETWORKS)
+    budgets = sorted({row["evaluations"] for row in rows})
+    colours = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
     for axis, kind in zip(axes, ("none", "white"), strict=True):
         for i, name in enumerate(names):
             found = [
@@ -134,12 +138,13 @@ def figure(rows: Sequence[Row]) -> Figure:
             ]
             if found:
                 style = "-" if NETWORKS[name].systems else "--"
-                colour = f"C{i % 10}" if name != PAPER else "black"
-                marker = "osv^D*"[i // 10 + 3 * NETWORKS[name].systems]
+                colour = colours[i] if name != PAPER else "black"
                 axis.loglog(
-                    *zip(*sorted(found), strict=True), style, color=colour, marker=marker,
+                    *zip(*sorted(found), strict=True), style, color=colour, marker=_MARKERS[i % 7],
                     markersize=3, linewidth=2.0 if name == PAPER else 0.9, label=name,
                 )  # fmt: skip
+        axis.set_xticks(budgets, [str(count) for count in budgets])
+        axis.minorticks_off()
         axis.set_title(f"disturbance: {kind}")
         axis.set_xlabel("evaluations a control period")
     axes[0].set_ylabel("RMS position error [m]")
