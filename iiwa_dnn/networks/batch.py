@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
@@ -16,7 +15,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
 from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes
+from iiwa_dnn.qp.layout import Matrix, Sizes, released
 from iiwa_dnn.qp.program import FIELDS, QP, numbers, require_pairs
 
 CHUNK = 128
@@ -187,7 +186,7 @@ def _settle_all(
         list(pool.map(settle, range(0, count, CHUNK)))
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+@released
 def _settle_rows(
     first: int, last: int, parts: tuple[Matrix, ...], sizes: Sizes, tol: float,
     max_systems: int, long_step: float, points: Matrix, residuals: Matrix,

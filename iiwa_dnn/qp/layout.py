@@ -40,6 +40,11 @@ def compiled(function: Function) -> Function:
     return cast(Function, njit(**_OPTIONS)(function))
 
 
+def released(function: Function) -> Function:
+    """Compile a function as `compiled`; Python's other threads go on while it is called."""
+    return cast(Function, njit(**_OPTIONS, nogil=True)(function))
+
+
 def check_size(argument: str, array: Vector, size: int) -> None:
     """Raise InvalidInputError unless an array is flat and of this size: compiled code trusts it."""
     if array.size != size or array.ndim != 1:

@@ -31,7 +31,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_g
 from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
 from iiwa_dnn.networks.projection import field
 from iiwa_dnn.qp.compiling import Apart
-from iiwa_dnn.qp.layout import Vector, check_size, compiled
+from iiwa_dnn.qp.layout import Vector, check_size, compiled, released
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
@@ -120,7 +120,7 @@ def advance_implicit(
     return total
 
 
-@compiled
+@released
 def settle_implicit(
     data: Vector, n: int, m: int, p: int, s: Vector, point: Vector, tol: float,
     max_systems: int, long_step: float,
