@@ -47,10 +47,10 @@ view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the a
 	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
 test: $(STAMP)  ## run the tests
-	$(VENV_PYTHON) -m pytest -n auto $(ARGS)
+	$(VENV_PYTHON) -m pytest -n auto --dist worksteal $(ARGS)
 
 bounds: $(STAMP)  ## run the tests of compiled code with every index checked
-	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -n auto -q \
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -n auto --dist worksteal -q \
 		tests/control tests/networks tests/qp tests/references tests/schemes tests/test_kernels.py
 
 notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
