@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from numbers import Integral, Real
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn.errors import InvalidInputError
 
 Vector3 = tuple[float, float, float]
+T = TypeVar("T")
 
 
 def finite(argument: str, value: object) -> float:
@@ -50,6 +52,14 @@ def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
         raise InvalidInputError(
             argument, f"must be one of {', '.join(choices)}, not {value!r}", value
         )
+
+
+def instance(argument: str, value: object, kind: type[T]) -> T:
+    """The value, or an InvalidInputError unless it is an object of a class or of a subclass."""
+    if not isinstance(value, kind):
+        problem = f"must be an iiwa_dnn.{kind.__name__}, not {value!r:.80}"
+        raise InvalidInputError(argument, problem, value)
+    return value
 
 
 def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:

@@ -17,8 +17,6 @@ from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.recourse import answer
 from iiwa_dnn.control.room import SIZE, Room
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
@@ -76,11 +74,11 @@ class Controller:
         checks.one_of("mode", mode, MODES)
         checks.one_of("policy", policy, POLICIES)
         checks.positive("dt", dt)
-        if isinstance(solver, Network):
-            raise InvalidInputError("solver", "must be DNNSolver(network), not a network", solver)
-        self.robot, self.scheme, self.reference = robot, scheme, reference
+        self.robot = checks.instance("robot", robot, Robot)
+        self.scheme, self.reference = scheme, reference
         self.dt, self.mode, self.policy = dt, mode, policy
-        self.solver = DNNSolver(tol=tol) if solver is None else solver
+        given = DNNSolver(tol=tol) if solver is None else solver
+        self.solver = checks.instance("solver", given, DNNSolver)
         self.delay = 0.0
         self._q = np.zeros(robot.dof)
         self._begun = False

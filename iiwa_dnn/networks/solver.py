@@ -287,8 +287,8 @@ def solve_problem(
     """
     qp = problem if isinstance(problem, QP) else QP.from_qpsolvers(problem)
     qp.check_values()
-    if solver is None:
-        solver = DNNSolver(tol=tol)
+    given = DNNSolver(tol=tol) if solver is None else solver
+    solver = checks.instance("solver", given, DNNSolver)
     solver.reset()
     stated = qp.to_qpsolvers() if isinstance(problem, QP) else problem
     return solver.solve(qp).to_qpsolvers(stated)

@@ -6,7 +6,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite_array, read_only
+from iiwa_dnn.checks import finite_array, instance, read_only
 from iiwa_dnn.robot.robot import Robot
 
 _Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ class Configuration(FrameState):
     _inertia: _Array | None
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
-        vector = _joint_vector(q, robot.q_lower.shape)
+        vector = _joint_vector(q, instance("robot", robot, Robot).q_lower.shape)
         self._robot, self._q, self._data, self._inertia = robot, vector, data, None
         self._pose, self._jacobian = _kinematics(robot, vector, data, robot.tip_id)
 

@@ -83,7 +83,7 @@ class Simulation:
         checks.integer("seed", seed, 0)
         self.steps = steps = step_count(length, dt)
         self._plant = IdealPlant() if plant is None else plant
-        self._check = CrossCheck() if check is None else check
+        self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
         self._robot, self._dt, self._seed = robot, dt, seed
         start = Configuration(robot, q0)
         self._q0 = start.arrays[0]

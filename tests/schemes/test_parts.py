@@ -200,8 +200,12 @@ def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
         DoubleIndicator(extra_limits=AccelerationLimits(5.0))  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"^network: must be an object"):
         DNNSolver(ProjectionNetwork)  # type: ignore[arg-type]
-    with pytest.raises(InvalidInputError, match=r"^solver: must be DNNSolver\(network\)"):
+    with pytest.raises(InvalidInputError, match=r"^solver: must be an iiwa_dnn.DNNSolver"):
         Controller(paper_robot(), DoubleIndicator(), solver=ProjectionNetwork())  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"^robot: must be an iiwa_dnn.Robot"):
+        simulate("iiwa7", DoubleIndicator(), heart(), PAPER_Q0)  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"^check: must be .*, not 'osqp'"):
+        run(check="osqp")
 
 
 class Rowless(Limit):
