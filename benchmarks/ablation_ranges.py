@@ -3,8 +3,6 @@
 ``python -m benchmarks.ablation_ranges`` prints the rows of docs/paper.md, in about two minutes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.results.metrics import compute_metrics

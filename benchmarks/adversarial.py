@@ -5,8 +5,6 @@ Each of iiwa7, panda and xarm7 takes its share of the steps at 1 kHz towards eac
 on jerk too. The judge of tests/judge_limits.py takes finite differences of the joint positions.
 """
 
-from __future__ import annotations
-
 import itertools
 import sys
 from pathlib import Path

@@ -7,8 +7,6 @@ and where the peer has arrived: from the first step on whose position error is b
 as it stays there.
 """
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 import warnings

@@ -1,7 +1,5 @@
 """The two commands: options, measurements, report."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@
 since it reads them from a URDF) from the same balls, with the same gain and distance.
 """
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Sequence
 from pathlib import Path

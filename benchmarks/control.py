@@ -1,7 +1,5 @@
 """The control loop beside its peers', whole runs, and the parts of a step."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import subprocess

@@ -12,8 +12,6 @@ is not solved. The shifted geometric mean (10 s) counts a failure as 10 s. With
 OPENBLAS_NUM_THREADS=1 all solvers have one thread.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 import warnings

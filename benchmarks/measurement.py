@@ -1,7 +1,5 @@
 """Times and residuals of all peers on a stream, of a batch, and on programs without a solution."""
 
-from __future__ import annotations
-
 import gc
 import os
 from collections.abc import Callable, Sequence

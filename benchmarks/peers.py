@@ -5,8 +5,6 @@ alone: handing the numbers over, solving, and getting the answer back. `point` b
 qpsolvers' conventions afterwards, so that the same residuals judge all.
 """
 
-from __future__ import annotations
-
 import warnings
 from abc import ABC, abstractmethod
 from typing import Any

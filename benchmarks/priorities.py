@@ -10,8 +10,6 @@ of them 0.1 to 1e-6 rad off it, and their targets lie outwards. Directions of si
 1e-9 are left out in both.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Time of a new process until its first step, and the memory of a short and a long run."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

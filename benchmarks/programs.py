@@ -4,8 +4,6 @@ Each is built backwards from what it is to have: a KKT point, Farkas multipliers
 recession. So what a solver says of it can be judged without a second solver.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.qp.program import QP, Matrix, Vector

@@ -6,8 +6,6 @@ distance again from the joint positions; between steps a Lipschitz constant of t
 how small it can have been, and intervals are halved until the bound says enough.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable

@@ -7,8 +7,6 @@ arm can do all along, and the time is that at which its clock has gone round. It
 what they are; the optimum beside it is that of the velocity limits alone.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 import iiwa_dnn

@@ -1,7 +1,5 @@
 """Size on disk of the package's dependencies, of each extra's, and of all, as installed."""
 
-from __future__ import annotations
-
 from importlib.metadata import PackageNotFoundError, distribution
 
 from packaging.requirements import Requirement

@@ -1,7 +1,5 @@
 """Streams of programs: one control step after another, or one random program after another."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

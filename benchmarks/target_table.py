@@ -1,7 +1,5 @@
 """Six kinds of targets beside Pink and mink: tracking error, largest jerk, frozen steps, times."""
 
-from __future__ import annotations
-
 import json
 import sys
 import tempfile

@@ -1,7 +1,5 @@
 """Streams of targets that no arm can simply follow, and a loop that drives an arm towards them."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Checks of arguments: each returns the value as it is needed, or names the argument."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from numbers import Integral, Real

@@ -1,7 +1,5 @@
 """Atomic writing of files: a reader sees the old one or the whole new one, never half of it."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 """The scene of the collision benchmark for peers: a URDF of one cylinder a link, and the pairs."""
 
-from __future__ import annotations
-
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path

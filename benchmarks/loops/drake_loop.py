@@ -1,7 +1,5 @@
 """Drake's loop: `DoDifferentialInverseKinematics` with joint limits and a nominal posture."""
 
-from __future__ import annotations
-
 import numpy as np
 from pydrake.math import RigidTransform
 from pydrake.multibody.inverse_kinematics import (

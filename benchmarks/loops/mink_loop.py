@@ -1,7 +1,5 @@
 """mink's loop on MuJoCo: a frame task and a weak posture task in one cost, with limits."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import mink

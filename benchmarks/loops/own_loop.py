@@ -3,8 +3,6 @@
 A task with a `scene` is one of ``scripts/arm_scenes.py``.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any

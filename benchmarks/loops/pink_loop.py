@@ -4,8 +4,6 @@ With ``ahead``, the frame task's target is that of the step's end; without, as i
 of its beginning.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import coal

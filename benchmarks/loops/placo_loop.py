@@ -1,7 +1,5 @@
 """PlaCo's loop: hard or soft frame tasks, a weak joints task, joint and velocity limits."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

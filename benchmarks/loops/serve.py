@@ -5,8 +5,6 @@ started with the path of a task file and the name of a variant, reads lines ``fi
 answers each with one line.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

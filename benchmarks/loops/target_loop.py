@@ -1,7 +1,5 @@
 """This package's loop towards a stream of poses, raw or through the filter of a moving target."""
 
-from __future__ import annotations
-
 import numpy as np
 from serve import Loop, Task, serve
 

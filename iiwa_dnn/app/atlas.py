@@ -1,7 +1,5 @@
 """``atlas``: every network, scheme and disturbance at equal compute, with a figure and verdicts."""
 
-from __future__ import annotations
-
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import list_files
 from iiwa_dnn.app.folders import claim_folder, save_settings

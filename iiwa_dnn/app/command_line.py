@@ -5,8 +5,6 @@ the process; here it is one line. So tyro hands an unknown option back unread, a
 value through as a `_Wrong`; both are refused after it.
 """
 
-from __future__ import annotations
-
 import io
 import sys
 import traceback

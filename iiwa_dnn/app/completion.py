@@ -1,7 +1,5 @@
 """``completion``: a shell's completion of commands and options."""
 
-from __future__ import annotations
-
 from iiwa_dnn.app.main import describe_commands
 from iiwa_dnn.app.options import SHELLS, CompletionOptions
 from iiwa_dnn.errors import NotFoundError

@@ -3,8 +3,6 @@
 That run may write it again, no other one may unasked.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection
 from dataclasses import fields

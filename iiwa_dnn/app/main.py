@@ -1,7 +1,5 @@
 """``iiwa-dnn COMMAND``: the command line of the package."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from contextlib import suppress

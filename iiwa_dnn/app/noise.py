@@ -1,7 +1,5 @@
 """``noise``: a sweep over disturbances and countermeasures, with a table and a report."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any

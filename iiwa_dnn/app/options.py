@@ -4,8 +4,6 @@ The comment behind a field is its help on the command line, its name is its key 
 and the first line of a class is the command's entry in the list of commands.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal

@@ -1,7 +1,5 @@
 """``paper``: every experiment of the paper in one sweep, with tables, figures and a report."""
 
-from __future__ import annotations
-
 import os
 import platform
 import sys

@@ -1,7 +1,5 @@
 """``physics``: an arm with masses and motors draws a path, with disturbances, pictures, a video."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from iiwa_dnn.app.command_line import progress_bar

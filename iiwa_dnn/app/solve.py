@@ -1,7 +1,5 @@
 """``solve``: one quadratic program out of a file, settled by the network."""
 
-from __future__ import annotations
-
 import sys
 import zipfile
 from pathlib import Path

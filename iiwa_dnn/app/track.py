@@ -1,7 +1,5 @@
 """``track``: an arm draws a path; and the parts that all commands with an arm share."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from collections.abc import Callable

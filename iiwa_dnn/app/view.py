@@ -1,7 +1,5 @@
 """``view``: the page in the browser, for a run or live."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

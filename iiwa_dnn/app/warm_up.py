@@ -1,7 +1,5 @@
 """``warm-up``: every compiled function that a run needs, compiled once and kept on disk."""
 
-from __future__ import annotations
-
 import time
 from itertools import product
 

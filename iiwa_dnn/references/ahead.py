@@ -1,7 +1,5 @@
 """A reference seen one control period ahead, for tasks that track the next target."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The paper's heart."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """A straight line, there and back."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """A Lissajous figure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """A target that is set from outside: by a person's hand, a camera, another program."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, ClassVar
 

@@ -14,8 +14,6 @@ Source: "Smooth Attitude Interpolation", the note behind ``scipy.spatial.transfo
 whose equations stand here in the fixed frame and with other ends.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -13,8 +13,6 @@ A rotation vector :math:`\theta(t)` gives :math:`R = \exp[\theta]_\times`, which
 Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Press 2017, section 7.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

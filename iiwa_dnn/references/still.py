@@ -1,7 +1,5 @@
 """A pose that is held."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """Targets of the tip, at one time or at many: its desired pose and motion."""
 
-from __future__ import annotations
-
 from operator import index
 from typing import SupportsIndex, TypeVar
 

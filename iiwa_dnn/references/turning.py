@@ -1,7 +1,5 @@
 """Paths on which the tool turns: a cone, a path with a tilting tool, a path on a surface."""
 
-from __future__ import annotations
-
 import math
 from abc import abstractmethod
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A long curve in stretches: mean, least and greatest value of each."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.results.record import FloatArray

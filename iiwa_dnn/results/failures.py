@@ -1,7 +1,5 @@
 """The reasons why a run is not a success, in plain words: from its record or its metrics."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from typing import Any

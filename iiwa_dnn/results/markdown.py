@@ -1,7 +1,5 @@
 """Tables, lists and pictures in Markdown."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import product
 from typing import Any

@@ -1,7 +1,5 @@
 """The texts about a run: the summary on the terminal, and a folder with its report."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The samples of a record as a table for other programs."""
 
-from __future__ import annotations
-
 import os
 
 import numpy as np

@@ -4,8 +4,6 @@ The files of `ARMS` come with the package ``example-robot-data`` (extra ``robots
 only: the URDFs as their makers publish them.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path

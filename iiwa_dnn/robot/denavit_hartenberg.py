@@ -5,8 +5,6 @@ matrices", ASME Journal of Applied Mechanics 22 (1955), for the standard convent
 "Introduction to Robotics", chapter 3, for the modified one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """The smallest capsule around a set of points, for links that are drawn with meshes."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

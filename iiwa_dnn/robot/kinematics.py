@@ -4,8 +4,6 @@ Pinocchio computes them; what it leaves in its own memory is seen here through v
 control step converts nothing. `iiwa_dnn.Configuration` is the safe form for everyone else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loading of robots, by name or from a URDF file: the file read, joints locked, limits checked."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import xml.etree.ElementTree as ET

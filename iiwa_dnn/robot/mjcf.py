@@ -6,8 +6,6 @@ Kept are masses, axes, position limits, the actuators' force limits and the prim
 are not, nor is a velocity limit, which MJCF does not know.
 """
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields

@@ -4,8 +4,6 @@ On Linux it is the library that the environment variable MUJOCO_GL names, else E
 or Mesa's software driver), else OSMesa (always in software). Physics needs none of them.
 """
 
-from __future__ import annotations
-
 import ctypes
 import importlib
 import os

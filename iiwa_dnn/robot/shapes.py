@@ -1,7 +1,5 @@
 """The shapes that a robot is drawn with: primitives and meshes of its URDF's <visual>s."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal

@@ -4,8 +4,6 @@ The XML gives one-line reasons for faults, and facts that Pinocchio's model does
 that were not given, joints that follow others.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import tempfile

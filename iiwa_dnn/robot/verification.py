@@ -1,7 +1,5 @@
 """A second reader of URDF files, yourdfpy, that judges the robot made by Pinocchio."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from itertools import chain

@@ -20,8 +20,6 @@ manipulators", IEEE Trans. Automatic Control 25 (1980); J. M. Hollerbach, K. C. 
 resolution of manipulators through torque optimization", IEEE J. Robotics and Automation 3 (1987).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

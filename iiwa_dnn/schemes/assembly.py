@@ -5,8 +5,6 @@ writes a whole program into one `QP.data` array; parts without a compiled form a
 (`Layout.fill`) and write into the same array.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import accumulate, pairwise
 from typing import NamedTuple

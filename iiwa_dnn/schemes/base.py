@@ -1,7 +1,5 @@
 """Schemes: costs, tasks and limits composed into the program of a control step."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 

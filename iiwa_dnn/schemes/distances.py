@@ -1,7 +1,5 @@
 """Nearest points of a segment and a convex hull, compiled: the cores of capsules and obstacles."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.qp import Vector

@@ -1,7 +1,5 @@
 """Limits: bounds and inequality rows that no policy ever relaxes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

@@ -3,8 +3,6 @@ r"""Schemes of the literature beside the paper's, each composed of parts.
 All hold the tip's position and orientation and keep the joint limits; they differ in the cost.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -30,8 +30,6 @@ control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the
 third order is derived in docs/limits.md.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -5,8 +5,6 @@ compiled form instead (`Part.kind`, `Part.numbers`), which stands beside the equ
 `tasks` and `limits` and is chosen by its number in `iiwa_dnn.schemes.assembly`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, Literal, TypeVar

@@ -8,8 +8,6 @@ Source: D. E. Whitney, "Resolved motion rate control of manipulators and human p
 Transactions on Man-Machine Systems 10 (1969).
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Any
 

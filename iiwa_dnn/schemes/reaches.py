@@ -16,8 +16,6 @@ since :math:`\ddot x = \sum_k \dot q_k^2\, z_k \times (z_k \times r_k) + 2 \sum_
 nothing and has no :math:`\bar q_k^2`.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.qp import Matrix, Vector

@@ -1,7 +1,5 @@
 """Bodies and pairs of a scene, laid out for compiled code, and their distances."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -19,8 +19,6 @@ nothing of it but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 
 does not add up from step to step. A smaller :math:`\gamma` is for noise (`noise_gain`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any, Literal
 

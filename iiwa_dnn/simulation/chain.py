@@ -1,7 +1,5 @@
 """The signal chain of a run: from the plant's encoders to the controller, and from there back."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Poses of the frames that a run tracks beside its first."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

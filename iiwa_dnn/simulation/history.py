@@ -1,7 +1,5 @@
 """The arrays of a run while it is being made."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from importlib.metadata import version
 from typing import Any

@@ -1,7 +1,5 @@
 """Optional arrays of a record: what policies, limits and clipping did, collected during a run."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 

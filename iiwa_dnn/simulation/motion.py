@@ -8,8 +8,6 @@ Sources: Euler is the paper's equation (10). Midpoint and the classical fourth-o
 E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 

@@ -1,7 +1,5 @@
 """Disturbances of the loop: how they are drawn, and where they may enter."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal

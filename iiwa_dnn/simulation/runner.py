@@ -1,7 +1,5 @@
 """The runner: controller, plant, noise and check in one loop, which ends in a Record."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping
 

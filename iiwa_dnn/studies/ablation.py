@@ -1,7 +1,5 @@
 """Choices that the paper leaves open, one against the other: integrator, orientation, noise."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace

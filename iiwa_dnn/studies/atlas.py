@@ -6,8 +6,6 @@ is as short as its discretisation is stable with, so that none is slowed down by
 A network of one's own is one line in `NETWORKS`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

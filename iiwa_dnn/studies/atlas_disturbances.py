@@ -1,7 +1,5 @@
 """The disturbances of the atlas: noise in the network's rates, and arms unlike their model."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The schemes of the atlas: those of the package and of the literature, for the paper's arm."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from iiwa_dnn.schemes import (

@@ -5,8 +5,6 @@ section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squa
 "meters", which can only be [m^2].
 """
 
-from __future__ import annotations
-
 from iiwa_dnn.robot.arms import STARTS
 
 START = STARTS["iiwa7"]

@@ -4,8 +4,6 @@ Works on the tables of `table1`, `table2` and `ablation`, in JSON types; nothing
 and every sentence about an experiment's outcome is put together from a table's verdicts.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

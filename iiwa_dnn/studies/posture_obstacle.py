@@ -6,8 +6,6 @@ files, which docs/posture_obstacle.md names. The programs have no cost: the netw
 the range of the rows alone, and so takes the velocity nearest to the last one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Provenance of a number besides its settings: versions, source, and the robots' URDFs."""
 
-from __future__ import annotations
-
 import hashlib
 import inspect
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 `measure` is the task of the sweeps: its answer depends on its settings alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Two singular poses: a vertical tool, whose tilt the paper's block loses, and a stretched arm."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.control.controller import Mode

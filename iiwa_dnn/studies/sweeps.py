@@ -10,8 +10,6 @@ The answers come in the order of the cells, whatever the number of workers, and 
 to one thread, so the same cells give the same numbers on one machine.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Table I: seven weights without noise, in the paper's way and in ours, and ten laps of drift."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any

@@ -11,8 +11,6 @@ and with noise on the measured angles, which the feedback multiplies by :math:`\
 robot moves by it, :math:`\delta^2` times that (docs/theory.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from itertools import islice

@@ -4,8 +4,6 @@
 ours goes the same way as the paper's along the row. Otherwise ``not reproduced``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """Curves on the page, on logarithmic axes with powers of ten, and a line at the present time."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ solution, shorter errors are tried, and in the end the arm stands still. It also
 be stretched out to a singular posture, which it could not leave again within its joints' speeds.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass, replace
 

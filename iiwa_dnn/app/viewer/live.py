@@ -1,7 +1,5 @@
 """Controls of the live mode: a target to drag, weight and gains, and the controller's state."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from functools import partial

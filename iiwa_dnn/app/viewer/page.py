@@ -1,7 +1,5 @@
 """The page: its server, a session for each browser, and the loop that keeps them moving."""
 
-from __future__ import annotations
-
 import html
 import json
 import socket

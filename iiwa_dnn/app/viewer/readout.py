@@ -1,7 +1,5 @@
 """Words and bars on the page: pure functions that return HTML."""
 
-from __future__ import annotations
-
 import html
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """The replay of a record: its clock, controls, curves and read-outs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

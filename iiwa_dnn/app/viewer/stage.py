@@ -1,7 +1,5 @@
 """The three-dimensional part of the page: the robot, the floor and the paths."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Plants: robots that move under velocity commands and show their joint angles by encoders."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """The ideal plant: joints that move exactly as they are told."""
 
-from __future__ import annotations
-
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.simulation.plants.base import Plant

@@ -1,7 +1,5 @@
 """The physical arm: MuJoCo steps it under torques; the torque loop sees its encoders only."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Any, ClassVar
 

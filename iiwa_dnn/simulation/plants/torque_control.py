@@ -21,8 +21,6 @@ section 4.5 (computed torque); D. G. Luenberger, "Observing the state of a linea
 Trans. Military Electronics 8 (1964).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict, dataclass
 
