@@ -134,8 +134,8 @@ def simulation(
     check = CrossCheck(CHECKS[options.check], options.tolerance)
     asked = {name: getattr(options, name) for name in _HANDED_ON}
     with warnings.catch_warnings():
-        if elsewhere:  # said already
-            warnings.simplefilter("ignore", UserWarning)
+        # What the summary says, and what is said already.
+        warnings.filterwarnings("ignore", "" if elsewhere else "the start posture", UserWarning)
         return Simulation(robot, scheme, references, q0, plant=plant, check=check, **asked)
 
 
@@ -254,8 +254,7 @@ def arm(options: TrackOptions) -> tuple[Robot, Vector]:
     speed = checks.positive("speed", options.speed) * robot.dq_max
     robot = limited(robot, options.joint_limit).with_limits(velocity=speed)
     q0 = checks.finite_array("--q0", q0, (robot.dof,))
-    if options.q0 and not ((q0 >= robot.q_lower) & (q0 <= robot.q_upper)).all():
-        problem = f"must be within {robot.q_lower.tolist()} and {robot.q_upper.tolist()} rad"
+    if options.q0 and (problem := robot.outside(q0)):
         raise InvalidInputError("--q0", problem, options.q0)
     return robot, q0
 

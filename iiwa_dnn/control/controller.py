@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -165,6 +166,8 @@ class Controller:
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
+        if problem := self.robot.outside(start.q):
+            warnings.warn(f"the start posture {problem}", stacklevel=4)
         anchored = getattr(self.scheme, "anchored", None)
         if anchored is not None:
             self.scheme = anchored(start)

@@ -24,6 +24,7 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme, Step
 from iiwa_dnn.schemes.acceleration import lift_targets, lower_limits
 from iiwa_dnn.schemes.assembly import ASSEMBLE, assemble
+from iiwa_dnn.schemes.filling import fill
 
 _BUDGET = 60.0
 
@@ -80,7 +81,7 @@ class Plan:
         # A scheme of one's own may be any object with a build_qp.
         own = getattr(type(scheme), "build_qp", None) is not Scheme.build_qp
         self.layout = layout = None if own else scheme.layout(robot)
-        self._scheme, self._dt = scheme, dt
+        self._scheme, self._dt, self._unseen = scheme, dt, True
         dof = robot.dof
         constants: Vector = np.zeros(0)
         inertia = np.zeros(0)
@@ -227,7 +228,8 @@ class Plan:
         if self.layout.custom:
             by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(self.frames)}
             step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
-            self.layout.fill(data, step)
+            fill(self.layout, data, step, self._unseen)
+            self._unseen = False
         if self.accelerates:
             lower_limits(QP.from_data(data, self.sizes), self.last, self._dt)
         if self.cascade.levels:

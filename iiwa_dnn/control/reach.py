@@ -58,30 +58,46 @@ def largest_fraction(qp: QP) -> Reach:
     Returns:
         The share, a joint velocity that gives it, and what stops it from being larger.
     """
-    from scipy.optimize import linprog  # its 0.2 s are for the runs that need it
-
-    n, m, p = qp.sizes
-    limited = np.isfinite(qp.h)
+    n, m, _ = qp.sizes
     # In units of b's largest entry: b may be a thousand times what the arm can do.
     scale = float(np.abs(qp.b).max(initial=0.0)) or 1.0
-    found = linprog(
-        np.append(np.zeros(n), -1.0),
-        A_ub=np.column_stack([qp.G[limited], np.zeros(limited.sum())]),
+    found = _program(qp, scale)
+    if feasible := found.status == 0:
+        dq: Vector = np.clip(found.x[:n], qp.lb, qp.ub)
+        fraction = min(float(found.x[n]) / scale, 1.0)
+    else:
+        dq, fraction = np.clip(np.zeros(n), qp.lb, qp.ub), np.nan
+        found = _program(qp, scale, elastic=True)
+    if not feasible and found.status != 0:
+        return Reach(fraction, dq, (qp.lb > qp.ub).astype(np.int8), np.zeros(m, np.int8))
+    push = -(found.lower.marginals[:n] + found.upper.marginals[:n])
+    rows = np.zeros(m)
+    rows[np.isfinite(qp.h)] = -found.ineqlin.marginals
+    return Reach(fraction, dq, _sides(push), _sides(rows))
+
+
+def _program(qp: QP, scale: float, elastic: bool = False) -> Any:
+    """Solve the linear program of `largest_fraction`, b in units of `scale`.
+
+    The elastic one has a solution unless bounds cross: all rows may be violated, as little as
+    possible. Its multipliers name those that contradict each other.
+    """
+    from scipy.optimize import linprog  # its 0.2 s are for the runs that need it
+
+    n, limited, p = qp.sizes[0], np.isfinite(qp.h), qp.sizes[2]
+    k = int(limited.sum())
+    free = elastic * (k + 2 * p)
+    above, off = np.eye(k, free), np.eye(p, free, k) - np.eye(p, free, k + p)
+    return linprog(
+        np.concatenate([np.zeros(n), [elastic - 1.0], np.ones(free)]),
+        A_ub=np.column_stack([qp.G[limited], np.zeros(k), -above]),
         b_ub=qp.h[limited],
-        A_eq=np.column_stack([qp.A, -qp.b / scale]),
+        A_eq=np.column_stack([qp.A, -qp.b / scale, off]),
         b_eq=np.zeros(p),
-        bounds=np.vstack([np.column_stack([qp.lb, qp.ub]), [0.0, scale]]),
+        bounds=[*zip(qp.lb, qp.ub, strict=True), (0.0, scale), *[(0.0, np.inf)] * free],
         method="highs-ds",
         options=_LINEAR,
     )
-    if found.x is None or found.status != 0:
-        none = np.zeros(n, np.int8), np.zeros(m, np.int8)
-        return Reach(np.nan, np.clip(np.zeros(n), qp.lb, qp.ub), *none)
-    push = -(found.lower.marginals[:n] + found.upper.marginals[:n])
-    dq: Vector = np.clip(found.x[:n], qp.lb, qp.ub)
-    rows = np.zeros(m)
-    rows[limited] = -found.ineqlin.marginals
-    return Reach(min(float(found.x[n]) / scale, 1.0), dq, _sides(push), _sides(rows))
 
 
 def least_violation(
@@ -128,6 +144,8 @@ def _least_squares(rows: Matrix, rhs: Vector, qp: QP) -> Solution | None:
     """
     from scipy.optimize import lsq_linear  # its 0.2 s are for the runs that need it
 
+    if (qp.lb > qp.ub).any():
+        return None
     n, m, _ = qp.sizes
     x: Vector = np.clip(np.zeros(n), qp.lb, qp.ub)
     free = qp.lb < qp.ub  # a joint far outside its limits has one velocity left

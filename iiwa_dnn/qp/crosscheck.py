@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
+from io import StringIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -44,6 +46,9 @@ _SOLVER_OPTIONS: dict[str, dict[str, Any]] = {
         "raise_error": False,
     },
 }
+_FLAT = 1e-10
+"""Curvature of cost and task rows, by the largest, below which x is not unique along it."""
+
 SOLVERS = tuple(_SOLVER_OPTIONS)
 SECOND = {"proxqp": "osqp", "osqp": "proxqp"}
 """The solver that is asked where a reference's answer is not to be believed."""
@@ -116,7 +121,8 @@ class CrossCheck:
             programs: One `QP.data` a row.
             sizes: Their `QP.sizes`.
             x: The answers to be judged, (N, n).
-            by_cost: Measure the gap in x in the norm of P, for programs whose x is not unique.
+            by_cost: Measure the gap in x in the norm of P. Where it is above the tolerance and x is
+                not unique, since no cost acts along all directions, that is done anyhow.
 
         Returns:
             Gaps and residuals, one row a program and one column a reference.
@@ -142,8 +148,13 @@ class CrossCheck:
         curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
         objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
         gap = np.abs(step).max(axis=2)
-        if by_cost:
-            gap = np.sqrt(np.maximum(np.einsum("ijk,ikl,ijl->ij", step, cost, step), 0.0))
+        loose = np.full(len(x), by_cost)
+        for i in np.flatnonzero((gap > self.tolerance).any(axis=1)):
+            qp = QP.from_data(programs[i], sizes)
+            curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
+            loose[i] |= bool(curvatures[0] <= _FLAT * curvatures[-1])
+        in_cost = np.sqrt(np.maximum(np.einsum("ijk,ikl,ijl->ij", step, cost, step), 0.0))
+        gap = np.where(loose[:, np.newaxis], in_cost, gap)
         return Agreement(gap, objective_gap, residuals)
 
     def _answers(
@@ -155,9 +166,10 @@ class CrossCheck:
         residuals = np.empty(points.shape[:2])
         # Solvers may take minutes over one NaN.
         askable = ~np.isnan(programs).any(axis=1)
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), redirect_stdout(StringIO()):
             # They speak of dense matrices for OSQP, and of programs that are not solved, as the
-            # residual does. Once a block: for each program it would take a tenth of ProxQP's time.
+            # residual does; OSQP prints, too. Once a block: for each program it would take a tenth
+            # of ProxQP's time.
             warnings.simplefilter("ignore", UserWarning)
             for i in np.flatnonzero(askable):
                 problem = QP.from_data(programs[i], sizes).to_qpsolvers()

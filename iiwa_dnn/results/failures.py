@@ -10,6 +10,7 @@ from iiwa_dnn.files import percent
 from iiwa_dnn.results.metrics import (
     compute_metrics,
     limits,
+    position_error,
     position_limit_excess,
     rate_limit_excess,
     velocity_limit_excess,
@@ -18,6 +19,9 @@ from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
+
+FAR = 0.05
+"""Distance between tip and path at the start of a run [m] from which on it is worth a word."""
 
 _acceleration = partial(rate_limit_excess, order=1)
 _jerk = partial(rate_limit_excess, order=2)
@@ -42,7 +46,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     return [
         *path_completed(metrics),
         *_early_end(metrics),
-        *_policies(metrics),
+        *_policies(metrics, record),
         *_unsolved(metrics, record),
         *_crosscheck(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),
@@ -56,7 +60,8 @@ def describe(limit: Mapping[str, Any]) -> str:
     if "row" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
         return f"row {limit['row']} of {limit['part']}{about}"
-    return f"joint {limit['joint']} {limit['side']} {limit['limit']} limit"
+    end = " limit" if limit["limit"] in ("position", "velocity") else ""
+    return f"joint {limit['joint']} {limit['side']} {limit['limit']}{end}"
 
 
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
@@ -73,7 +78,7 @@ def _early_end(metrics: Mapping[str, Any]) -> list[str]:
     return [f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"]
 
 
-def _policies(metrics: Mapping[str, Any]) -> list[str]:
+def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
     incidents = metrics.get("incidents")
     if incidents is None or incidents["first"] is None:
@@ -87,11 +92,15 @@ def _policies(metrics: Mapping[str, Any]) -> list[str]:
     taken = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
     if any(taken.values()):
         did = ", ".join(f"{steps:,} {word}" for word, steps in taken.items() if steps)
-        blocks = [*incidents["blocking"], *incidents.get("blocking_rows", ())]
+        blocks = [*incidents.get("blocking_rows", ()), *incidents["blocking"]]
         blocks.sort(key=lambda limit: -limit["steps"])
-        names = ", ".join(map(describe, blocks[:3])) or "no bound, a singular pose"
+        own = " or ".join(metrics["settings"].get("own_tasks", ()))
+        other = f" or {own} against other tasks" if own else ""
+        names = ", ".join(map(describe, blocks[:3])) or f"no bound, a singular pose{other}"
         count, where = _count(sum(taken.values())), "" if fell_back else at
         reasons.append(f"{count} without a solution ({did}){where}; in the way: {names}")
+        if record is not None and (far := np.linalg.norm(position_error(record)[0])) > FAR:
+            reasons[-1] += f"; the path begins {_show(float(far))} m from the tip"
     if incidents["slow_steps"]:
         reached, asked = _show(incidents["path_time_s"], 6), _show(metrics["duration_s"], 6)
         reasons.append(f"slowed: path time {reached} s after {asked} s")

@@ -86,6 +86,18 @@ def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
+def bound_kinds(settings: Mapping[str, Any]) -> tuple[str, str]:
+    """Name the bounds of a run's joints, those below the velocity limit and those at it.
+
+    A bound may be another limit's than `JointLimits`; the settings list those under ``bounding``.
+    """
+    among = settings.get("bounding", ["JointLimits"])
+    own = "bound of " + " or ".join(name for name in among if name != "JointLimits")
+    if "JointLimits" not in among:
+        return own, own
+    return ("position" if len(among) == 1 else f"position limit or {own}"), "velocity"
+
+
 def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 
@@ -303,8 +315,8 @@ def _bounds(
 ) -> list[dict[str, Any]]:
     """List the bounds whose entries are signed: positive at an upper one, negative at a lower."""
     found = []
-    sides, kinds = (("lower", -1), ("upper", 1)), (("position", False), ("velocity", True))
-    for joint, (side, sign), (limit, fast) in product(range(record.dof), sides, kinds):
+    sides, kinds = (("lower", -1), ("upper", 1)), enumerate(bound_kinds(record.settings))
+    for joint, (side, sign), (fast, limit) in product(range(record.dof), sides, kinds):
         column = signed[:, joint]
         at = (np.sign(column) == sign) & (at_velocity[:, joint] == fast)
         name = {"joint": joint + 1, "side": side, "limit": limit}

@@ -155,6 +155,17 @@ class Robot:
                 _check_above_zero(name, changed[key])
         return replace(self, **changed)
 
+    def outside(self, q: ArrayLike) -> str:
+        """Name the first joint of q (n,) [rad] that is off its limits, in words; "" if none is.
+
+        A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
+        """
+        at = np.asarray(q)
+        for i in np.flatnonzero((at < self.q_lower - 1e-9) | (at > self.q_upper + 1e-9)):
+            limits = f"{self.q_lower[i]:g} and {self.q_upper[i]:g} rad"
+            return f"must be within {limits}: joint {i + 1} is at {at[i]:g}"
+        return ""
+
     def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
         """Return the same robot with a frame fixed to its tip, which becomes the tip.
 

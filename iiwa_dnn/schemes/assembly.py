@@ -2,7 +2,7 @@
 
 `Layout` states once, for a scheme and a robot, which rows belong to which part. `assemble` then
 writes a whole program into one `QP.data` array; parts without a compiled form are asked afterwards
-(`Layout.fill`) and write into the same array.
+(`iiwa_dnn.schemes.filling`) and write into the same array.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import Apart
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
@@ -27,7 +27,7 @@ from iiwa_dnn.schemes.costs import (
 )
 from iiwa_dnn.schemes.limits import JOINT_LIMITS, joint_limits
 from iiwa_dnn.schemes.motion_limits import MOTION_LIMITS, MotionLimits, merged, motion_limits
-from iiwa_dnn.schemes.parts import CUSTOM, TARGET_SIZE, Codes, Cost, Limit, Part, Step, Task
+from iiwa_dnn.schemes.parts import CUSTOM, TARGET_SIZE, Codes, Cost, Limit, Part, Task
 from iiwa_dnn.schemes.tasks import (
     ORIENTATION_BLOCK,
     ORIENTATION_SO3,
@@ -82,6 +82,8 @@ class Layout:
         custom: Blocks of parts without a compiled form.
         needs_inertia: Whether a part asks for the inertia matrix.
         restrained: Whether a limit asks for the last commands.
+        culprits: Names of parts, for a run's settings, where they are not the usual ones:
+            ``bounding``, limits with bounds, and ``own_tasks``, tasks of one's own.
         row_weights: Weight of each equality row where a policy lets the tasks yield, (p,).
         priorities: Level of each equality row, (p,); 0 for one that has to hold.
         ahead: Names of the frames whose tasks track the next target.
@@ -111,6 +113,7 @@ class Layout:
             if own and limit.row_count(robot) < 1:
                 raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
         self.robot = robot
+        self.culprits = _culprits(robot, tasks, limits)
         limits = merged(limits)
         hard = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
@@ -207,58 +210,23 @@ class Layout:
                     found.append({"part": type(block.part).__name__, "row": i + 1} | about)
         return found
 
-    def fill(self, data: Vector, step: Step) -> None:
-        """Ask the parts without a compiled form, and add what they say to an assembled program.
 
-        Raises:
-            InvalidInputError: A part answers with a wrong shape, or with NaN; it is named.
-        """
-        qp = QP.from_data(data, self.sizes)
-        n, dof = self.sizes[0], self.robot.dof
-        for part, start, rows in self.custom:
-            name, at = type(part).__name__, slice(start, start + rows)
-            if isinstance(part, Cost):
-                P, q = part.quadratic(step)
-                width = n if len(P) == n else dof  # the slack variables may be left out
-                qp.P[:width, :width] += _shaped(name, "P", P, (width, width))
-                qp.q[:width] += _shaped(name, "q", q, (width,))
-            elif isinstance(part, Task):
-                A, b = part.equations(step)
-                width = n if np.shape(A)[-1] == n else dof
-                A, b = _shaped(name, "A", A, (rows, width)), _shaped(name, "b", b, (rows,))
-                if part.weight is None:
-                    qp.A[at, :width], qp.b[at] = A, b
-                else:
-                    qp.P[:width, :width] += part.weight * A.T @ A
-                    qp.q[:width] -= part.weight * A.T @ b
-            elif isinstance(part, Limit):
-                if rows:
-                    G, h = part.inequalities(step)
-                    width = n if np.shape(G)[-1] == n else dof
-                    qp.G[at, :width] = _shaped(name, "G", G, (rows, width))
-                    qp.h[at] = _shaped(name, "h", h, (rows,))
-                if (bounds := part.bounds(step)) is not None:
-                    lower, upper = (_shaped(name, "bounds", bound, (n,)) for bound in bounds)
-                    if self.restrained:  # acceleration and jerk limits never give way
-                        lower, upper = (np.clip(b, qp.lb, qp.ub) for b in (lower, upper))
-                    np.maximum(qp.lb, lower, out=qp.lb)
-                    np.minimum(qp.ub, upper, out=qp.ub)
+def _culprits(robot: Robot, tasks: Sequence[Task], limits: Sequence[Limit]) -> dict[str, list[str]]:
+    """Name limits with bounds, unless `JointLimits` alone, and tasks that are not the package's."""
+    bounding = [
+        type(limit).__name__
+        for limit in limits
+        if type(limit).bounds is not Limit.bounds or (limit.kind and not limit.row_count(robot))
+    ]
+    own = [type(task) for task in tasks if not type(task).__module__.startswith("iiwa_dnn.")]
+    named = {} if bounding == ["JointLimits"] else {"bounding": bounding}
+    return named | ({"own_tasks": [kind.__name__ for kind in own]} if own else {})
 
 
 def _stacked(parts: Sequence[tuple[Part, int]]) -> list[Block]:
     """Blocks of parts whose rows stand one after the other."""
     starts = accumulate((rows for _, rows in parts), initial=0)
     return [Block(part, start, rows) for (part, rows), start in zip(parts, starts, strict=False)]
-
-
-def _shaped(part: str, name: str, value: object, shape: tuple[int, ...]) -> Matrix:
-    """The array of a custom part, or an InvalidInputError that names the part."""
-    array = np.asarray(value, dtype=np.float64)
-    if array.shape != shape:
-        raise InvalidInputError(part, f"{name} has shape {array.shape}, not {shape}", value)
-    if np.isnan(array).any():
-        raise InvalidInputError(part, f"{name} holds NaN", value)
-    return array
 
 
 @compiled

@@ -15,6 +15,7 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.acceleration import LEVELS, Level, lift_targets, lower_limits
 from iiwa_dnn.schemes.assembly import Layout, assemble
 from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.filling import fill
 from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
 
@@ -154,7 +155,7 @@ class Scheme:
             np.tile(moving, 2),
         )  # fmt: skip
         if layout.custom:
-            layout.fill(data, Step(kinematics, targets, 0.0, dt, conf.arrays[0], moving))
+            fill(layout, data, Step(kinematics, targets, 0.0, dt, conf.arrays[0], moving))
         qp = QP.from_data(data, layout.sizes)
         if layout.damping.size:
             lower_limits(qp, moving, dt)

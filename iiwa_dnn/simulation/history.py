@@ -154,7 +154,8 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
     """Return what a record says of robot, scheme and network of a run from q0 (n,) [rad]."""
     robot, solver = controller.robot, controller.solver
     integrator = solver.settler if controller.mode == "converged" else solver.follower
-    rates = controller.plan.rates
+    rates, layout = controller.plan.rates, controller.plan.layout
+    own: dict[str, Any] = {"rows": [], "bounding": [type(controller.scheme).__name__]}
     return {
         "robot": robot.name,
         "tip": controller.plan.frames[0],
@@ -170,6 +171,7 @@ def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:
         "integrator": integrator.settings(),
         "scheme": controller.scheme.settings(),
         "reference": _settings_of(controller.reference),
+        **(own if layout is None else {"rows": layout.row_names(), **layout.culprits}),
     }
 
 

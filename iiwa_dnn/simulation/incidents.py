@@ -1,6 +1,7 @@
 """Optional arrays of a record: what policies, limits and clipping did, collected during a run."""
 
 import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.results.failures import describe
+from iiwa_dnn.results.metrics import bound_kinds
 from iiwa_dnn.robot import Robot
 
 PATIENCE = 100
@@ -22,16 +24,17 @@ class Incidents:
         pending: Whether the last step was a policy's: the arm could not follow then.
     """
 
-    def __init__(self, steps: int, robot: Robot, rows: list[dict[str, Any]]) -> None:
+    def __init__(self, steps: int, robot: Robot, settings: Mapping[str, Any]) -> None:
         """Start without incidents.
 
         Args:
             steps: Steps of the whole run.
             robot: The robot, n joints, with its limits.
-            rows: Names of the inequality rows (`Layout.row_names`).
+            settings: Settings of the run, with its inequality rows.
         """
         self.pending, self._series = False, 0
-        self._steps, self._robot, self._rows = steps, robot, rows
+        self._steps, self._robot = steps, robot
+        self._rows, self._kinds = settings["rows"], bound_kinds(settings)
         self._arrays: dict[str, NDArray[Any]] = {}
 
     def note(self, k: int, resolution: Resolution) -> None:
@@ -42,7 +45,8 @@ class Incidents:
         n, qp = self._robot.dof, resolution.qp
         sides = resolution.sides[:n]
         bound = np.where(sides > 0, qp.ub[:n], qp.lb[:n])
-        at_velocity = np.abs(bound) >= self._robot.dq_max
+        # Bounds that cross are others' than the robot's.
+        at_velocity = (np.abs(bound) >= self._robot.dq_max) & (qp.lb <= qp.ub)[:n]
         self._array("blocking", (n,), np.int8)[k] = sides * (1 + at_velocity)
         if resolution.rows.any():
             self._array("blocking_rows", resolution.rows.shape, np.int8)[k] = resolution.rows
@@ -78,10 +82,9 @@ class Incidents:
     def status(self, k: int, t: float) -> str:
         """Return the status of a run that a policy stopped at step k."""
         where = [
-            f"joint {i + 1} {'upper' if code > 0 else 'lower'} "
-            f"{'velocity' if abs(code) == 2 else 'position'} limit"
+            describe({"joint": i + 1, "side": side, "limit": self._kinds[abs(code) - 1]})
             for i, code in enumerate(self._arrays["blocking"][k].tolist())
-            if code
+            if code and (side := "upper" if code > 0 else "lower")
         ]
         if "blocking_rows" in self._arrays:
             blocking = np.flatnonzero(self._arrays["blocking_rows"][k])

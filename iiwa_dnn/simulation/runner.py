@@ -106,14 +106,13 @@ class Simulation:
             raise InvalidInputError("scheme", problem, scheme)
         self._misled = chain.misleads or not self._ideal
         self._altered = (chain.alters or motion != "euler") and not plan.accelerates
-        self._rows = [] if plan.layout is None else plan.layout.row_names()
         shared = {
             "dt": dt, "duration": length, "mode": mode, "noise": noise, "noise_at": noise_at,
             "motion": motion if self._ideal else "physics", "filter_window": filter_window,
             "integral_gain": integral_gain, "policy": policy, "seed": seed,
             "disturbance": None if disturbance is None else disturbance.settings(),
             "estimator": None if estimator is None else estimator.settings(),
-            "rows": self._rows, "check": self._check.settings(), **stated(scheme, robot),
+            "check": self._check.settings(), **stated(scheme, robot),
             "versions": versions(self._plant.packages),
         }  # fmt: skip
         self._settings = shared | settings_of(self._controller, self._q0) | self._plant.settings()
@@ -161,7 +160,7 @@ class Simulation:
         self._chain.restart()
         if self._integral is not None:
             self._integral.reset()
-        self._incidents = Incidents(self.steps, self._robot, self._rows)
+        self._incidents = Incidents(self.steps, self._robot, self._settings)
         with_torques = self._plant.torque is not None
         self._history = History(self.steps, self._controller, self._q0, with_torques)
 
@@ -171,7 +170,8 @@ class Simulation:
         plain = not (self._altered or self._misled or self._integral or self._incidents.pending)
         if not plain or not isinstance(plant, IdealPlant):
             return 0
-        steps = self._controller.follow(plant.state, self._answers, count - taken)
+        if not (steps := self._controller.follow(plant.state, self._answers, count - taken)):
+            return 0
         history, answers, rows = self._history, self._answers, slice(taken, taken + steps)
         to = slice(done + taken, done + taken + steps)
         history.q[to], history.q[to.stop] = answers.q[rows], plant.state

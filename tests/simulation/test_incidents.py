@@ -16,7 +16,7 @@ SPEED = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
 
 
 def blank() -> Incidents:
-    return Incidents(5, paper_robot().with_limits(velocity=SPEED), ROWS)
+    return Incidents(5, paper_robot().with_limits(velocity=SPEED), {"rows": ROWS})
 
 
 def decided(sides: list[int], rows: list[int], fraction: float = 0.25) -> Resolution:

@@ -330,7 +330,8 @@ def test_a_start_outside_the_limits_is_brought_back() -> None:
     upper = np.full(7, 2.5)
     upper[0] = PAPER_Q0[0] - 0.02
     robot = paper_robot().with_limits(upper=upper)
-    record = run(robot=robot, duration=0.5, check=CrossCheck())
+    with pytest.warns(UserWarning, match=r"^the start posture .* joint 1 is at -2.357"):
+        record = run(robot=robot, duration=0.5, check=CrossCheck())
     excess = record.q[:, 0] - upper[0]
     assert (np.diff(excess) < 1e-12).all()
     # Like exp(-kappa t), kappa = 20 / s.
