@@ -7,7 +7,8 @@ from pathlib import Path
 import tyro
 from PIL import Image
 
-from iiwa_dnn import IiwaDnnError, Record, load_robot
+from iiwa_dnn import Record, load_robot
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.files import write_atomically
 from iiwa_dnn.results.pictures import FRAME_RATE, frames
 
@@ -20,18 +21,14 @@ REST = 1500  # how long the last picture stands [ms]
 def main(
     run: tyro.conf.Positional[str] = "runs/heart",
     out: tyro.conf.Positional[str] = "docs/images/heart.gif",
-) -> int:
-    """Draw and write; 2 if there is no such run, or nothing to draw with."""
-    try:
-        record = Record.load(Path(run) / "record.npz")
-        robot = load_robot(record.settings["robot"], tip=record.settings["tip"])
-        pictures = [
-            Image.fromarray(frame).resize(SIZE, Image.Resampling.LANCZOS)
-            for frame in islice(frames(robot, record), 0, None, EVERY)
-        ]
-    except IiwaDnnError as error:
-        print(f"animate_heart: error: {error}", file=sys.stderr)
-        return 2
+):
+    """Draw and write."""
+    record = Record.load(Path(run) / "record.npz")
+    robot = load_robot(record.settings["robot"], tip=record.settings["tip"])
+    pictures = [
+        Image.fromarray(frame).resize(SIZE, Image.Resampling.LANCZOS)
+        for frame in islice(frames(robot, record), 0, None, EVERY)
+    ]
     # One palette for all, out of the last picture, which has every colour in it: no flicker.
     palette = pictures[-1].quantize(COLOURS)
     first, *rest = (p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures)
@@ -43,8 +40,7 @@ def main(
         ),
     )
     print(f"{len(pictures)} pictures, {Path(out).stat().st_size / 1e6:.2f} MB, written to {out}")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -14,6 +14,8 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn import checks
+from iiwa_dnn.app.command_line import run_script
 
 # The libraries' weights are 1 and 1e-6; a tolerance of 1e-9 asks for a posture's above that.
 TASK, POSTURE = 1e3, 1e-3
@@ -71,6 +73,7 @@ def scene(name, dt):
 
 def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[float] = 5e-3):
     """Run all scenes for `duration` seconds; 1 where a check failed."""
+    checks.positive("dt", dt)
     warnings.simplefilter("ignore")  # the targets begin away from the tools
     failed = []
     for name in SCENES:
@@ -87,4 +90,4 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -11,6 +11,7 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.results.pictures import ArmRenderer, sample_at
 from iiwa_dnn.results.plots import new_figure, write_figures
 
@@ -72,4 +73,4 @@ def main(
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -3,8 +3,6 @@
 import sys
 from pathlib import Path
 
-import tyro
-
 from iiwa_dnn import (
     Configuration,
     CrossCheck,
@@ -15,6 +13,7 @@ from iiwa_dnn import (
     load_robot,
     simulate,
 )
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.files import prepare_folder, write_text
 from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot.arms import ARMS
@@ -67,4 +66,4 @@ def draw(name, start, orientation):
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -11,6 +11,8 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn import checks
+from iiwa_dnn.app.command_line import run_script
 
 DT = 1e-3  # control period [s]
 
@@ -32,6 +34,7 @@ class Arm:
 
 def main(steps: tyro.conf.Positional[int] = 1000):
     """Draw the heart's first steps in real time; 1 where a command was not a solved one."""
+    checks.integer("steps", steps, 1)
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
     start = iiwa_dnn.Configuration(robot, arm.q)
@@ -58,4 +61,4 @@ def main(steps: tyro.conf.Positional[int] = 1000):
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -17,6 +17,7 @@ from PIL import Image, ImageDraw
 from scipy.spatial.transform import Rotation
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.app.main import main as command
 from iiwa_dnn.files import prepare_folder
 from iiwa_dnn.results import plots
@@ -170,4 +171,4 @@ def main(folder: tyro.conf.Positional[str] = "docs/images/gallery"):
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(run_script(main))

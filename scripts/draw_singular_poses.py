@@ -1,8 +1,11 @@
 """Draw what happens in singular poses into a folder: docs/images, or the one that is given."""
 
+import sys
+
 import numpy as np
 import tyro
 
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 from iiwa_dnn.studies.singular import stretched_run, tilted_run
@@ -45,4 +48,4 @@ def main(folder: tyro.conf.Positional[str] = "docs/images"):
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(run_script(main))

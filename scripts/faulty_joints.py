@@ -21,6 +21,7 @@ performance for fault-tolerant redundant manipulators", IEEE Access 10 (2022).
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -29,10 +30,12 @@ import pinocchio as pin
 import tyro
 
 from iiwa_dnn import checks, load_robot
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point
 from iiwa_dnn.networks.tracking import FIFD, TrackingSolver
 from iiwa_dnn.qp.layout import Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.simulation.history import step_count
 
 START = np.array([-0.2578, 0.2946, 0.5946, -0.9896, 0.4993, 0.3100, 0.8620])
 FASTEST = 3.6 * np.array([1e-4, 0.1, 0.1, 0.1, 1e-4, 1e-4, 0.1])
@@ -209,7 +212,7 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
 
 def main(seconds: tyro.conf.Positional[float] = 10.0) -> None:
     """Run the arm and print what it does."""
-    states, errors = by_network(round(seconds / DT))
+    states, errors = by_network(step_count(seconds, DT))
     shares = np.abs(states[:, :7] / FASTEST).max(axis=0)
     print("largest velocities, as shares of their bounds:", *shares.round(3))
     print(f"tool's distance from the path: {np.linalg.norm(errors[0]):.2e} m at first, "
@@ -217,4 +220,4 @@ def main(seconds: tyro.conf.Positional[float] = 10.0) -> None:
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(run_script(main))

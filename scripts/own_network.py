@@ -14,6 +14,7 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.networks.base import Flow
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -71,4 +72,4 @@ def main(steps: tyro.conf.Positional[int] = 300):
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -4,11 +4,14 @@ A reference that turns gives two things: the turn since t = 0, about the world's
 angular velocity. One sees that the tool follows the turning target, and that ProxQP agrees.
 """
 
+import sys
+
 import numpy as np
 import tyro
 from scipy.spatial.transform import Rotation
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.results.metrics import orientation_error
 
 AXIS, LARGEST, RATE = np.array([1.0, 0.0, 0.0]), 0.2, 2.0  # [-], [rad], [rad/s]
@@ -40,4 +43,4 @@ def main(duration: tyro.conf.Positional[float] = 10.0):
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(run_script(main))

@@ -6,12 +6,14 @@ QALL1.mat to QALL4.mat as fourth argument, their joint angles are compared one b
     python scripts/posture_obstacle.py [FOLDER [DT [SECONDS [AUTHORS]]]]
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
 import tyro
 from scipy.io import loadmat
 
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.studies import posture_obstacle as study
 
@@ -64,4 +66,4 @@ def main(
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    sys.exit(run_script(main))

@@ -9,6 +9,7 @@ import sys
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 HELD = ("iiwa7_joint_3", "iiwa7_joint_5", "iiwa7_joint_7")
@@ -38,4 +39,4 @@ def main(duration: tyro.conf.Positional[float] = 4.0, dt: tyro.conf.Positional[f
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -9,6 +9,7 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 
@@ -41,4 +42,4 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -12,6 +12,7 @@ import tyro
 from matplotlib.figure import Figure
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.studies.sweeps import Outcome, Sweep
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
@@ -56,4 +57,4 @@ def main(
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

@@ -10,6 +10,7 @@ import numpy as np
 import tyro
 
 import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
 
 LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
 
@@ -54,4 +55,4 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
 
 
 if __name__ == "__main__":
-    sys.exit(tyro.cli(main))
+    sys.exit(run_script(main))

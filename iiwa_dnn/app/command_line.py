@@ -12,7 +12,8 @@ from collections.abc import Callable, Sequence
 from contextlib import redirect_stderr
 from dataclasses import Field, fields, replace
 from difflib import get_close_matches
-from inspect import getdoc
+from functools import partial, wraps
+from inspect import getdoc, signature
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -69,6 +70,34 @@ def run_command(
         if getattr(options, "verbose", False):
             traceback.print_exc()
         return fail(prog, error)
+
+
+def run_script(main: Callable[..., int | None]) -> int:
+    """Call a script's function with the words of the command line, as `run_command` does.
+
+    Args:
+        main: The function, its parameters annotated as tyro wants them.
+
+    Returns:
+        The function's exit code, 0 for None; after an error of the package as `run_command`.
+
+    Raises:
+        SystemExit: As in `run_command`.
+    """
+
+    @wraps(main)
+    def read(*values: Any, **named: Any) -> Callable[[], int | None]:
+        for name, value in signature(main).bind(*values, **named).arguments.items():
+            if isinstance(value, _Wrong):
+                raise InvalidInputError(name, value)
+        return partial(main, *values, **named)
+
+    try:
+        call = _read_quietly(read, sys.argv[1:])
+        with ended_by_signals():
+            return call() or 0
+    except IiwaDnnError as error:
+        return fail(Path(sys.argv[0]).stem, error)
 
 
 def fail(prog: str, error: IiwaDnnError) -> int:
@@ -150,17 +179,10 @@ def _read(kind: type[S], prog: str, words: Sequence[str], default: S | None = No
     switches = {name: getattr(start, field.name) for name, field in names.items()}
     idle = {k if on else f"--no-{k[2:]}" for k, on in switches.items() if isinstance(on, bool)}
     about = f"{getdoc(kind)}\n\n{EXIT_CODES}"
-    try:
-        options: S
-        with redirect_stderr(io.StringIO()):
-            options, unread = tyro.cli(
-                kind, prog=prog, description=about, args=[w for w in words if w not in idle],
-                default=start, return_unknown_args=True, registry=_registry,
-            )  # fmt: skip
-    except SystemExit as end:
-        if not end.code:
-            raise
-        raise IiwaDnnError(f"not understood: {' '.join(words)} {_HINT}") from None
+    options: S
+    given = [word for word in words if word not in idle]
+    more = {"prog": prog, "description": about, "default": start, "return_unknown_args": True}
+    options, unread = _read_quietly(kind, given, **more)
     for word in unread:
         if not word.startswith("-"):
             raise IiwaDnnError(f"one argument too many: {word!r} {_HINT}")
@@ -172,6 +194,17 @@ def _read(kind: type[S], prog: str, words: Sequence[str], default: S | None = No
         if isinstance(value, _Wrong):
             raise InvalidInputError(name, value)
     return options
+
+
+def _read_quietly(kind: Any, words: Sequence[str], **more: Any) -> Any:
+    """Let tyro read words, and put what it does not understand in one line."""
+    try:
+        with redirect_stderr(io.StringIO()):
+            return tyro.cli(kind, args=words, registry=_registry, **more)
+    except SystemExit as end:
+        if not end.code:
+            raise
+        raise IiwaDnnError(f"not understood: {' '.join(words)} {_HINT}") from None
 
 
 _registry = ConstructorRegistry()

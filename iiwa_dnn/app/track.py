@@ -86,6 +86,16 @@ _HANDED_ON = (
     "policy", "seed",
 )  # fmt: skip
 
+# Options that have no effect, and beside which other ones they would have one.
+_IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "next_gain": (lambda o: o.tracking != "next", "--tracking next"),
+    "gain": (lambda o: o.tracking == "next", "--tracking paper; beside next it is --next-gain"),
+    "noise_at": (lambda o: o.noise == 0.0, "--noise"),
+    "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp or both"),
+    "push_at": (lambda o: o.push is None, "--push"),
+    "push_for": (lambda o: o.push is None, "--push"),
+}
+
 More = Callable[[Record, Path], list[Path]]
 Last = Callable[[Record, Path], None] | None
 
@@ -106,6 +116,11 @@ def simulation(
         q0: Joint positions at the start [rad], (n,).
         plant: Moves under the commands; None: the ideal one.
     """
+    for name, (idle, beside) in _IDLE.items():
+        value, default = (getattr(o, name, None) for o in (options, type(options)))
+        if value != default and idle(options):
+            flag = f"--{name.replace('_', '-')}"
+            raise InvalidInputError(flag, f"has no effect but beside {beside}", value)
     scheme: Scheme = DoubleIndicator(
         weight=options.weight,
         position_gain=options.gain,
@@ -171,7 +186,8 @@ def tell_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme
     q = _posture_at(first, start, scheme)
     found = "no way there was found from here"
     if q is not None:
-        found = "to begin there: --q0 " + " ".join(f"{value:.6f}" for value in q)
+        posture = " ".join(f"{value:.6f}" for value in q)
+        found = f"to begin there, with another --out or --overwrite: --q0 {posture}"
     print(f"the path begins {away}, at {there}; {found}", file=sys.stderr)
     return elsewhere
 

@@ -20,7 +20,7 @@ from iiwa_dnn.results.record import Record
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
 
-FAR = 0.05
+FAR = 1e-3
 """Distance between tip and path at the start of a run [m] from which on it is worth a word."""
 
 _acceleration = partial(rate_limit_excess, order=1)

@@ -584,6 +584,10 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "unknown kinetic": (["--kinetic", "mass"], "'mass'"),
     "unknown check": (["--check", "gurobi"], "'gurobi'"),
     "unknown noise entry": (["--noise-at", "motor"], "'motor'"),
+    "idle noise entry": (["--noise-at", "network"], "--noise-at: has no effect but beside --noise"),
+    "idle next gain": (["--next-gain", "5"], "--next-gain: has no effect but beside --tracking n"),
+    "idle gain": (["--tracking", "next", "--gain", "5"], "--gain: has no effect but"),
+    "idle tolerance": (["--check", "none", "--tolerance", "1"], "--tolerance: has no effect but"),
     "unknown option": (["--wieght", "0.2"], "--wieght"),
     "an argument too many": (["heart"], "heart"),
     "an option without its value": (["--weight"], "--weight"),
@@ -758,6 +762,7 @@ def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
         call([*arguments, "--duration", "0.01", "--dt", "1e-3", "--no-plots", "--out", str(out)])
         told = capsys.readouterr().err
         assert ("begins 0.02 m and" in told) == (shift > 0.0)
+        assert ("another --out or --overwrite: --q0" in told) == (shift > 0.0)
         desired = Record.load(out / "record.npz").position_desired[0]
         np.testing.assert_allclose(desired, place + [shift, 0.0, 0.0], rtol=0, atol=1e-15)
     # Begun where it says, the run has nothing to say, and begins there.

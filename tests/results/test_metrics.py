@@ -367,6 +367,8 @@ def test_rows_in_the_way_are_named():
         "7 steps without a solution (7 slowed), the first at step 2 (t = 0.2 s); in the way: "
         "row 1 of Obstacle, row 2 of CollisionAvoidance, joint 5 lower position limit"
     )
+    away = sample(record, "position_desired", 0, record.position[0] + [0.0, 0.3, 0.4])
+    assert failures(away)[1] == failures(record)[1] + "; the path begins 0.5 m from the tip"
 
 
 def test_each_kind_of_bound_has_its_own_multipliers():

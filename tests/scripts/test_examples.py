@@ -35,6 +35,23 @@ def test_what_an_example_takes_is_told(name: str, tmp_path: Path) -> None:
     assert not any(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        ("control_loop.py 0", "control_loop: error: steps: must be a whole number of at least 1"),
+        ("own_parts.py x", "own_parts: error: duration: must be a number, not 'x'"),
+        ("faulty_joints.py 1 2", "faulty_joints: error: not understood: 1 2"),
+    ],
+)
+def test_what_an_example_does_not_take_is_told_in_one_line(call: str, said: str) -> None:
+    name, *words = call.split()
+    done = subprocess.run(
+        [sys.executable, SCRIPTS / name, *words], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert done.stderr.startswith(said)
+
+
 def test_a_control_loop(tmp_path: Path) -> None:
     text = example(tmp_path, "control_loop.py", "200")
     assert 0.0 < number(r"median ([\d.]+) us", text) <= number(r"p99 ([\d.]+) us", text)
