@@ -18,7 +18,7 @@ import numpy as np
 
 import iiwa_dnn
 from benchmarks.control import LOOPS, measure_steps
-from benchmarks.report import table
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import file_of
 from scripts.arm_scenes import SCENES, scene
@@ -108,9 +108,9 @@ def bench_arms(arguments: Sequence[str] | None = None, prog: str = "arms") -> in
     head = ["scene", "iiwa_dnn µs"]
     for peer in PEERS:
         head += [f"{peer.split(',')[0]} µs", "ours of it"]
-    print("\n".join(table(head, times)), end="\n\n")
+    print(markdown_table(head, times), end="\n\n")
     head = ["scene", "peer", "its error at the end m", "tips apart m", "arrived m", "joints rad"]
-    print("\n".join(table(head, motions)))
+    print(markdown_table(head, motions))
     if missing:
         print(f"not measured: {', '.join(sorted(missing))}")
     return 0

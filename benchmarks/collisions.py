@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.control import LOOPS, measure_steps, paper_robot
+from benchmarks.control import LOOPS, measure_steps
 from iiwa_dnn.robot.collision import collision_model
+from iiwa_dnn.studies.runs import paper_robot
 
 BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
 RADII, DISTANCE = (0.05, 0.1, 0.1), 0.03  # [m]

@@ -7,7 +7,8 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,11 +22,12 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
-from iiwa_dnn.robot import Configuration, Robot, load_robot
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import file_of
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import Simulation
 from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.runs import paper_robot
 from scripts import own_parts
 
 CHUNK = 250
@@ -61,9 +63,13 @@ LOOPS = (
 )
 
 
-def paper_robot() -> Robot:
-    """Load the iiwa 7 with the paper's position limits."""
-    return load_robot("iiwa7").with_limits(lower=-paper.JOINT_LIMIT, upper=paper.JOINT_LIMIT)
+@dataclass
+class Taken:
+    """Times [us] and joint positions [rad] of a loop's steps, and the error that ended it."""
+
+    us: list[float] = field(default_factory=list)
+    q: list[list[float]] = field(default_factory=list)
+    problem: str = ""
 
 
 class Driver:
@@ -106,13 +112,49 @@ class Driver:
         self._errors.close()
 
 
+def take_turns(
+    loops: Mapping[Loop, Path],
+    task: Path,
+    steps: int,
+    progress: Callable[[int], object],
+    tolerant: bool = False,
+) -> dict[Loop, Taken]:
+    """Let loops take their steps in turns, each in a process of its Python interpreter.
+
+    Raises:
+        IiwaDnnError: A loop ended with an error; if `tolerant`, the others go on.
+    """
+    taken = {loop: Taken() for loop in loops}
+    with ExitStack() as stack:
+        drivers: dict[Loop, Driver] = {}
+        for loop, python in loops.items():
+            drivers[loop] = driver = Driver(loop, python, task)
+            stack.callback(driver.close)
+        for first in range(0, steps, CHUNK):
+            last = min(first + CHUNK, steps)
+            for loop, driver in drivers.items():
+                if taken[loop].problem:
+                    continue
+                try:
+                    answer = driver.take(first, last)
+                except IiwaDnnError as error:
+                    if not tolerant:
+                        raise
+                    taken[loop].problem = str(error)
+                else:
+                    taken[loop].us += answer["us"]
+                    taken[loop].q += answer["q"]
+            progress(last - first)
+    return taken
+
+
 def measure_steps(
     steps: int,
     dt: float,
     pythons: Mapping[str, Path | None] | None = None,
     progress: Callable[[int], object] = lambda done: None,
     scene: Mapping[str, Any] | None = None,
-    loops: Sequence[Loop] | None = None,
+    loops: Sequence[Loop] = LOOPS,
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Let all loops follow the beginning of the heart, in turns, each in a process of its own.
 
@@ -122,7 +164,7 @@ def measure_steps(
         pythons: Python interpreter by module, for libraries that this one does not have.
         progress: Called with the number of steps done since the last call.
         scene: Further arrays of the task, such as obstacles; with `poses`, of another one.
-        loops: Loops to measure; None: all of `LOOPS`.
+        loops: Loops to measure.
 
     Returns:
         Of each loop the times per step [us] and the largest distance to the reference [m] after a
@@ -132,16 +174,11 @@ def measure_steps(
     reference = Heart().anchored(Configuration(robot, paper.START))
     targets = reference.sample(np.arange(max(steps, 20) + 1) * dt)
     found: dict[str, Path] = {}
-    wanted = LOOPS if loops is None else loops
-    for module in dict.fromkeys(loop.module for loop in wanted):
+    for module in dict.fromkeys(loop.module for loop in loops):
         python = given.get(module) or (importlib.util.find_spec(module) and Path(sys.executable))
         if python:
             found[module] = python
-    loops = [loop for loop in wanted if loop.module in found]
-    times: dict[Loop, list[float]] = {loop: [] for loop in loops}
-    moved: dict[Loop, list[list[float]]] = {loop: [] for loop in loops}
-    errors, data = dict.fromkeys(loops, 0.0), robot.model.createData()
-    drivers: list[Driver] = []
+    data = robot.model.createData()
     with tempfile.TemporaryDirectory() as folder:
         task = Path(folder) / "task.npz"
         heart = {
@@ -151,35 +188,23 @@ def measure_steps(
             "poses": [pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
         }  # fmt: skip
         np.savez(task, **{**heart, **(scene or {})})
-        try:
-            drivers += [Driver(loop, found[loop.module], task) for loop in loops]
-            for first in range(0, steps, CHUNK):
-                last = min(first + CHUNK, steps)
-                for loop, driver in zip(loops, drivers, strict=True):
-                    taken = driver.take(first, last)
-                    times[loop] += taken["us"]
-                    moved[loop] += taken["q"] if scene else []
-                    on_heart = [] if scene and "poses" in scene else taken["q"]
-                    for k, q in enumerate(on_heart, first + 1):
-                        tip = Configuration(robot, q, data).position
-                        error = float(np.linalg.norm(tip - targets[k].position))
-                        errors[loop] = max(errors[loop], error)
-                progress(last - first)
-        finally:
-            for driver in drivers:
-                driver.close()
-    rows = [
-        {
+        there = {loop: found[loop.module] for loop in loops if loop.module in found}
+        taken = take_turns(there, task, steps, progress)
+    rows = []
+    for loop, each in taken.items():
+        us, q = each.us, each.q
+        on_heart = [] if scene and "poses" in scene else q
+        tips = [Configuration(robot, at, data).position for at in on_heart]
+        errors = [float(np.linalg.norm(at - targets[k].position)) for k, at in enumerate(tips, 1)]
+        row = {
             "name": loop.name,
-            "median_us": float(np.median(times[loop])),
-            "p99_us": float(np.percentile(times[loop], 99.0)),
-            "p999_us": float(np.percentile(times[loop], 99.9)),
-            "max_position_error_m": errors[loop],
-            **({"q": moved[loop]} if scene else {}),
+            "median_us": float(np.median(us)),
+            "p99_us": float(np.percentile(us, 99.0)),
+            "p999_us": float(np.percentile(us, 99.9)),
+            "max_position_error_m": max(errors, default=0.0),
         }
-        for loop in loops
-    ]
-    return rows, sorted({loop.module for loop in wanted} - set(found))
+        rows.append({**row, **({"q": q} if scene else {})})
+    return rows, sorted({loop.module for loop in loops} - set(found))
 
 
 def measure_own_part(duration: float, dt: float, rounds: int = 3) -> dict[str, float]:

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from benchmarks.report import table
+from benchmarks.report import made_on, tabulate
 from iiwa_dnn.files import write_json, write_text
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 
 if TYPE_CHECKING:
@@ -48,107 +49,73 @@ def save_loop_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
     return [folder / "report.md", folder / "results.json", *figures]
 
 
+_STEPS = {
+    "step": "{name}", "median µs": "{median_us:.1f}", "p99 µs": "{p99_us:.1f}",
+    "p99.9 µs": "{p999_us:.1f}", "of PlaCo's": "{of_placo:.2f}",
+    "largest position error m": "{max_position_error_m:.2e}",
+}  # fmt: skip
+_RUNS = {
+    "unchecked": "unchecked",
+    "checked": "every step checked by ProxQP",
+    "proxqp": "ProxQP alone on the same programs",
+    "proxqp_with_problem": "the same, making its problems",
+}
+
+
 def markdown(results: Mapping[str, Any]) -> str:
     """The report's text."""
-    where, runs, memory = results["environment"], results["runs"], results["memory"]
-    versions = ", ".join(f"{name} {number}" for name, number in where["versions"].items())
-    rows = results["steps"]
-    placo = next((row["median_us"] for row in rows if row["name"] == "PlaCo"), None)
+    runs, memory, own = results["runs"], results["memory"], results["own_part"]
+    medians = {row["name"]: row["median_us"] for row in results["steps"]}
+    placo = medians.get("PlaCo")
+    steps = [{**row, "of_placo": placo and row["median_us"] / placo} for row in results["steps"]]
     unchecked = 1e6 * runs["wall_s"]["unchecked"] / runs["steps"]
-    own = results["own_part"]
-    lines = [
+    timed = [
+        {"what": name, "wall": runs["wall_s"][key], "factor": runs["realtime_factor"].get(key)}
+        for key, name in _RUNS.items()
+    ]
+    parts = [
         "# The control loop",
-        "",
-        f"{where['date']}, {where['cpu']}, {where['cores']} cores, Python {where['python']}, "
-        f"{versions}. Control period {results['dt']:g} s.",
-        "",
+        f"{made_on(results['environment'])} Control period {results['dt']:g} s.",
         "## One step, beside its peers",
-        "",
         "![Median and tail of a step's time](steps.png)",
-        "",
-        *table(
-            ("step", "median µs", "p99 µs", "p99.9 µs", "of PlaCo's", "largest position error m"),
-            [
-                (
-                    row["name"], f"{row['median_us']:.1f}", f"{row['p99_us']:.1f}",
-                    f"{row['p999_us']:.1f}", _ratio(row["median_us"], placo),
-                    f"{row['max_position_error_m']:.2e}",
-                )
-                for row in rows
-            ],
-        ),
-        "",
+        tabulate(_STEPS, steps),
         *(f"Not measured, since no Python has it: {name}." for name in results["missing"]),
-        "",
         f"## A run of {runs['steps']} steps",
-        "",
-        *table(
-            ("what", "wall time s", "times as quick as the robot"),
-            [
-                (name, f"{runs['wall_s'][key]:.2f}", _factor(runs["realtime_factor"].get(key)))
-                for name, key in (
-                    ("unchecked", "unchecked"),
-                    ("every step checked by ProxQP", "checked"),
-                    ("ProxQP alone on the same programs", "proxqp"),
-                    ("the same, making its problems", "proxqp_with_problem"),
-                )
-            ],
+        tabulate(
+            {"what": "{what}", "wall time s": "{wall:.2f}",
+             "times as quick as the robot": "{factor:.1f}"}, timed,
         ),
-        "",
         f"The checked run takes {runs['checked_over_proxqp_with_problem']:.2f} of the time of "
         f"ProxQP alone in one process with making its problems, {runs['checked_over_proxqp']:.2f} "
         "of its solving.",
-        "",
-        f"A step of the unchecked run takes {unchecked:.2f} µs, {_ratio(unchecked, placo) or '?'} "
-        "of PlaCo's median step.",
-        "",
+        f"A step of the unchecked run takes {unchecked:.2f} µs, "
+        f"{f'{unchecked / placo:.2f}' if placo else '?'} of PlaCo's median step.",
         f"The checked run of `scripts/own_parts.py` takes {own['own_part']:.2f} s, "
         f"{own['ratio']:.2f} times the run of the built-in parts, {own['built_in']:.2f} s.",
-        "",
         "## Where a step's time goes",
-        "",
-        *table(
+        markdown_table(
             ("part, called on its own from Python", "µs"),
-            [(name, f"{value:.2f}") for name, value in results["profile"]],
+            ([name, f"{value:.2f}"] for name, value in results["profile"]),
         ),
-        "",
         "## A new process",
-        "",
-        *table(
-            ("what", "s"),
-            [
-                ("`import iiwa_dnn`", f"{results['startup']['import_s']:.2f}"),
-                (
-                    "process start to first step, compiled code found",
-                    f"{results['startup']['first_step_warm_s']:.2f}",
-                ),
-                (
-                    "process start to first step, everything compiled",
-                    f"{results['startup']['first_step_cold_s']:.1f}",
-                ),
-            ],
+        tabulate(
+            {"`import iiwa_dnn` s": "{import_s:.2f}",
+             "process start to first step, compiled code found s": "{first_step_warm_s:.2f}",
+             "everything compiled s": "{first_step_cold_s:.1f}"}, [results["startup"]],
         ),
-        "",
         "## Memory of a run and of one ten times as long",
-        "",
-        *table(
+        markdown_table(
             ("run", "largest memory MB", "record MB"),
-            [
-                (name, f"{peak / 1e6:.1f}", f"{record / 1e6:.1f}")
-                for name, peak, record in zip(
-                    ("one", "ten times as long"), memory["peak_bytes"], memory["record_bytes"],
-                    strict=True,
-                )
-            ],
+            (
+                [name, *(f"{memory[key][i] / 1e6:.1f}" for key in ("peak_bytes", "record_bytes"))]
+                for i, name in enumerate(("one", "ten times as long"))
+            ),
         ),
-        "",
         f"The memory grows by {memory['growth_over_record']:.2f} times what the record grows by.",
-        "",
         "## Limits of the comparison",
-        "",
         LIMITS,
     ]  # fmt: skip
-    return "\n".join(lines)
+    return "\n\n".join(parts)
 
 
 def steps_figure(rows: list[dict[str, Any]]) -> Figure:
@@ -171,11 +138,3 @@ def steps_figure(rows: list[dict[str, Any]]) -> Figure:
     axes.invert_yaxis()
     legend_above(axes, columns=3)
     return figure
-
-
-def _factor(value: float | None) -> str:
-    return "" if value is None else f"{value:.1f}"
-
-
-def _ratio(value: float, placo: float | None) -> str:
-    return "" if placo is None else f"{value / placo:.2f}"

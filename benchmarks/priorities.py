@@ -17,12 +17,11 @@ from typing import NamedTuple
 import daqp
 import numpy as np
 
-from benchmarks.control import paper_robot
-from benchmarks.report import table
 from iiwa_dnn.control.cascade import HELD, SMALLEST, Cascade
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import (
     JointLimits,
@@ -32,6 +31,7 @@ from iiwa_dnn.schemes import (
     PostureTask,
     Scheme,
 )
+from iiwa_dnn.studies.runs import paper_robot
 
 ROBOT = paper_robot()
 SCHEME = Scheme(
@@ -152,7 +152,7 @@ def main(count: int = 1000) -> None:
             )
         )  # fmt: skip
     head = ("poses", "solved", "equal to 1e-8", "largest difference", "conflicts by level")
-    print("\n".join(table(head, lines)))
+    print(markdown_table(head, lines))
 
 
 if __name__ == "__main__":

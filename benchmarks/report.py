@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 import matplotlib
 import numpy as np
 
+from iiwa_dnn.app.paper import processor
 from iiwa_dnn.files import write_json, write_text
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
 
 if TYPE_CHECKING:
@@ -39,15 +41,49 @@ LIMITS = """\
 """
 
 
+_SOLVERS = {
+    "solver": "{solver}", "median µs": "{median_us:.2f}", "p99 µs": "{p99_us:.1f}",
+    "worst residual": "{worst_residual:.1e}", "failed": "{failed} of {programs}",
+}  # fmt: skip
+_BATCH = {
+    "solver": "{solver}", "solving, µs per program": "{solve_us:.2f}",
+    "with handing over": "{total_us:.2f}", "worst residual": "{worst_residual:.1e}",
+    "failed": "{failed}",
+}  # fmt: skip
+_KNOWN = {
+    "kind": "{kind}", "recognised": "{recognised} of {programs}", "median ms": "{median_ms:.3f}",
+    "largest ms": "{largest_ms:.2f}", "largest error of x": "{largest_error:.1e}",
+}  # fmt: skip
+
+
 def environment(more: Sequence[str] = ()) -> dict[str, Any]:
     """Date, processor and versions; `more` are packages to name beside ``PACKAGES``."""
     return {
         "date": datetime.datetime.now(tz=datetime.timezone.utc).isoformat(timespec="seconds"),
-        "cpu": _cpu(),
+        "cpu": processor(),
         "cores": os.cpu_count(),
         "python": platform.python_version(),
         "versions": {name: version(name) for name in (*PACKAGES, *more)},
     }
+
+
+def made_on(where: Mapping[str, Any]) -> str:
+    """Return an `environment` in words."""
+    versions = ", ".join(f"{name} {number}" for name, number in where["versions"].items())
+    cores = f"{where['cores']} cores, Python {where['python']}"
+    return f"{where['date']}, {where['cpu']}, {cores}, {versions}."
+
+
+def tabulate(columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """Lay out a table in Markdown, a column by its head and the format of its cells."""
+    return markdown_table([*columns], ([_cell(f, row) for f in columns.values()] for row in rows))
+
+
+def _cell(text: str, row: Mapping[str, Any]) -> str:
+    try:
+        return text.format_map(row)
+    except TypeError:  # None, where there is no number
+        return ""
 
 
 def save_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
@@ -68,64 +104,27 @@ def save_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
 
 def markdown(results: Mapping[str, Any]) -> str:
     """The report's text."""
-    where = results["environment"]
-    versions = ", ".join(f"{name} {number}" for name, number in where["versions"].items())
-    lines = [
+    parts = [
         "# Solvers of small quadratic programs",
-        "",
-        f"{where['date']}, {where['cpu']}, {where['cores']} cores, Python {where['python']}, "
-        f"{versions}.",
-        "",
+        made_on(results["environment"]),
         "![Median time of each solver on each stream](times.png)",
-        "",
     ]
     for stream in results["streams"]:
-        lines += [f"## {stream['name']}", "", f"{stream['about'].capitalize()}.", ""]
-        lines += table(
-            ("solver", "median µs", "p99 µs", "worst residual", "failed"),
-            [
-                (
-                    row["solver"], f"{row['median_us']:.2f}", f"{row['p99_us']:.1f}",
-                    _residual(row["worst_residual"]), f"{row['failed']} of {row['programs']}",
-                )
-                for row in stream["rows"]
-            ],
-        )  # fmt: skip
-        lines += ["", verdict(stream["rows"]), ""]
-    lines += ["## A batch", "", f"{results['batch']['about']}", ""]
-    batch = results["batch"]["rows"]
-    lines += table(
-        ("solver", "solving, µs per program", "with handing over", "worst residual", "failed"),
-        [
-            (
-                row["solver"], f"{row['solve_us']:.2f}", f"{row['total_us']:.2f}",
-                _residual(row["worst_residual"]), str(row["failed"]),
-            )
-            for row in batch
-        ],
-    )  # fmt: skip
-    ours, theirs = batch
-    lines += [
-        "",
+        parts += [f"## {stream['name']}", f"{stream['about'].capitalize()}."]
+        parts += [tabulate(_SOLVERS, stream["rows"]), verdict(stream["rows"])]
+    ours, theirs = results["batch"]["rows"]
+    parts += [
+        "## A batch",
+        results["batch"]["about"],
+        tabulate(_BATCH, (ours, theirs)),
         f"Throughput: {theirs['total_us'] / ours['total_us']:.1f} times ProxQP's with handing "
         f"over, {theirs['solve_us'] / ours['solve_us']:.1f} times its solving alone.",
-        "",
         "## Programs known by construction",
-        "",
+        tabulate(_KNOWN, results["known"]),
+        "## Limits of the comparison",
+        LIMITS,
     ]
-    lines += table(
-        ("kind", "recognised", "median ms", "largest ms", "largest error of x"),
-        [
-            (
-                row["kind"], f"{row['recognised']} of {row['programs']}",
-                f"{row['median_ms']:.3f}", f"{row['largest_ms']:.2f}",
-                _residual(row["largest_error"]),
-            )
-            for row in results["known"]
-        ],
-    )  # fmt: skip
-    lines += ["", "## Limits of the comparison", "", LIMITS]
-    return "\n".join(lines)
+    return "\n\n".join(parts)
 
 
 def verdict(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -157,24 +156,3 @@ def times_figure(streams: Sequence[Mapping[str, Any]]) -> Figure:
     axes.set_xticks(range(len(streams)), labels)
     legend_above(axes, columns=5)
     return figure
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """The lines of a Markdown table."""
-    lines = [f"| {' | '.join(head)} |", f"|{' --- |' * len(head)}"]
-    return lines + [f"| {' | '.join(row)} |" for row in rows]
-
-
-def _residual(value: float | None) -> str:
-    return "" if value is None else f"{value:.1e}"
-
-
-def _cpu() -> str:
-    """The processor's name, as Linux knows it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor()
-    return next(
-        (line.split(":", 1)[1].strip() for line in lines if "model name" in line), "unknown"
-    )

@@ -10,8 +10,8 @@ what they are; the optimum beside it is that of the velocity limits alone.
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.report import table
 from iiwa_dnn import Circle, Heart, Line, Lissajous, Reference, Tilting
+from iiwa_dnn.results.markdown import markdown_table
 
 ACCELERATION = np.array([8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17])
 """Drake's, derived for the iiwa 7; KUKA publishes none [rad/s^2]."""
@@ -61,7 +61,7 @@ def main() -> None:
         "path", "optimum s", "`retime` s", "of the acceleration limit",
         "optimum of the velocity limits s", "`slow` alone s", "times the acceleration limit",
     )  # fmt: skip
-    print("\n".join(table(head, rows)))
+    print(markdown_table(head, rows))
 
 
 if __name__ == "__main__":

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.control import CHUNK, Driver, Loop
+from benchmarks.control import Loop, take_turns
+from benchmarks.report import tabulate
 from benchmarks.targets import STREAMS
-from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.robot.robot import file_of
 
@@ -24,6 +24,14 @@ LOOPS = (
     Loop("Pink, AccelerationLimit", "pink", "pink_loop", "daqp, ahead, acceleration"),
     Loop("mink", "mink", "mink_loop", "daqp"),
 )
+
+
+_COLUMNS = {
+    "target": "{kind}", "loop": "{loop}", "error, median [m]": "{median_error_m:.1e}",
+    "largest jerk [rad/s^3]": "{largest_jerk:.4g}",
+    "acceleration / limit": "{acceleration_share:.3g}", "frozen": "{frozen:.1f} %",
+    "p50 [us]": "{p50_us:.0f}", "p99 [us]": "{p99_us:.0f}", "": "{problem}",
+}  # fmt: skip
 
 
 def measure_targets(
@@ -53,11 +61,13 @@ def measure_targets(
                 q0=q0, lower=robot.q_lower, upper=robot.q_upper, velocity=robot.dq_max,
                 acceleration=robot.ddq_max, jerk=JERK, poses=poses,
             )  # fmt: skip
-            taken = _take_turns(task, steps, mink_python, progress)
-        for loop, (us, q, problem) in taken.items():
-            row: dict[str, Any] = {"kind": kind, "loop": loop.name, "problem": problem}
-            if len(q) > 3:
-                path = np.vstack([q0, q])
+            here = Path(sys.executable)
+            loops = {loop: mink_python or here if loop.module == "mink" else here for loop in LOOPS}
+            taken = take_turns(loops, task, steps, progress, tolerant=True)
+        for loop, each in taken.items():
+            row: dict[str, Any] = {"kind": kind, "loop": loop.name, "problem": each.problem}
+            if len(each.q) > 3:
+                path = np.vstack([q0, each.q])
                 tips = np.array([Configuration(robot, at, data).position for at in path[1:]])
                 error = np.linalg.norm(tips - poses[1 : len(path), :3, 3], axis=1)
                 speed = np.abs(np.diff(path, axis=0)).max(axis=1) / dt
@@ -68,67 +78,27 @@ def measure_targets(
                     "largest_jerk": float(np.abs(third).max()),
                     "acceleration_share": float((np.abs(second) / robot.ddq_max).max()),
                     "frozen_share": float(np.mean((speed < 1e-4) & (error > 1e-3))),
-                    "p50_us": float(np.median(us)),
-                    "p99_us": float(np.percentile(us, 99.0)),
+                    "p50_us": float(np.median(each.us)),
+                    "p99_us": float(np.percentile(each.us, 99.0)),
                 }
             rows.append(row)
     return rows
 
 
-def _take_turns(
-    task: Path, steps: int, mink_python: Path | None, progress: Callable[[int], object]
-) -> dict[Loop, tuple[list[float], list[list[float]], str]]:
-    """Times, joint positions and the error that ended it, of each loop."""
-    taken: dict[Loop, tuple[list[float], list[list[float]], str]] = {}
-    drivers: dict[Loop, Driver] = {}
-    try:
-        for loop in LOOPS:
-            python = mink_python if loop.module == "mink" and mink_python else Path(sys.executable)
-            drivers[loop], taken[loop] = Driver(loop, python, task), ([], [], "")
-        for first in range(0, steps, CHUNK):
-            last = min(first + CHUNK, steps)
-            for loop, driver in drivers.items():
-                us, q, problem = taken[loop]
-                if problem:
-                    continue
-                try:
-                    answer = driver.take(first, last)
-                    us += answer["us"]
-                    q += answer["q"]
-                except IiwaDnnError as error:
-                    taken[loop] = us, q, str(error)
-            progress(last - first)
-    finally:
-        for driver in drivers.values():
-            driver.close()
-    return taken
-
-
 def markdown(rows: list[dict[str, Any]], dt: float) -> str:
     """Return the table, with the conditions that it holds under."""
-    lines = [
-        "# Six kinds of targets",
-        "",
+    about = (
         f"iiwa 7 at {1e3 * dt:g} ms, accelerations of Drake's model; the jerk limit of this "
         f"package's rows is {JERK:g} rad/s^3, mink has limits on velocity alone. The error is the "
         "tip's distance from the raw target; a step is frozen where no joint moves by 1e-4 rad/s "
-        "and the target is 1 mm away or more, which an arm at the edge of its reach has to be.",
-        "",
-        "| target | loop | error, median [m] | largest jerk [rad/s^3] | acceleration / limit "
-        "| frozen | p50 [us] | p99 [us] | |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |",
-    ]
-    for row in rows:
-        if "p50_us" not in row:
-            lines.append(f"| {row['kind']} | {row['loop']} | | | | | | | {row['problem']} |")
-            continue
-        lines.append(
-            f"| {row['kind']} | {row['loop']} | {row['median_error_m']:.1e} "
-            f"| {row['largest_jerk']:.4g} | {row['acceleration_share']:.3g} "
-            f"| {100 * row['frozen_share']:.1f} % | {row['p50_us']:.0f} | {row['p99_us']:.0f} "
-            f"| {row['problem']} |"
-        )
-    return "\n".join([*lines, ""])
+        "and the target is 1 mm away or more, which an arm at the edge of its reach has to be."
+    )
+    unknown = dict.fromkeys(
+        ("median_error_m", "largest_jerk", "acceleration_share", "frozen", "p50_us", "p99_us")
+    )
+    shares = ({"frozen": 100 * row["frozen_share"]} if "p50_us" in row else {} for row in rows)
+    filled = [unknown | row | share for row, share in zip(rows, shares, strict=True)]
+    return "\n\n".join(["# Six kinds of targets", about, tabulate(_COLUMNS, filled)]) + "\n"
 
 
 def save(rows: list[dict[str, Any]], dt: float, folder: Path) -> Path:

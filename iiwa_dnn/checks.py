@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
 
+Array = NDArray[np.float64]
 Vector3 = tuple[float, float, float]
 T = TypeVar("T")
 
@@ -60,13 +61,13 @@ def instance(argument: str, value: object, kind: type[T]) -> T:
     return value
 
 
-def vector3(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:
+def vector3(argument: str, value: Sequence[float] | Array) -> Vector3:
     """The value (3,) as a tuple of floats, or an InvalidInputError unless it is three numbers."""
     x, y, z = finite_array(argument, value, (3,)).tolist()
     return x, y, z
 
 
-def direction(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Vector3:
+def direction(argument: str, value: Sequence[float] | Array) -> Vector3:
     """The value (3,) as a tuple of length one, or an InvalidInputError if that is impossible."""
     vector = np.array(vector3(argument, value))
     if not vector.any():
@@ -76,7 +77,7 @@ def direction(argument: str, value: Sequence[float] | NDArray[np.float64]) -> Ve
     return x, y, z
 
 
-def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """A read-only copy of the value, or an InvalidInputError unless it is finite and of this shape.
 
     An entry of -1 in ``shape`` leaves that length open.
@@ -95,7 +96,7 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> NDA
     return array
 
 
-def read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
+def read_only(array: Array) -> Array:
     """A view of `array`, of any shape, that cannot be written into."""
     view = array[...]
     view.setflags(False)  # write=False: by position it takes half the time

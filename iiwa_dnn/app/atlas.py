@@ -1,41 +1,31 @@
 """``atlas``: every network, scheme and disturbance at equal compute, with a figure and verdicts."""
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files
-from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.command_line import tell
+from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import AtlasOptions
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import write_json
 from iiwa_dnn.studies import atlas
 from iiwa_dnn.studies.atlas_report import tabulate, write_report
 from iiwa_dnn.studies.atlas_schemes import SCHEMES
-from iiwa_dnn.studies.sweeps import Sweep
 
 
 def run(options: AtlasOptions) -> int:
     """Run the atlas, write table, report and figure, and return the exit code."""
     for name in ("seeds", "other_seeds"):
         checks.integer(name, getattr(options, name), 1)
-    checks.integer("workers", 1 if options.workers is None else options.workers, 1)
     budgets = [checks.integer("evaluations", count, 1) for count in options.evaluations]
     if not budgets or budgets != sorted(set(budgets)):
         raise InvalidInputError("evaluations", "must rise, and there must be one at least")
     cells = atlas.cells(
         options.seeds, options.other_seeds, budgets, options.schemes or tuple(SCHEMES)
     )
-    folder = claim_folder(options, resumes=("cells",))
-    sweep = Sweep(atlas.measure, folder / "cells")
-    results = sweep.run(cells, workers=options.workers, quiet=options.quiet)
-    save_settings(options, folder)
-    rows = tabulate(cells, results)
-    write_json(folder / "atlas.json", rows)
+    rows = tabulate(cells, run_sweep(options, atlas.measure, cells)[1])
+    write_json(options.out / "atlas.json", rows)
     head = (
         f"{options.seeds} seeds with the first scheme, {options.other_seeds} with the others and "
         f"at the other budgets; half a heart in {atlas.DURATION:g} s, errors of its second half."
     )
-    text = write_report(folder, rows, head, options.plots)
-    if not options.quiet:
-        print(text, end="")
-        if options.verbose:
-            list_files(folder)
+    tell(options, write_report(options.out, rows, head, options.plots).rstrip("\n"))
     return 0

@@ -23,7 +23,7 @@ from tqdm import tqdm
 from tyro.constructors import ConstructorRegistry, PrimitiveConstructorSpec, PrimitiveTypeInfo
 
 from iiwa_dnn.app.interrupts import ended_by_signals
-from iiwa_dnn.app.options import EXIT_CODES
+from iiwa_dnn.app.options import EXIT_CODES, RunOptions
 from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,
@@ -236,6 +236,14 @@ def _lenient(info: PrimitiveTypeInfo) -> PrimitiveConstructorSpec[Any] | None:
             return _Wrong(f"must be {wanted}, not {' '.join(words)!r}")
 
     return replace(spec, choices=None, instance_from_str=attempt)
+
+
+def tell(options: RunOptions, *lines: str) -> None:
+    """Print lines unless the command is quiet; if it is verbose, the files in its folder too."""
+    if not options.quiet:
+        print(*lines, sep="\n")
+        if options.verbose:
+            list_files(options.out)
 
 
 def list_files(folder: Path) -> None:

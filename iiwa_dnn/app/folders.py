@@ -4,7 +4,7 @@ That run may write it again, no other one may unasked.
 """
 
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import fields
 from importlib.metadata import version
 from pathlib import Path
@@ -12,10 +12,12 @@ from typing import Any
 
 import tomli_w
 
+from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import read_settings
-from iiwa_dnn.app.options import RunOptions
+from iiwa_dnn.app.options import RunOptions, SweepOptions
 from iiwa_dnn.errors import FileError, IiwaDnnError
 from iiwa_dnn.files import one_line, prepare_folder, write_text
+from iiwa_dnn.studies.sweeps import Settings, Sweep, Task
 
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
@@ -71,6 +73,21 @@ def save_settings(options: RunOptions, folder: Path) -> Path:
         text = f"{head}\n\n{tomli_w.dumps({'command': options.command, **values})}"
         write_text(folder / SETTINGS_FILE, text)
     return folder / SETTINGS_FILE
+
+
+def run_sweep(
+    options: SweepOptions, task: Task, cells: Sequence[Settings], dask: str | None = None
+) -> tuple[Sweep, list[dict[str, Any]]]:
+    """Compute the cells of a sweep in a command's folder, and save the command's settings there.
+
+    Finished cells stay in ``cells``, from where an interrupted sweep goes on; errors as of
+    `claim_folder` and `Sweep.run`.
+    """
+    checks.integer("workers", 1 if options.workers is None else options.workers, 1)
+    sweep = Sweep(task, claim_folder(options, resumes=("cells",)) / "cells")
+    results = sweep.run(cells, workers=options.workers, dask=dask, quiet=options.quiet)
+    save_settings(options, options.out)
+    return sweep, results
 
 
 def _values_in(folder: Path, options: RunOptions) -> dict[str, Any] | None:

@@ -4,16 +4,14 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files
-from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.command_line import tell
+from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import write_figures
 from iiwa_dnn.studies import noise_study
-from iiwa_dnn.studies.sweeps import Sweep
 
 _HEAD = (
     "countermeasure", "MSE [m²]", "MSE without / with", "max error [m]", "last error [m]",
@@ -30,21 +28,14 @@ def run(options: NoiseOptions) -> int:
     if not least < duration < 1e3:
         problem = f"must be above {least:g} and below 1000 s, not {duration:g}"
         raise InvalidInputError("duration", problem)
-    checks.integer("workers", 1 if options.workers is None else options.workers, 1)
-    folder = claim_folder(options, resumes=("cells",))
-    sweep = Sweep(noise_study.measure, folder / "cells")
     cells = noise_study.cells(seeds, duration)
-    results = sweep.run(cells, workers=options.workers, quiet=options.quiet)
+    _, results = run_sweep(options, noise_study.measure, cells)
     rows = noise_study.tabulate(seeds, duration, results)
-    save_settings(options, folder)
-    write_json(folder / "noise.json", rows)
-    write_figures({"noise": partial(noise_study.noise_figure, rows)}, folder)
+    write_json(options.out / "noise.json", rows)
+    write_figures({"noise": partial(noise_study.noise_figure, rows)}, options.out)
     text = _report(rows, seeds, duration)
-    write_text(folder / "report.md", text)
-    if not options.quiet:
-        print(text, end="")
-        if options.verbose:
-            list_files(folder)
+    write_text(options.out / "report.md", text + "\n")
+    tell(options, text)
     return 0 if all(row["completed"] for row in rows) else 1
 
 
@@ -61,7 +52,7 @@ def _report(rows: Sequence[Mapping[str, Any]], seeds: int, duration: float) -> s
     for kind in noise_study.DISTURBANCES:
         cells = [_cells(row) for row in rows if row["disturbance"] == kind]
         parts += [f"## {kind}", markdown_table(_HEAD, cells)]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(parts)
 
 
 def _cells(row: Mapping[str, Any]) -> list[str]:

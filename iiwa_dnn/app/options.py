@@ -156,7 +156,14 @@ class PhysicsOptions(TrackOptions):
 
 
 @dataclass(frozen=True)
-class PaperOptions(RunOptions):
+class SweepOptions(RunOptions):
+    """Options of every command that carries out many runs."""
+
+    workers: _AnyCount = None  # number of processes (one for each core)
+
+
+@dataclass(frozen=True)
+class PaperOptions(SweepOptions):
     """Run every experiment of the paper and put each number beside the paper's.
 
     An interrupted sweep resumes.
@@ -167,14 +174,13 @@ class PaperOptions(RunOptions):
     quick: _Flag = False  # run 1 s and 5 seeds only, to see that all works
     seeds: _AnyCount = None  # number of noises in Table II (100)
     duration: _AnyTime = None  # length of each run [s] (10)
-    workers: _AnyCount = None  # number of processes (one for each core)
     dask: Annotated[str | None, arg(metavar="ADDRESS", help_behavior_hint="")] = None
     """address of a Dask scheduler, or local to start one here"""
     plots: _Flag = True  # draw no figures
 
 
 @dataclass(frozen=True)
-class NoiseOptions(RunOptions):
+class NoiseOptions(SweepOptions):
     """Compare the countermeasures against noise of the joint velocity.
 
     The report puts the error against the smoothness of the command. An interrupted sweep resumes.
@@ -184,11 +190,10 @@ class NoiseOptions(RunOptions):
     out: Folder = Path("runs/noise")  # folder that the results are written to
     seeds: Count = 100  # number of noises
     duration: Time = 2.0  # length of each run [s]
-    workers: _AnyCount = None  # number of processes (one for each core)
 
 
 @dataclass(frozen=True)
-class AtlasOptions(RunOptions):
+class AtlasOptions(SweepOptions):
     """Compare the networks of the field at equal compute: tables, a figure and verdicts.
 
     An interrupted sweep resumes.
@@ -200,7 +205,6 @@ class AtlasOptions(RunOptions):
     other_seeds: Count = 10  # number of noises with the other schemes and budgets
     schemes: _Schemes = ()  # names of the schemes (none: all)
     evaluations: _Counts = (1, 2, 4, 8, 16)  # budgets: evaluations of a network a control period
-    workers: _AnyCount = None  # number of processes (one for each core)
     plots: _Flag = True  # draw no figure
 
 

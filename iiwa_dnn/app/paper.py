@@ -10,9 +10,8 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files
-from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.command_line import tell
+from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import PaperOptions
 from iiwa_dnn.files import write_json
 from iiwa_dnn.studies import ablation, paper, table1, table2
@@ -20,7 +19,6 @@ from iiwa_dnn.studies.paper_plots import save_paper_figures
 from iiwa_dnn.studies.paper_report import findings, write_paper_report
 from iiwa_dnn.studies.provenance import fingerprint
 from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, measure
-from iiwa_dnn.studies.sweeps import Sweep
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 
@@ -31,14 +29,10 @@ def run(options: PaperOptions) -> int:
     asked: dict[str, Any] = {"seeds": options.seeds, "duration": options.duration}
     changes = {name: value for name, value in asked.items() if value is not None}
     scope = replace(QUICK if options.quick else FULL, **changes)
-    checks.integer("workers", 1 if options.workers is None else options.workers, 1)
-    folder = claim_folder(options, resumes=("cells",))
-    figures = figure_runs(scope)
+    folder, figures = options.out, figure_runs(scope)
     parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
     cells = [cell.settings() for part in (*parts.values(), figures.values()) for cell in part]
-    sweep = Sweep(measure, folder / "cells")
-    results = sweep.run(cells, workers=options.workers, dask=options.dask, quiet=options.quiet)
-    save_settings(options, folder)
+    sweep, results = run_sweep(options, measure, cells, options.dask)
     tables, start = {}, 0
     for name, part in parts.items():
         tables[name] = EXPERIMENTS[name].tabulate(scope, results[start : start + len(part)])
@@ -51,13 +45,9 @@ def run(options: PaperOptions) -> int:
     head = _head(scope, results, time.perf_counter() - began)
     write_paper_report(folder, tables, head, drawn)
     ended_early = [values["status"] for values in results if values["status"] != "completed"]
-    if not options.quiet:
-        if options.verbose:
-            print("\n".join(f"{name:<14}{value}" for name, value in head.items()))
-        print("\n".join(findings(tables)))
-        print(f"written to {folder}")
-        if options.verbose:
-            list_files(folder)
+    shown = head if options.verbose else {}
+    lines = [f"{name:<14}{value}" for name, value in shown.items()]
+    tell(options, *lines, *findings(tables), f"written to {folder}")
     if ended_early:
         print(f"{len(ended_early)} runs ended early, the first: {ended_early[0]}", file=sys.stderr)
     return 1 if ended_early else 0
@@ -85,7 +75,7 @@ def _head(scope: Scope, results: Sequence[Mapping[str, Any]], wall: float) -> di
     versions = fingerprint(measure)["versions"] | {"python": platform.python_version()}
     return {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
-        "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()}",
+        "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "runs": f"{runs:,} of {scope.duration:g} s at {scope.dt:g} s; {scope.seeds} seeds in "
         f"Table II, {scope.laps} laps at {scope.laps_dt:g} s{open_end}",
@@ -94,7 +84,7 @@ def _head(scope: Scope, results: Sequence[Mapping[str, Any]], wall: float) -> di
     }
 
 
-def _processor() -> str:
+def processor() -> str:
     """Return the processor's name, where the system tells it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()

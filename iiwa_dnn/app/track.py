@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files, progress_bar
+from iiwa_dnn.app.command_line import progress_bar, tell
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, TrackOptions
 from iiwa_dnn.control.controller import Controller
@@ -231,12 +231,8 @@ def draw(
         last(record, folder)
     reasons = failures(record)
     if not options.quiet:
-        if options.verbose:
-            print(settings_lines(metrics))
-        print(summary(metrics, reasons))
-        print(f"written to {folder}")
-        if options.verbose:
-            list_files(folder)
+        shown = [settings_lines(metrics)] if options.verbose else []
+        tell(options, *shown, summary(metrics, reasons), f"written to {folder}")
     elif reasons:
         print("\n".join(reasons), file=sys.stderr)
     return 1 if reasons else 0

@@ -1,28 +1,15 @@
 """References: paths of a frame, with exact linear and angular velocities."""
 
-from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.circle import Circle
-from iiwa_dnn.references.heart import Heart
-from iiwa_dnn.references.line import Line
-from iiwa_dnn.references.lissajous import Lissajous
-from iiwa_dnn.references.moving_target import MovingTarget
-from iiwa_dnn.references.still import Still
-from iiwa_dnn.references.targets import Target, Targets
-from iiwa_dnn.references.turning import Cone, OnSurface, Tilting
-from iiwa_dnn.references.waypoints import Waypoints
-
-__all__ = [
-    "Circle",
-    "Cone",
-    "Heart",
-    "Line",
-    "Lissajous",
-    "MovingTarget",
-    "OnSurface",
-    "Reference",
-    "Still",
-    "Target",
-    "Targets",
-    "Tilting",
-    "Waypoints",
-]
+from iiwa_dnn.references.base import Reference as Reference
+from iiwa_dnn.references.moving_target import MovingTarget as MovingTarget
+from iiwa_dnn.references.shapes import Circle as Circle
+from iiwa_dnn.references.shapes import Heart as Heart
+from iiwa_dnn.references.shapes import Line as Line
+from iiwa_dnn.references.shapes import Lissajous as Lissajous
+from iiwa_dnn.references.shapes import Still as Still
+from iiwa_dnn.references.targets import Target as Target
+from iiwa_dnn.references.targets import Targets as Targets
+from iiwa_dnn.references.turning import Cone as Cone
+from iiwa_dnn.references.turning import OnSurface as OnSurface
+from iiwa_dnn.references.turning import Tilting as Tilting
+from iiwa_dnn.references.waypoints import Waypoints as Waypoints

@@ -8,9 +8,11 @@ from dataclasses import fields
 from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import finite, finite_array, positive, read_only
+from iiwa_dnn.checks import Array, finite, finite_array, positive, read_only
+from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
@@ -27,8 +29,6 @@ class Pose(Protocol):
     def rotation(self) -> NDArray[np.float64]:
         """Orientation, shape (3, 3)."""
 
-
-Array = NDArray[np.float64]
 
 _AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
 
@@ -176,8 +176,6 @@ class Reference(ABC):
 
     def ahead(self, dt: float) -> Reference:
         """Return the path with the mean twist over the next dt [s] in place of the targets' own."""
-        from iiwa_dnn.references.ahead import Ahead
-
         return Ahead(self, positive("dt", dt))
 
     def at(self, t: float) -> Target:
@@ -232,6 +230,55 @@ class Reference(ABC):
 _AHEAD, _FORWARD = (0, 1, 2, 3, 4), (-25, 48, -36, 16, -3)
 
 _COMPUTING = ("displacement", "velocity", "turn", "angular_velocity", "_targets")
+
+
+class Ahead(Reference):
+    """A path whose targets have the mean twist over the coming period in place of their own."""
+
+    name: ClassVar[str] = "ahead"
+    _seen: Reference
+    _dt: float
+
+    def __init__(self, along: Reference, dt: float) -> None:
+        """Look at a path one period of dt [s] ahead."""
+        self._set(_seen=along, _dt=dt, numbers=along.numbers, _base=along.base)
+
+    @property
+    def compiled(self) -> Any:
+        """The compiled form, where the path has one."""
+        return None if self._seen.compiled is None else self._write
+
+    @property
+    def period(self) -> float:
+        """Time after which the path repeats [s]."""
+        return self._seen.period
+
+    def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+        pairs = np.stack([times, times + self._dt], axis=1).ravel()
+        _aim(self._seen._targets(pairs), self._dt, out, row, column)
+
+    def _targets(self, times: Array) -> Array:
+        out = np.empty((times.size, 18))
+        self._write(times, self.numbers, out, 0, 0)
+        return out
+
+
+@njit(cache=True, error_model="numpy")
+def _aim(pairs: Array, dt: float, out: Array, row: int, column: int) -> None:
+    """Write the first of each two targets (2 k, 18), its twist the mean one between them."""
+    relative = np.empty((3, 3))
+    for k in range(pairs.shape[0] // 2):
+        now, then = pairs[2 * k], pairs[2 * k + 1]
+        target = out[row + k, column : column + 18]
+        target[:12] = now[:12]
+        for i in range(3):
+            target[12 + i] = (then[i] - now[i]) / dt
+            for j in range(3):
+                a, b = 3 + 3 * i, 3 + 3 * j
+                value = then[a] * now[b] + then[a + 1] * now[b + 1] + then[a + 2] * now[b + 2]
+                relative[i, j] = value
+        rotation_log(relative, target[15:18])
+        target[15:18] /= dt
 
 
 def _plain(value: Any) -> Any:

@@ -19,8 +19,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.rotations import Array, jacobian_rate, left_jacobian
+from iiwa_dnn.references.rotations import jacobian_rate, left_jacobian
 
 _ITERATIONS = 200
 _CONVERGED = 1e-13  # change of an angular velocity, relative to the largest

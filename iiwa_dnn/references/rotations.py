@@ -15,9 +15,9 @@ Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Pre
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from iiwa_dnn.checks import Array
+
 Four = tuple[float, float, float, float]
 
 

@@ -81,29 +81,12 @@ class Target(_Data):
 
 
 class Targets(_Data):
-    """Targets at k times; ``targets[i]`` is the i-th :class:`Target`, a view of this array.
+    """Targets at k times: the arrays of `Target`, (k, 18), (k, 3) and so on, one time a row.
 
-    Attributes:
-        data: One target a row, (k, 18); do not write into it.
-        position: Desired positions [m], shape (k, 3), a read-only view like the next three.
-        rotation: Desired orientations, shape (k, 3, 3).
-        linear_velocity: Desired linear velocities [m/s], shape (k, 3).
-        angular_velocity: Desired angular velocities [rad/s], shape (k, 3).
+    ``targets[i]`` is the i-th :class:`Target`, a view of them.
     """
 
     __slots__ = ()
-
-    def __init__(
-        self,
-        position: NDArray[np.float64],
-        rotation: NDArray[np.float64],
-        linear_velocity: NDArray[np.float64],
-        angular_velocity: NDArray[np.float64],
-    ) -> None:
-        """Copy the four arrays into one; `rotation` and `angular_velocity` may be for all times."""
-        self.data = np.empty((len(position), 18))
-        self.data[:, :3], self.data[:, 12:15] = position, linear_velocity
-        self.data[:, 3:12], self.data[:, 15:] = rotation.reshape(-1, 9), angular_velocity
 
     def __len__(self) -> int:
         return len(self.data)

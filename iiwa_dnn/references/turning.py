@@ -9,12 +9,11 @@ import numpy as np
 from numba import njit
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Vector3, direction, positive, vector3
+from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Array, Reference
-from iiwa_dnn.references.circle import Circle
-from iiwa_dnn.references.heart import Heart
+from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotations import cross, left_jacobian, rotated, turn_target
+from iiwa_dnn.references.shapes import Circle, Heart
 
 TILT = math.radians(20.0)
 

@@ -15,9 +15,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import finite_array, positive, read_only
+from iiwa_dnn.checks import Array, finite_array, positive, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.references.base import Array, Reference
+from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotation_spline import fit_rotations
 from iiwa_dnn.references.rotations import jacobian_rate, left_jacobian, turn_target
 

@@ -19,21 +19,18 @@ from pathlib import Path
 import coal
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS
-from iiwa_dnn.robot.enclosing import enclosing_capsule
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.robot import Robot, file_of, tree_of
 
 SAMPLES, CLEARANCE, ALWAYS = 10_000, 0.02, 0.95
 """Random postures; distance that a pair never meets beyond [m]; share of one that always does."""
-
-_Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -150,7 +147,7 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
     geometry = coal_geometry(robot, everything, pairs)
     data, scratch = robot.model.createData(), pin.GeometryData(geometry)
 
-    def measured(q: _Array) -> list[float]:
+    def measured(q: Array) -> list[float]:
         pin.computeDistances(robot.model, data, geometry, scratch, q)
         return [result.min_distance for result in scratch.distanceResults]
 
@@ -225,7 +222,7 @@ def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
         balls = {(*place.translation.round(5).tolist(), round(shape.radius, 6))
                  for place, shape in placed if isinstance(shape, coal.Sphere)}  # fmt: skip
         used: set[tuple[float, ...]] = set()
-        loose: list[_Array] = []
+        loose: list[Array] = []
         for place, shape in placed:
             if isinstance(shape, coal.Sphere):
                 continue
@@ -243,13 +240,57 @@ def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
                     continue
             loose.append(_corners(shape) @ place.rotation.T + place.translation)
         if loose:
-            a, b, radius = enclosing_capsule(np.vstack(loose))
+            a, b, radius = _enclosing_capsule(np.vstack(loose))
             yield LinkCapsule(frame.name, _vector(a), _vector(b), radius)
         for x, y, z, radius in sorted(balls - used):
             yield LinkCapsule(frame.name, (x, y, z), (x, y, z), radius)
 
 
-def _corners(shape: coal.CollisionGeometry) -> _Array:
+def _enclosing_capsule(points: Array) -> tuple[Array, Array, float]:
+    """Fit a capsule of small volume that holds every one of some points (k, 3) [m].
+
+    The axis begins along each principal direction in turn and is then moved by Nelder and Mead's
+    simplex method; for an axis and a radius the shortest segment is known in closed form, so the
+    capsule holds all points whatever the method reached.
+
+    Returns:
+        Ends of the segment, (3,) each, equal for a sphere, and the radius [m].
+    """
+    from scipy.optimize import minimize  # slow to import
+
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    axes = np.linalg.svd(points - middle, full_matrices=False)[2]
+    found = []
+    for axis in axes:
+        start = np.concatenate([middle, axis, [1.0]])
+        scale = np.array([0.01, 0.01, 0.01, 0.1, 0.1, 0.1, 0.02])
+        simplex = np.vstack([start, start + np.diag(scale)])
+        options = {"initial_simplex": simplex, "maxfev": 4000, "xatol": 1e-6, "fatol": 1e-9}
+        best = minimize(lambda x: _volume(*_capsule_along(points, x)), start, (), "Nelder-Mead",
+                        options=options)  # fmt: skip
+        found.append(_capsule_along(points, best.x))
+    a, b, radius = min(found, key=lambda capsule: _volume(*capsule))
+    return a, b, radius
+
+
+def _capsule_along(points: Array, x: Array) -> tuple[Array, Array, float]:
+    """Capsule along an axis: x holds a point, a direction and the radius over the least one."""
+    origin, axis = x[:3], x[3:6] / np.linalg.norm(x[3:6])
+    along = (points - origin) @ axis
+    across = np.linalg.norm(points - origin - along[:, np.newaxis] * axis, axis=1)
+    radius = float(across.max() * max(x[6], 1.0)) + 1e-9
+    cap = np.sqrt(radius**2 - across**2)
+    low, high = float((along + cap).min()), float((along - cap).max())
+    if low > high:  # any point between them is the middle of a sphere that holds all
+        low = high = 0.5 * (low + high)
+    return origin + low * axis, origin + high * axis, radius
+
+
+def _volume(a: Array, b: Array, radius: float) -> float:
+    return float(np.pi * radius**2 * (np.linalg.norm(b - a) + 4.0 / 3.0 * radius))
+
+
+def _corners(shape: coal.CollisionGeometry) -> Array:
     """List points whose convex hull holds a shape, (k, 3) [m]."""
     if isinstance(shape, coal.Cylinder):
         turns = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
@@ -262,10 +303,10 @@ def _corners(shape: coal.CollisionGeometry) -> _Array:
         return np.array(shape.vertices(), dtype=np.float64)
     half = np.array(shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3)
     signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
-    corners: _Array = signs * half
+    corners: Array = signs * half
     return corners
 
 
-def _vector(point: _Array) -> checks.Vector3:
+def _vector(point: Array) -> checks.Vector3:
     x, y, z = point.tolist()
     return x, y, z

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import finite_array, instance, read_only
+from iiwa_dnn.checks import Array, finite_array, instance, read_only
 from iiwa_dnn.robot.robot import Robot
 
-_Array = NDArray[np.float64]
 _WORLD_AXES = pin.LOCAL_WORLD_ALIGNED
 _jacobian, _place_frame = pin.computeFrameJacobian, pin.updateFramePlacement
 
@@ -19,26 +18,26 @@ class FrameState:
 
     __slots__ = ("_jacobian", "_pose")
 
-    def __init__(self, pose: _Array, jacobian: _Array) -> None:
+    def __init__(self, pose: Array, jacobian: Array) -> None:
         self._pose, self._jacobian = pose, jacobian
 
     @property
-    def pose(self) -> _Array:
+    def pose(self) -> Array:
         """Pose of the frame in the world as a homogeneous matrix, shape (4, 4)."""
         return read_only(self._pose)
 
     @property
-    def position(self) -> _Array:
+    def position(self) -> Array:
         """Position of the frame in the world [m], shape (3,)."""
         return read_only(self._pose[:3, 3])
 
     @property
-    def rotation(self) -> _Array:
+    def rotation(self) -> Array:
         """Orientation of the frame, shape (3, 3): columns are its axes in the world."""
         return read_only(self._pose[:3, :3])
 
     @property
-    def jacobian(self) -> _Array:
+    def jacobian(self) -> Array:
         """Jacobian J of the frame, shape (6, n): J dq = [linear velocity; angular velocity].
 
         Along the world's axes, at the frame's origin (Pinocchio's LOCAL_WORLD_ALIGNED).
@@ -64,7 +63,7 @@ class Configuration(FrameState):
 
     # Built at every control step, so: slots, and no numpy call that is not needed.
     __slots__ = ("_data", "_inertia", "_q", "_robot")
-    _inertia: _Array | None
+    _inertia: Array | None
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
         vector = _joint_vector(q, instance("robot", robot, Robot).q_lower.shape)
@@ -72,7 +71,7 @@ class Configuration(FrameState):
         self._pose, self._jacobian = _kinematics(robot, vector, data, robot.tip_id)
 
     @classmethod
-    def from_checked(cls, robot: Robot, q: _Array, data: pin.Data | None = None) -> Configuration:
+    def from_checked(cls, robot: Robot, q: Array, data: pin.Data | None = None) -> Configuration:
         """Make a configuration over an array ``q`` (n,) that is neither copied nor checked."""
         conf = cls.__new__(cls)
         conf._robot, conf._q, conf._data, conf._inertia = robot, q, data, None
@@ -80,7 +79,7 @@ class Configuration(FrameState):
         return conf
 
     @property
-    def arrays(self) -> tuple[_Array, _Array, _Array]:
+    def arrays(self) -> tuple[Array, Array, Array]:
         """``(q, pose, jacobian)`` for compiled code, not protected, which makes it quicker."""
         return self._q, self._pose, self._jacobian
 
@@ -90,12 +89,12 @@ class Configuration(FrameState):
         return self._robot
 
     @property
-    def q(self) -> _Array:
+    def q(self) -> Array:
         """Joint positions [rad], shape (n,)."""
         return read_only(self._q)
 
     @property
-    def inertia(self) -> _Array:
+    def inertia(self) -> Array:
         """Joint-space inertia matrix M [kg m^2], shape (n, n), symmetric positive definite.
 
         The kinetic energy is dq' M dq / 2. By the composite rigid body algorithm (Featherstone,
@@ -108,7 +107,7 @@ class Configuration(FrameState):
         return read_only(self._inertia)
 
     @property
-    def centre_of_mass(self) -> tuple[_Array, _Array]:
+    def centre_of_mass(self) -> tuple[Array, Array]:
         """Position of the centre of mass [m], (3,), and its Jacobian, (3, n), along world axes."""
         model = self._robot.model
         data = model.createData()
@@ -133,7 +132,7 @@ class Configuration(FrameState):
         return Configuration, (self._robot, self._q)
 
 
-def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> _Array:
+def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return a checked copy of joint positions, which is not protected."""
     try:
         vector = np.array(q, np.float64)
@@ -144,7 +143,7 @@ def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> _Array:
     return finite_array("q", q, shape)  # slower, and raises
 
 
-def _kinematics(robot: Robot, q: _Array, data: pin.Data, index: int) -> tuple[_Array, _Array]:
+def _kinematics(robot: Robot, q: Array, data: pin.Data, index: int) -> tuple[Array, Array]:
     """Compute pose (4, 4) and Jacobian (6, n) of a frame."""
     model = robot.model
     data = model.createData() if data is None else data

@@ -10,9 +10,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.robot.robot import Robot
 
-_Array = NDArray[np.float64]
 _PLACEMENT = 12  # numbers of a placement: the rotation column by column, then the translation
 
 
@@ -42,8 +42,8 @@ class Kinematics:
         self._ids: dict[str, int] = {}
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.
-        self.jacobian: _Array = self._data.J.T.reshape(robot.dof, 6)
-        self.inertia: _Array = self._data.M.reshape(robot.dof, robot.dof)
+        self.jacobian: Array = self._data.J.T.reshape(robot.dof, 6)
+        self.inertia: Array = self._data.M.reshape(robot.dof, robot.dof)
         self.placements = _placements(self._data)
 
     @property
@@ -51,7 +51,7 @@ class Kinematics:
         """Model, data, the tip's frame index and the others', for a loop that calls them itself."""
         return self._model, self._data, self.frame_ids[0], self.frame_ids[1:]
 
-    def update(self, q: _Array) -> None:
+    def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
         model, data = self._model, self._data
         if self._dynamics:
@@ -59,7 +59,7 @@ class Kinematics:
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)  # no slower than one of them
 
-    def frame(self, name: str) -> tuple[_Array, _Array]:
+    def frame(self, name: str) -> tuple[Array, Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.
 
         The Jacobian's rows are [linear; angular] at the frame's origin, along the world's axes.
@@ -84,7 +84,7 @@ class Kinematics:
         return moves
 
 
-def _placements(data: pin.Data) -> _Array:
+def _placements(data: pin.Data) -> Array:
     """All frame placements as one array, (frames, 12): Pinocchio keeps them one after the other."""
     rotations = [place.rotation for place in data.oMf]
     starts = [rotation.__array_interface__["data"][0] for rotation in rotations]

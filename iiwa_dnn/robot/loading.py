@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES
 from iiwa_dnn.robot.robot import Mimic, Robot
 
 _Joints = dict[str, ET.Element]
-_Array = NDArray[np.float64]
 
 
 def available_robots() -> tuple[str, ...]:
@@ -167,7 +167,7 @@ def _mimics(robot: Robot, joints: _Joints) -> tuple[Mimic, ...]:
     return tuple(found)
 
 
-def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[_Array, _Array, _Array]:
+def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[Array, Array, Array]:
     """Read lower, upper and velocity limits, each (n,); infinite where the URDF gives none."""
     lower, upper = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
     velocity = model.velocityLimit.copy()

@@ -26,6 +26,9 @@ class Obstacle(ABC):
         motion: Displacement [m], (3,), at a time [s], in place of a velocity; a function of the
             time alone, so that a record can be made of it.
         speed: Bound on the speed [m/s], needed with `motion`; that of `velocity`, if larger.
+
+    Raises:
+        InvalidInputError: A parameter is wrong; it is named. So do all shapes.
     """
 
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
@@ -33,7 +36,6 @@ class Obstacle(ABC):
     speed: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         for name in {"center", "a", "b", "half_extents"} & vars(self).keys():
             self._set(name, checks.vector3(name, getattr(self, name)))
         if hasattr(self, "radius"):
@@ -130,7 +132,6 @@ class Box(Obstacle):
     rotation: Sequence[Sequence[float]] | None = None
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         for half in self.half_extents:
             checks.positive("half_extents", half)
@@ -160,7 +161,6 @@ class ConvexMesh(Obstacle):
     vertices: Sequence[Sequence[float]]
 
     def __post_init__(self) -> None:
-        """Check the vertices; raises InvalidInputError."""
         super().__post_init__()
         vertices = checks.finite_array("vertices", self.vertices, (-1, 3))
         if len(vertices) < 4 or np.linalg.matrix_rank(vertices - vertices[0], 1e-9) < 3:
@@ -186,7 +186,6 @@ class HalfSpace(Obstacle):
     offset: float
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         normal = np.array(checks.vector3("normal", self.normal))
         length = checks.positive("normal", float(np.linalg.norm(normal)))

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import STARTS
@@ -19,7 +21,7 @@ from iiwa_dnn.robot.arms import STARTS
 SINGULAR = 0.05
 """Smallest singular value of the tip's Jacobian below which a posture is no start."""
 
-_Array = NDArray[np.float64]
+_LIMITS = ("q_lower", "q_upper", "dq_max", "ddq_max", "dddq_max")
 
 
 class Mimic(NamedTuple):
@@ -62,18 +64,18 @@ class Robot:
     name: str
     model: pin.Model
     tip: str
-    q_lower: _Array
-    q_upper: _Array
-    dq_max: _Array
+    q_lower: Array
+    q_upper: Array
+    dq_max: Array
     locked: tuple[str, ...] = ()
     path: Path | None = None
     q_locked: tuple[float, ...] = ()
-    ddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
-    dddq_max: _Array = field(default_factory=lambda: np.array(np.inf))
+    ddq_max: Array = field(default_factory=lambda: np.array(np.inf))
+    dddq_max: Array = field(default_factory=lambda: np.array(np.inf))
     mobile: bool = False
     mimics: tuple[Mimic, ...] = ()
     tip_id: int = field(init=False)
-    limits: _Array = field(init=False)
+    limits: Array = field(init=False)
 
     def __post_init__(self) -> None:
         tip_id = self.frame_id(self.tip)
@@ -83,12 +85,10 @@ class Robot:
             problem = f"must have one position for each of {len(self.locked)} locked joints"
             raise InvalidInputError("q_locked", problem, self.q_locked)
         object.__setattr__(self, "tip_id", tip_id)
-        for name in ("q_lower", "q_upper", "dq_max", "ddq_max", "dddq_max"):
+        for name in _LIMITS:
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
         object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
-        _check_limits(("q_lower", "dq_max"), *self.limits)
-        _check_above_zero("ddq_max", self.ddq_max)
-        _check_above_zero("dddq_max", self.dddq_max)
+        _check_limits(vars(self), dict(zip(_LIMITS, _LIMITS, strict=True)))
 
     @property
     def dof(self) -> int:
@@ -140,19 +140,14 @@ class Robot:
             InvalidInputError: If a limit is not a number, has a wrong length, is not below its
                 upper counterpart or, for a rate, is not above zero.
         """
-        q_lower = self.q_lower if lower is None else _limit("lower", lower, self.dof)
-        q_upper = self.q_upper if upper is None else _limit("upper", upper, self.dof)
-        dq_max = self.dq_max if velocity is None else _limit("velocity", velocity, self.dof)
-        name = "upper" if lower is None else "lower"
-        _check_limits((name, "velocity"), q_lower, q_upper, dq_max)
-        changed: dict[str, Any] = {"q_lower": q_lower, "q_upper": q_upper, "dq_max": dq_max}
-        for key, name, value in (
-            ("ddq_max", "acceleration", acceleration),
-            ("dddq_max", "jerk", jerk),
-        ):
-            if value is not None:
-                changed[key] = _limit(name, value, self.dof)
-                _check_above_zero(name, changed[key])
+        names = {"q_lower": "lower", "q_upper": "upper", "dq_max": "velocity",
+                 "ddq_max": "acceleration", "dddq_max": "jerk"}  # fmt: skip
+        given = zip(names.items(), (lower, upper, velocity, acceleration, jerk), strict=True)
+        changed: dict[str, Any] = {
+            key: _limit(name, value, self.dof) for (key, name), value in given if value is not None
+        }
+        wrong = {"q_lower": "upper"} if lower is None else {}
+        _check_limits({**vars(self), **changed}, names | wrong)
         return replace(self, **changed)
 
     def outside(self, q: ArrayLike) -> str:
@@ -188,7 +183,7 @@ class Robot:
         model.addFrame(pin.Frame(*at))
         return replace(self, model=model, tip=name)
 
-    def start_posture(self) -> _Array:
+    def start_posture(self) -> Array:
         """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.
 
         A robot of a known name and number of joints starts from its known posture
@@ -246,7 +241,7 @@ def tree_of(robot: Robot) -> ET.Element:
     return urdf.read(file_of(robot), robot.mobile)
 
 
-def _limit(argument: str, value: ArrayLike, size: int) -> _Array:
+def _limit(argument: str, value: ArrayLike, size: int) -> Array:
     """Return one limit per joint, read-only, from a number or one per joint."""
     try:
         array = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)))
@@ -258,15 +253,13 @@ def _limit(argument: str, value: ArrayLike, size: int) -> _Array:
     return array
 
 
-def _check_limits(arguments: tuple[str, str], lower: _Array, upper: _Array, dq: _Array) -> None:
-    """Refuse limits that leave a joint no room; `arguments` name position and velocity limits."""
+def _check_limits(limits: Mapping[str, Array], names: Mapping[str, str]) -> None:
+    """Refuse limits that leave a joint no room, by the names that the caller knows them by."""
+    lower, upper = limits["q_lower"], limits["q_upper"]
     for i in np.flatnonzero(lower >= upper):
         problem = f"joint {i + 1}: lower limit {lower[i]:g} is not below upper limit {upper[i]:g}"
-        raise InvalidInputError(arguments[0], problem, (lower, upper))
-    _check_above_zero(arguments[1], dq)
-
-
-def _check_above_zero(argument: str, limits: _Array) -> None:
-    for i in np.flatnonzero(limits <= 0.0):
-        problem = f"joint {i + 1}: {limits[i]:g} is not above 0"
-        raise InvalidInputError(argument, problem, limits)
+        raise InvalidInputError(names["q_lower"], problem, (lower, upper))
+    for key in _LIMITS[2:]:
+        for i in np.flatnonzero(limits[key] <= 0.0):
+            problem = f"joint {i + 1}: {limits[key][i]:g} is not above 0"
+            raise InvalidInputError(names[key], problem, limits[key])

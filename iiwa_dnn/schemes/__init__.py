@@ -1,56 +1,35 @@
 """Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
-from iiwa_dnn.robot.obstacles import Box, Capsule, ConvexMesh, HalfSpace, Obstacle, Sphere
-from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
-from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, Manipulability
-from iiwa_dnn.schemes.double_indicator import DoubleIndicator
-from iiwa_dnn.schemes.frame_tasks import AxisTask, PoseTask, RelativePoseTask, RemoteCentreTask
-from iiwa_dnn.schemes.joint_tasks import (
-    CentreOfMassTask,
-    ElbowAngleTask,
-    JointCouplingTask,
-    PostureTask,
-)
-from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.motion_limits import AccelerationLimits, JerkLimits
-from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
-from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse
-from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
-
-__all__ = [
-    "AccelerationLimits",
-    "AxisTask",
-    "Box",
-    "Capsule",
-    "CentreOfMassTask",
-    "CollisionAvoidance",
-    "ConvexMesh",
-    "Cost",
-    "CyclicMotion",
-    "DoubleIndicator",
-    "ElbowAngleTask",
-    "HalfSpace",
-    "JerkLimits",
-    "JointAcceleration",
-    "JointCouplingTask",
-    "JointLimits",
-    "JointTorque",
-    "KineticEnergy",
-    "Limit",
-    "Manipulability",
-    "Obstacle",
-    "OrientationTask",
-    "Part",
-    "PoseTask",
-    "PositionTask",
-    "PostureTask",
-    "PseudoInverse",
-    "RelativePoseTask",
-    "RemoteCentreTask",
-    "Scheme",
-    "Sphere",
-    "Step",
-    "Task",
-]
+from iiwa_dnn.robot.obstacles import Box as Box
+from iiwa_dnn.robot.obstacles import Capsule as Capsule
+from iiwa_dnn.robot.obstacles import ConvexMesh as ConvexMesh
+from iiwa_dnn.robot.obstacles import HalfSpace as HalfSpace
+from iiwa_dnn.robot.obstacles import Obstacle as Obstacle
+from iiwa_dnn.robot.obstacles import Sphere as Sphere
+from iiwa_dnn.schemes.acceleration import JointAcceleration as JointAcceleration
+from iiwa_dnn.schemes.acceleration import JointTorque as JointTorque
+from iiwa_dnn.schemes.base import Scheme as Scheme
+from iiwa_dnn.schemes.collisions import CollisionAvoidance as CollisionAvoidance
+from iiwa_dnn.schemes.costs import CyclicMotion as CyclicMotion
+from iiwa_dnn.schemes.costs import KineticEnergy as KineticEnergy
+from iiwa_dnn.schemes.costs import Manipulability as Manipulability
+from iiwa_dnn.schemes.double_indicator import DoubleIndicator as DoubleIndicator
+from iiwa_dnn.schemes.frame_tasks import AxisTask as AxisTask
+from iiwa_dnn.schemes.frame_tasks import PoseTask as PoseTask
+from iiwa_dnn.schemes.frame_tasks import RelativePoseTask as RelativePoseTask
+from iiwa_dnn.schemes.frame_tasks import RemoteCentreTask as RemoteCentreTask
+from iiwa_dnn.schemes.joint_tasks import CentreOfMassTask as CentreOfMassTask
+from iiwa_dnn.schemes.joint_tasks import ElbowAngleTask as ElbowAngleTask
+from iiwa_dnn.schemes.joint_tasks import JointCouplingTask as JointCouplingTask
+from iiwa_dnn.schemes.joint_tasks import PostureTask as PostureTask
+from iiwa_dnn.schemes.limits import JointLimits as JointLimits
+from iiwa_dnn.schemes.motion_limits import AccelerationLimits as AccelerationLimits
+from iiwa_dnn.schemes.motion_limits import JerkLimits as JerkLimits
+from iiwa_dnn.schemes.parts import Cost as Cost
+from iiwa_dnn.schemes.parts import Limit as Limit
+from iiwa_dnn.schemes.parts import Part as Part
+from iiwa_dnn.schemes.parts import Step as Step
+from iiwa_dnn.schemes.parts import Task as Task
+from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse as PseudoInverse
+from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask
+from iiwa_dnn.schemes.tasks import PositionTask as PositionTask

@@ -31,7 +31,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.costs import KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.parts import CUSTOM, Cost, Step, Task
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
@@ -40,7 +40,7 @@ LEVELS: tuple[Level, ...] = ("velocity", "acceleration")
 
 
 @dataclass(frozen=True)
-class JointAcceleration(Cost):
+class JointAcceleration(WeightedCost):
     r"""Joint acceleration, :math:`\tfrac12 w\,\|\ddot q + \lambda\,\dot q\|^2`.
 
     Attributes:
@@ -48,12 +48,10 @@ class JointAcceleration(Cost):
         damping: :math:`\lambda` [1/s], at least 0: rate at which motion that no task sees dies out.
     """
 
-    weight: float = 1.0
     damping: float = 5.0
 
     def __post_init__(self) -> None:
-        """Check the numbers; raises InvalidInputError."""
-        checks.not_negative("weight", self.weight)
+        super().__post_init__()
         checks.not_negative("damping", self.damping)
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
@@ -62,7 +60,7 @@ class JointAcceleration(Cost):
 
 
 @dataclass(frozen=True)
-class JointTorque(Cost):
+class JointTorque(WeightedCost):
     r"""Joint torque, :math:`\tfrac12 w\,\|\tau\|^2`, :math:`\tau = M \ddot q + h(q, \dot q)`.
 
     Alone it lets the joints race before long (the source in `iiwa_dnn.schemes.acceleration`); a
@@ -71,12 +69,6 @@ class JointTorque(Cost):
     Attributes:
         weight: w, at least 0.
     """
-
-    weight: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Check the weight; raises InvalidInputError."""
-        checks.not_negative("weight", self.weight)
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""

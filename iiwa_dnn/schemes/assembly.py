@@ -236,6 +236,9 @@ def assemble(
 ) -> None:  # fmt: skip
     """Write a program into `data`, without the rows of parts that have no compiled form.
 
+    The functions of the parts get n, the number of variables, dof, that of the joints, which are
+    the first ones, and `at`, the place of their own constants in `numbers`.
+
     Args:
         data: The program, laid out as `QP.data`, (size,).
         codes: `Layout.codes`.

@@ -68,15 +68,14 @@ class CollisionAvoidance(Limit):
     moves: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         one = isinstance(self.obstacles, Obstacle)
         given: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
         for number, obstacle in enumerate(given, 1):
             if not isinstance(obstacle, Obstacle):
                 problem = f"number {number} must be a Sphere, Capsule, Box, ConvexMesh or HalfSpace"
                 raise InvalidInputError("obstacles", f"{problem}, not {obstacle!r}", obstacle)
-        object.__setattr__(self, "obstacles", given)
-        object.__setattr__(self, "moves", any(obstacle.moves for obstacle in self.obstacles))
+        self._set(obstacles=given)
+        self._set(moves=any(obstacle.moves for obstacle in self.obstacles))
         checks.positive("distance", self.distance)
         checks.positive("gain", self.gain)
         checks.integer("nearest", self.nearest, 1)
@@ -175,18 +174,8 @@ def collision_rows(
 ) -> None:  # fmt: skip
     """Write the rows of the pairs that are nearest to being active.
 
-    Args:
-        data: The program, (size,).
-        at_G: Beginning of the rows of G.
-        at_h: Beginning of their h.
-        n: Number of variables.
-        dof: Number of joints, the first variables.
-        rows: Number of rows.
-        numbers: Constants, (c,), from index `at` those of `Scene.numbers`.
-        at: See `numbers`.
-        jacobian: `Kinematics.jacobian`, (dof, 6).
-        placements: `Kinematics.placements`, (frames, 12).
-        rate: 1 / dt [1/s]; inf where there is no control period.
+    G begins at `at_G` and h at `at_h` in the program `data` (size,); other arguments as
+    `iiwa_dnn.schemes.assembly.assemble`.
     """
     pairs, width, row = int(numbers[at + 5]), FOUND + dof, 0
     found = np.empty(pairs * width)

@@ -24,7 +24,21 @@ KINETIC_ENERGY, CYCLIC_MOTION = 1, 2
 
 
 @dataclass(frozen=True)
-class KineticEnergy(Cost):
+class WeightedCost(Cost):
+    """Base of costs with one weight.
+
+    Attributes:
+        weight: w, at least 0.
+    """
+
+    weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        checks.not_negative("weight", self.weight)
+
+
+@dataclass(frozen=True)
+class KineticEnergy(WeightedCost):
     r"""Minimum kinetic energy (MKE).
 
     .. math::  \tfrac12 w\,\dot q^T G(q)\,\dot q, \qquad P \mathrel{+}= w\,G(q)
@@ -37,13 +51,11 @@ class KineticEnergy(Cost):
             matrix, which makes the cost w times the true kinetic energy [J].
     """
 
-    weight: float = 1.0
     kinetic: Kinetic = "identity"
     kind: int = field(default=KINETIC_ENERGY, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("weight", self.weight)
+        super().__post_init__()
         checks.one_of("kinetic", self.kinetic, KINETICS)
 
     def numbers(self, robot: Robot) -> Vector:
@@ -55,16 +67,7 @@ class KineticEnergy(Cost):
 def add_kinetic_energy(
     data: Vector, n: int, dof: int, numbers: Vector, at: int, inertia: Vector
 ) -> None:
-    """Add w G(q) to P (n n) in a program `data` (size,).
-
-    Args:
-        data: The program, (size,).
-        n: Number of variables.
-        dof: Number of joints, the first variables.
-        numbers: Constants, (c,), of this cost from index `at`.
-        at: See `numbers`.
-        inertia: Joint-space inertia matrix row by row, (dof dof).
-    """
+    """Add w G(q) to P (n, n); arguments as `iiwa_dnn.schemes.assembly.assemble`."""
     weight = numbers[at]
     for i in range(dof):
         if numbers[at + 1] == 0.0:
@@ -75,7 +78,7 @@ def add_kinetic_energy(
 
 
 @dataclass(frozen=True)
-class CyclicMotion(Cost):
+class CyclicMotion(WeightedCost):
     r"""Cyclic motion generation (CMG): the posture is drawn back to where it began.
 
     .. math::  \tfrac12 w\,\|\dot q + m\,(q - q_0)\|^2, \qquad
@@ -90,18 +93,15 @@ class CyclicMotion(Cost):
             nothing draws it; `simulate` and `Controller` anchor it where they begin.
     """
 
-    weight: float = 1.0
     gain: float = 10.2
     home: tuple[float, ...] | None = None
     kind: int = field(default=CYCLIC_MOTION, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("weight", self.weight)
+        super().__post_init__()
         checks.not_negative("drift_gain", self.gain)
         if self.home is not None:
-            home = checks.finite_array("home", self.home, (-1,))
-            object.__setattr__(self, "home", tuple(home.tolist()))
+            self._set(home=tuple(checks.finite_array("home", self.home, (-1,)).tolist()))
 
     def anchored(self, conf: Configuration) -> CyclicMotion:
         """Return the cost with `conf` as home, unless it has a home already."""
@@ -122,16 +122,7 @@ class CyclicMotion(Cost):
 
 @compiled
 def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, q: Vector) -> None:
-    """Add w I to P and w m (q - home) to the linear term, which follows P.
-
-    Args:
-        data: The program, (size,).
-        n: Number of variables.
-        dof: Number of joints, the first variables.
-        numbers: Constants, (c,), of this cost from index `at`.
-        at: See `numbers`.
-        q: Joint positions [rad], (dof,).
-    """
+    """Add w I to P and w m (q - home) to the linear term behind it, q (dof,) [rad] the joints'."""
     weight, gain = numbers[at], numbers[at + 1]
     for i in range(dof):
         data[i * n + i] += weight
@@ -139,7 +130,7 @@ def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, 
 
 
 @dataclass(frozen=True)
-class Manipulability(Cost):
+class Manipulability(WeightedCost):
     r"""Motion towards postures in which the tool moves with equal ease in all directions.
 
     .. math::  -w\,\nabla \mu(q)^T \dot q, \qquad \mu = \sqrt{\det J J^T}, \qquad
@@ -156,12 +147,7 @@ class Manipulability(Cost):
         frame: Name of the frame; None stands for the robot's tip.
     """
 
-    weight: float = 1.0
     frame: str | None = None
-
-    def __post_init__(self) -> None:
-        """Check the weight; raises InvalidInputError."""
-        checks.not_negative("weight", self.weight)
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n), zero, and q (n,)."""

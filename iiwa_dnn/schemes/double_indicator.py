@@ -69,7 +69,6 @@ class DoubleIndicator(Scheme):
     next_gain: float | None = None
 
     def __post_init__(self) -> None:
-        """Compose the parts; raises InvalidInputError naming a parameter that is wrong."""
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
         checks.one_of("orientation", self.orientation, ORIENTATIONS)

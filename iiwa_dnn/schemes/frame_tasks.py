@@ -18,14 +18,14 @@ from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes.parts import Step, Task, Tracking
-from iiwa_dnn.schemes.tasks import ROTATION_LENGTH, check_tracking, task_gains
+from iiwa_dnn.schemes.parts import Step, Tracking
+from iiwa_dnn.schemes.tasks import ROTATION_LENGTH, GainTask
 
 Rows = tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class FeedbackTask(Task):
+class FeedbackTask(GainTask):
     """Base of tasks whose error decays.
 
     Attributes:
@@ -43,20 +43,14 @@ class FeedbackTask(Task):
     next_gain: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("gain", self.gain)
-        check_tracking(self)
+        self._check("gain")
         if self.priority is not None:
             checks.integer("priority", self.priority, 1)
 
     def feedback(self, step: Step) -> float:
         """Return the gain of a step [1/s]."""
-        gain = float(task_gains(self)[0])
+        gain = float(self.numbers(step.robot)[0])
         return gain if self.tracking == "paper" else min(gain, 1.0 / step.dt)
-
-    def _set(self, **values: Any) -> None:
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True)
@@ -102,7 +96,6 @@ class AxisTask(FeedbackTask):
     row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         self._set(axis=checks.direction("axis", self.axis))
         if self.direction is not None:
@@ -150,7 +143,6 @@ class RelativePoseTask(FeedbackTask):
     rows: int = field(default=6, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         if self.pose is not None:
             pose = checks.finite_array("pose", self.pose, (4, 4))
@@ -207,7 +199,6 @@ class RemoteCentreTask(FeedbackTask):
     rows: int = field(default=2, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         self._set(axis=checks.direction("axis", self.axis))
         if not isinstance(self.point, str):

@@ -31,7 +31,6 @@ class PostureTask(FeedbackTask):
     row_weight: float = field(default=0.1, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         joints = {name: checks.finite("joints", value) for name, value in self.joints.items()}
         self._set(joints=joints, rows=len(joints))
@@ -63,7 +62,6 @@ class JointCouplingTask(FeedbackTask):
     row_weight: float = field(default=0.1, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         checks.finite("offset", self.offset)
         given = self.coefficients.items()
@@ -118,7 +116,6 @@ class ElbowAngleTask(FeedbackTask):
     row_weight: float = field(default=0.1, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         if self.angle is not None:
             checks.finite("angle", self.angle)
@@ -172,7 +169,6 @@ class CentreOfMassTask(FeedbackTask):
     tracks: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         super().__post_init__()
         if self.axes not in ("x", "y", "z", "xy", "xz", "yz", "xyz"):
             raise InvalidInputError("axes", f"must be letters out of xyz, not {self.axes!r}")

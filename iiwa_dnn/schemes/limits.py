@@ -38,7 +38,6 @@ class JointLimits(Limit):
     kind: int = field(default=JOINT_LIMITS, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the gain; raises InvalidInputError."""
         checks.positive("limit_gain", self.gain)
 
     def numbers(self, robot: Robot) -> Vector:

@@ -3,8 +3,6 @@ r"""Schemes of the literature beside the paper's, each composed of parts.
 All hold the tip's position and orientation and keep the joint limits; they differ in the cost.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from iiwa_dnn import checks
@@ -13,7 +11,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
 from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy
+from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Cost, Limit, Step, Task
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
@@ -22,22 +20,7 @@ SMALLEST = 1e-3
 """Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
 
 
-@dataclass(frozen=True)
-class _Weighted(Cost):
-    """Base of costs with one weight w.
-
-    Attributes:
-        weight: w, at least 0.
-    """
-
-    weight: float = 1.0
-
-    def __post_init__(self) -> None:
-        """Check the weight; raises InvalidInputError."""
-        checks.not_negative("weight", self.weight)
-
-
-class LargestSpeed(_Weighted):
+class LargestSpeed(WeightedCost):
     r"""Square of the largest joint speed, the scheme's last (slack) variable s: w s^2 / 2."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
@@ -60,7 +43,7 @@ class SpeedsBelowSlack(Limit):
         return self._G, np.zeros(self.rows)
 
 
-class VelocityChange(_Weighted):
+class VelocityChange(WeightedCost):
     r"""Change from the last command: :math:`\tfrac12 w \|\dot q - \dot q_-\|^2`."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:

@@ -66,20 +66,16 @@ class _RateLimits(Limit):
     default: ClassVar[str]
 
     def __post_init__(self) -> None:
-        """Check the limit; raises InvalidInputError."""
         if self.limit is None:
             return
         try:
             values = np.asarray(self.limit, dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise InvalidInputError(
-                self.quantity, "must be a number or (n,)", self.limit
-            ) from error
+            problem = "must be a number or (n,)"
+            raise InvalidInputError(self.quantity, problem, self.limit) from error
         if values.ndim > 1 or not (values > 0.0).all():
             raise InvalidInputError(self.quantity, "must be above 0, a number or (n,)", self.limit)
-        object.__setattr__(
-            self, "limit", float(values) if values.ndim == 0 else tuple(values.tolist())
-        )
+        self._set(limit=float(values) if values.ndim == 0 else tuple(values.tolist()))
 
     def of(self, robot: Robot) -> Vector:
         """Return the limit of each joint, (n,).
@@ -174,18 +170,8 @@ def motion_limits(
     """Put the bounds of the joints inside those of acceleration and jerk.
 
     Bounds of other limits give way where they contradict: the position and velocity limits are
-    kept by these bounds too.
-
-    Args:
-        data: The program, laid out as `QP.data`, (size,).
-        at_lb: Place of its bounds.
-        n: Number of its variables.
-        dof: Number of joints.
-        numbers: Constants of all parts, (c,).
-        at: Place of `MotionLimits.numbers` among them.
-        q: Joint positions [rad], (dof,).
-        past: The last command and the one before [rad/s], (2 dof,).
-        rate: 1 / dt [1/s]; inf where there is no control period, and so no such bounds.
+    kept by these bounds too. Without a control period there are none. Arguments, such as q (dof,)
+    [rad], as `iiwa_dnn.schemes.assembly.assemble`.
     """
     if not rate < np.inf:
         return

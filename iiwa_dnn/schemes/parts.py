@@ -77,6 +77,8 @@ class Step:
 class Part:
     """A block of a program's rows; a cost, a task or a limit.
 
+    A part that is made with a wrong parameter raises an `InvalidInputError` that names it.
+
     Attributes:
         kind: Number of the compiled form; ``CUSTOM`` for a part written with numpy.
         rows: Number of rows; none for a cost.
@@ -109,6 +111,11 @@ class Part:
     def anchored(self: PartT, conf: Configuration) -> PartT:
         """Return the part with `conf` as the posture to come back to, where it lacks one."""
         return self
+
+    def _set(self, **values: Any) -> None:
+        """Set checked parameters of a frozen dataclass."""
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""

@@ -46,7 +46,6 @@ class PseudoInverse(Scheme):
     next_gain: float | None = None
 
     def __post_init__(self) -> None:
-        """Compose the parts; raises InvalidInputError naming a parameter that is wrong."""
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         self._compose([KineticEnergy()], tip_tasks(self), [])
 

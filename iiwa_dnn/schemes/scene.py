@@ -155,14 +155,8 @@ def measure(numbers: Vector, at: int, dof: int, placements: Matrix, found: Vecto
 
     Of each ``[x of the second | x of the first | normal, from the first | distance of the cores,
     distance | of each end of the second its distance from x and its height over it | room for 2 +
-    dof numbers more]``.
-
-    Args:
-        numbers: Constants, (c,), from index `at` those of `Scene.numbers`.
-        at: See `numbers`.
-        dof: Number of joints.
-        placements: `Kinematics.placements`, (frames, 12).
-        found: The results, (k,) with k = pairs (17 + dof).
+    dof numbers more]``, in all `found` (k,), k = pairs (17 + dof). `numbers` (c,) has those of
+    `Scene.numbers` from index `at` on.
     """
     shapes, pairs = int(numbers[at + 4]), int(numbers[at + 5])
     at_pairs, at_points = at + int(numbers[at + 6]), at + int(numbers[at + 7])

@@ -20,7 +20,7 @@ does not add up from step to step. A smaller :math:`\gamma` is for noise (`noise
 """
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -41,8 +41,29 @@ ROTATION_LENGTH = 0.1
 """Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m]."""
 
 
+class GainTask(Task):
+    """Base of tasks that feed an error back: attributes as of `PositionTask`."""
+
+    gain: float
+    next_gain: float | None
+
+    def _check(self, name: str) -> None:
+        """Check gain, by the name that users know it by, weight, tracking and its gain."""
+        checks.not_negative(name, self.gain)
+        checks.one_of("tracking", self.tracking, TRACKINGS)
+        for name in ("weight", "next_gain"):
+            if getattr(self, name) is not None:
+                checks.not_negative(name, getattr(self, name))
+
+    def numbers(self, robot: Robot) -> Vector:
+        """Return the gain, not yet cut to 1 / dt, and 1 where the next target is tracked, (2,)."""
+        if self.tracking == "paper":
+            return np.array([self.gain, 0.0])
+        return np.array([np.inf if self.next_gain is None else self.next_gain, 1.0])
+
+
 @dataclass(frozen=True)
-class PositionTask(Task):
+class PositionTask(GainTask):
     r"""Position of a frame.
 
     .. math::  J_p \dot q = v_d + \delta\,(p_d - p)
@@ -69,13 +90,7 @@ class PositionTask(Task):
     rows: int = field(default=3, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("position_gain", self.gain)
-        check_tracking(self)
-
-    def numbers(self, robot: Robot) -> Vector:
-        """Return the gain, and whether the next target is tracked, (2,)."""
-        return task_gains(self)
+        self._check("position_gain")
 
 
 @compiled
@@ -86,20 +101,10 @@ def position_rows(
     """Write three rows of n entries and their right-hand side into a program.
 
     A joint with angular velocity w and velocity v of the world's origin moves a frame at p with
-    v + w x p.
-
-    Args:
-        out: The program, or scratch memory, (size,).
-        rows: Index of the first row's first entry in `out`.
-        rhs: Index of the right-hand side's first entry in `out`.
-        n: Number of variables.
-        codes: `Layout.codes`.
-        support: Index in `codes` of the flags of the joints that move the frame.
-        gain: Feedback gain [1/s].
-        jacobian: `Kinematics.jacobian`, (dof, 6).
-        place: The frame's row of `Kinematics.placements`, (12,).
-        targets: One `Target.data` after the other, (18 frames,).
-        target: Index in `targets` of the frame's target.
+    v + w x p. The rows begin at `rows` and the right-hand side at `rhs` in `out` (size,), the
+    program or scratch memory; the flags of the joints that move the frame begin at `support` in
+    `codes`, its target at `target` in `targets`; `place` (12,) is its placement, the gain is in
+    [1/s]. Other arguments as `iiwa_dnn.schemes.assembly.assemble`.
     """
     x, y, z = place[9], place[10], place[11]
     for i in range(3):
@@ -113,7 +118,7 @@ def position_rows(
 
 
 @dataclass(frozen=True)
-class OrientationTask(Task):
+class OrientationTask(GainTask):
     r"""Orientation of a frame, in one of two forms.
 
     ``so3``: the angular velocity itself, three rows that lose nothing at any orientation,
@@ -155,32 +160,10 @@ class OrientationTask(Task):
     row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
-        checks.not_negative("orientation_gain", self.gain)
+        self._check("orientation_gain")
         checks.one_of("form", self.form, ("so3", "block"))
         if self.form == "block":
-            object.__setattr__(self, "kind", ORIENTATION_BLOCK)
-            object.__setattr__(self, "rows", 4)
-        check_tracking(self)
-
-    def numbers(self, robot: Robot) -> Vector:
-        """Return the gain, and whether the next target is tracked, (2,)."""
-        return task_gains(self)
-
-
-def check_tracking(task: Any) -> None:
-    """Check weight, tracking and its gain; raises InvalidInputError."""
-    checks.one_of("tracking", task.tracking, TRACKINGS)
-    for name in ("weight", "next_gain"):
-        if getattr(task, name) is not None:
-            checks.not_negative(name, getattr(task, name))
-
-
-def task_gains(task: Any) -> Vector:
-    """Return the gain, not yet cut to 1 / dt, and 1 where the next target is tracked, (2,)."""
-    if task.tracking == "paper":
-        return np.array([task.gain, 0.0])
-    return np.array([np.inf if task.next_gain is None else task.next_gain, 1.0])
+            self._set(kind=ORIENTATION_BLOCK, rows=4)
 
 
 @compiled

@@ -12,11 +12,10 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.paths import References
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled, larger
 from iiwa_dnn.results.record import RATES
-from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.simulation.frames import TrackedFrames
 
 COMPLETED = "completed"
 
@@ -61,12 +60,13 @@ class History:
     def add_block(self, first: int, steps: int, stages: int, answers: Answers) -> None:
         """Take in the answers of a stretch of steps, each of so many stages."""
         rows = slice(first, first + steps)
-        take_in(
-            answers.rows[: steps * stages], stages, answers.at_figures, answers.at_targets,
-            self._position[rows], self._rotation[rows], self._position_desired[rows],
-            self._rotation_desired[rows], self._kkt_residual[rows], self._iterations[rows],
-        )  # fmt: skip
-        self._frames.add(first, self.q[rows], answers.targets[: steps * stages : stages])
+        blocks = answers.rows[: steps * stages].reshape(steps, stages, -1)
+        figures = blocks[..., answers.at_figures :]
+        self._iterations[rows] = figures[..., 0].sum(axis=1)
+        self._kkt_residual[rows] = figures[..., 2:FIGURES].max(axis=(1, 2))
+        # Pose and target are the first stage's.
+        targets = answers.targets[: steps * stages : stages]
+        self._add_samples(first, figures[:, 0, FIGURES : FIGURES + 12], targets)
         scheme = self._controller.scheme
         # A scheme of one's own may have an index of its own, or none.
         index = getattr(type(scheme), "kinetic_index", None)
@@ -81,11 +81,17 @@ class History:
 
     def end(self, steps: int, targets: Matrix) -> None:
         """Take in where the frames ended and where they should have, (1, 18 frames)."""
-        place, target = self._controller.place(self.q[steps]), targets[0]
-        self._position[steps], self._rotation[steps] = place[9:], place[:9].reshape(3, 3).T
-        self._position_desired[steps] = target[:3]
-        self._rotation_desired[steps] = target[3:12].reshape(3, 3)
-        self._frames.add(steps, self.q[steps : steps + 1], targets)
+        self._add_samples(steps, self._controller.place(self.q[steps])[np.newaxis], targets)
+
+    def _add_samples(self, first: int, places: Matrix, targets: Matrix) -> None:
+        """Take in samples from number `first` on: placements (k, 12) and targets (k, 18 frames)."""
+        samples = slice(first, first + len(places))
+        self._position[samples] = places[:, 9:]
+        # A placement holds the rotation column by column, a target row by row.
+        self._rotation[samples] = places[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)
+        self._position_desired[samples] = targets[:, :3]
+        self._rotation_desired[samples] = targets[:, 3:12].reshape(-1, 3, 3)
+        self._frames.add(first, self.q[samples], targets)
 
     def arrays(self, steps: int) -> dict[str, Any]:
         """Return the record's arrays by name, protected and cut to the steps that were taken."""
@@ -112,42 +118,39 @@ class History:
         return cut | {name: array[:steps] for name, array in of_steps.items()}
 
 
-@compiled
-def take_in(
-    rows: Matrix, stages: int, at_figures: int, at_targets: int, position: Matrix,
-    rotation: NDArray[np.float64], position_desired: Matrix,
-    rotation_desired: NDArray[np.float64], residual: Vector, iterations: NDArray[np.int64],
-) -> None:  # fmt: skip
-    """Copy what `Answers.rows` say of N steps, each of so many stages, into arrays of a record.
+class TrackedFrames:
+    """Arrays of a record with the poses of f further frames, actual and desired.
 
-    Args:
-        rows: Answers, (N stages, width).
-        stages: Rows of a step; poses and targets are the first one's.
-        at_figures: Column of the figures, the tip's placement after them.
-        at_targets: Column of the targets.
-        position: Position of the tip [m], (N, 3).
-        rotation: Its orientation, (N, 3, 3).
-        position_desired: Desired position [m], (N, 3).
-        rotation_desired: Desired orientation, (N, 3, 3).
-        residual: Largest KKT residual of the stages, (N,).
-        iterations: Linear systems or sub-steps of all stages, (N,).
+    Attributes:
+        arrays: By their names in `iiwa_dnn.Record`; none where f = 0.
     """
-    at_place = at_figures + FIGURES
-    for k in range(len(position)):
-        row = rows[k * stages]
-        for i in range(3):
-            position[k, i] = row[at_place + 9 + i]
-            position_desired[k, i] = row[at_targets + i]
-            for j in range(3):
-                # A placement holds the rotation column by column, a target row by row.
-                rotation[k, i, j] = row[at_place + 3 * j + i]
-                rotation_desired[k, i, j] = row[at_targets + 3 + 3 * i + j]
-        residual[k], iterations[k] = 0.0, 0
-        for stage in range(stages):
-            figures = rows[k * stages + stage, at_figures:]
-            iterations[k] += int(figures[0])
-            for i in range(2, FIGURES):
-                residual[k] = larger(residual[k], figures[i])
+
+    def __init__(self, steps: int, robot: Robot, names: tuple[str, ...]) -> None:
+        """Allocate for so many steps; the first of the frames has its own arrays."""
+        self._kinematics = Kinematics(robot, names)
+        self._ids = [robot.frame_id(name) for name in names[1:]]
+        shape = (steps + 1, len(self._ids))
+        self.arrays: dict[str, NDArray[np.float64]] = {}
+        if self._ids:
+            for suffix in ("", "_desired"):
+                self.arrays["frame_position" + suffix] = np.empty((*shape, 3))
+                self.arrays["frame_rotation" + suffix] = np.empty((*shape, 3, 3))
+
+    def add(self, first: int, q: Matrix, targets: Matrix) -> None:
+        """Take in k samples from number `first` on: q (k, n) [rad] and targets (k, 18 frames)."""
+        if not self._ids:
+            return
+        samples, arrays = slice(first, first + len(q)), self.arrays
+        desired = targets.reshape(len(q), -1, 18)[:, 1:]
+        turned = desired[..., 3:12].reshape(len(q), -1, 3, 3)
+        arrays["frame_position_desired"][samples] = desired[..., :3]
+        arrays["frame_rotation_desired"][samples] = turned
+        for k, posture in enumerate(q, first):
+            self._kinematics.update(posture)
+            places = self._kinematics.placements[self._ids]
+            arrays["frame_position"][k] = places[:, 9:]
+            # A placement holds the rotation column by column.
+            arrays["frame_rotation"][k] = places[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)
 
 
 def settings_of(controller: Controller, q0: Vector) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from iiwa_dnn.app.paper import figure_runs
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.studies import runs
 from iiwa_dnn.studies.runs import QUICK, Scope
+from iiwa_dnn.studies.sweeps import Sweep
 
 TABLES = ("table1.json", "table2.json", "ablation.json")
 TINY = ("--quick", "--duration", "0.002", "--seeds", "2")
@@ -82,14 +83,14 @@ def test_figures_are_drawn_from_the_runs_that_they_name() -> None:
 def test_a_run_that_ends_early_is_said_and_exits_1(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    whole = paper_cli.Sweep.run
+    whole = Sweep.run
 
     def ended_early(self, cells, **how):
         found = whole(self, cells, **how)
         found[3] = found[3] | {"status": "stopped at step 7"}
         return found
 
-    monkeypatch.setattr(paper_cli.Sweep, "run", ended_early)
+    monkeypatch.setattr(Sweep, "run", ended_early)
     command = [*TINY, "--workers", "1", "--out", str(tmp_path), "--quiet", "--no-plots"]
     assert run("paper", command) == 1
     assert "1 runs ended early, the first: stopped at step 7" in capsys.readouterr().err

@@ -1,0 +1,224 @@
+"""Paths without turns: heart, circle, line, Lissajous figure; and a pose that is held.
+
+The compiled function above each class is its `Reference.path`.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numba import njit
+
+from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.references.base import Reference
+
+
+@njit(cache=True, error_model="numpy")
+def _heart(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    scale, rate = numbers[0], numbers[1]
+    for k in range(times.size):
+        p = rate * times[k]
+        s1, c1 = np.sin(p), np.cos(p)
+        out[row + k, column] += scale * 16.0 * s1 * s1 * s1
+        y = 13.0 * c1 - 5.0 * np.cos(2.0 * p) - 2.0 * np.cos(3.0 * p) - np.cos(4.0 * p) - 5.0
+        out[row + k, column + 1] += scale * y
+        out[row + k, column + 12] += rate * scale * 48.0 * s1 * s1 * c1
+        y = -13.0 * s1 + 10.0 * np.sin(2.0 * p) + 6.0 * np.sin(3.0 * p) + 4.0 * np.sin(4.0 * p)
+        out[row + k, column + 13] += rate * scale * y
+
+
+@dataclass(frozen=True, eq=False)
+class Heart(Reference):
+    """The heart of the paper's section V-A, in a horizontal plane.
+
+    With w = 2 pi / period and a = scale::
+
+        x(t) = x(0) + 16 a sin^3(w t)
+        y(t) = y(0) + a (13 cos(w t) - 5 cos(2 w t) - 2 cos(3 w t) - cos(4 w t)) - 5 a
+        z(t) = z(0)
+
+    It starts in the notch, at rest, with its point towards -y. The paper gives neither a nor w.
+    Its run takes 10 s, hence the default period. The default scale is an inference: with it, the
+    largest squared joint speed times the step of 1e-4 s is the 4.54e-6 of the paper's Table I, and
+    the heart is 32 a = 0.110 m wide.
+
+    Attributes:
+        scale: The factor a [m].
+        period: Time to go round once [s].
+
+    Raises:
+        InvalidInputError: If a parameter is not a finite number above zero.
+    """
+
+    name: ClassVar[str] = "heart"
+    path: ClassVar[Any] = staticmethod(_heart)
+    scale: float = 3.45e-3
+    period: float = 10.0
+
+    def __post_init__(self) -> None:
+        self._set(scale=positive("scale", self.scale), period=positive("period", self.period))
+        self._set(numbers=np.array([self.scale, 2.0 * np.pi / self.period]))
+
+
+@njit(cache=True, error_model="numpy")
+def _circle(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    radius, rate = numbers[0], numbers[1]
+    for k in range(times.size):
+        p = rate * times[k]
+        # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
+        along_u, along_v = -2.0 * np.sin(0.5 * p) ** 2, np.sin(p)
+        for i in range(3):
+            u, v = numbers[2 + i], numbers[5 + i]
+            out[row + k, column + i] += radius * (along_u * u + along_v * v)
+            out[row + k, column + 12 + i] += rate * radius * (np.cos(p) * v - np.sin(p) * u)
+
+
+@dataclass(frozen=True, eq=False)
+class Circle(Reference):
+    """A circle at constant speed, counter-clockwise about its normal.
+
+    With w = 2 pi / period and (u, v, normal) right-handed and orthonormal::
+
+        displacement(t) = radius ((cos(w t) - 1) u + sin(w t) v)
+
+    u is the part of the world's x axis in the circle's plane, or of its y axis if x is nearly the
+    normal. The circle starts at full speed, 2 pi radius / period, not at rest.
+
+    Attributes:
+        radius: Radius [m].
+        period: Time to go round once [s].
+        normal: Direction of the circle's axis; its length does not matter.
+
+    Raises:
+        InvalidInputError: If a parameter is not finite, radius or period is not above zero, or the
+            normal is zero.
+    """
+
+    name: ClassVar[str] = "circle"
+    path: ClassVar[Any] = staticmethod(_circle)
+    radius: float = 0.05
+    period: float = 10.0
+    normal: Vector3 = (0.0, 0.0, 1.0)
+
+    def __post_init__(self) -> None:
+        self._set(radius=positive("radius", self.radius), period=positive("period", self.period))
+        self._set(normal=vector3("normal", self.normal))
+        normal = np.array(direction("normal", self.normal))
+        axis = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
+        u = axis - (axis @ normal) * normal
+        u /= np.linalg.norm(u)
+        head = [self.radius, 2.0 * np.pi / self.period]
+        self._set(numbers=np.concatenate([head, u, np.cross(normal, u)]))
+
+
+@njit(cache=True, error_model="numpy")
+def _line(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    rate = numbers[0]
+    for k in range(times.size):
+        p = rate * times[k]
+        # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
+        share, speed = np.sin(0.5 * p) ** 2, 0.5 * rate * np.sin(p)
+        for i in range(3):
+            out[row + k, column + i] += share * numbers[1 + i]
+            out[row + k, column + 12 + i] += speed * numbers[1 + i]
+
+
+@dataclass(frozen=True, eq=False)
+class Line(Reference):
+    """A straight line to a point and back, at rest at both ends.
+
+    With w = 2 pi / period::
+
+        displacement(t) = offset (1 - cos(w t)) / 2
+
+    Attributes:
+        offset: From the start to the far end [m], shape (3,).
+        period: Time to go there and back [s].
+
+    Raises:
+        InvalidInputError: If a parameter is not finite, the offset is zero or the period is not
+            above zero.
+    """
+
+    name: ClassVar[str] = "line"
+    path: ClassVar[Any] = staticmethod(_line)
+    offset: Vector3 = (0.1, 0.0, 0.0)
+    period: float = 10.0
+
+    def __post_init__(self) -> None:
+        self._set(offset=vector3("offset", self.offset), period=positive("period", self.period))
+        if not any(self.offset):
+            raise InvalidInputError("offset", "must not be zero", self.offset)
+        self._set(numbers=np.array([2.0 * np.pi / self.period, *self.offset]))
+
+
+@njit(cache=True, error_model="numpy")
+def _lissajous(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    for k in range(times.size):
+        for i in range(3):
+            amplitude, rate, shift = numbers[i], numbers[3 + i], numbers[6 + i]
+            angle = rate * times[k] + shift
+            out[row + k, column + i] += amplitude * (np.sin(angle) - np.sin(shift))
+            out[row + k, column + 12 + i] += amplitude * rate * np.cos(angle)
+
+
+@dataclass(frozen=True, eq=False)
+class Lissajous(Reference):
+    """A closed Lissajous figure: on each axis a sine of a whole number of turns per period.
+
+    With w = 2 pi / period, on each axis i::
+
+        displacement_i(t) = amplitude_i (sin(turns_i w t + phase_i) - sin(phase_i))
+
+    The default is a figure of eight in the horizontal plane. In general it does not start at rest.
+
+    Attributes:
+        amplitudes: Amplitudes on x, y, z [m], shape (3,).
+        turns: Whole numbers of turns per period on x, y, z, shape (3,).
+        phases: Phases at t = 0 on x, y, z [rad], shape (3,).
+        period: Time to go round once [s].
+
+    Raises:
+        InvalidInputError: If a parameter is not finite, the period is not above zero, a number of
+            turns is not whole, or nothing moves.
+    """
+
+    name: ClassVar[str] = "lissajous"
+    path: ClassVar[Any] = staticmethod(_lissajous)
+    amplitudes: Vector3 = (0.05, 0.05, 0.0)
+    turns: Vector3 = (1.0, 2.0, 1.0)
+    phases: Vector3 = (0.0, 0.0, 0.0)
+    period: float = 10.0
+
+    def __post_init__(self) -> None:
+        for name in ("amplitudes", "turns", "phases"):
+            self._set(**{name: vector3(name, getattr(self, name))})
+        self._set(period=positive("period", self.period))
+        if not all(turns.is_integer() for turns in self.turns):
+            raise InvalidInputError("turns", "must be whole numbers", self.turns)
+        if not any(a * k for a, k in zip(self.amplitudes, self.turns, strict=True)):
+            raise InvalidInputError("amplitudes", "nothing moves", self.amplitudes)
+        rates = (2.0 * np.pi / self.period) * np.array(self.turns)
+        self._set(numbers=np.concatenate([self.amplitudes, rates, self.phases]))
+
+
+def _still(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
+    """Add nothing to targets (k, 18) in `out`; see `Reference.path`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Still(Reference):
+    """A pose to go to and to hold: ``Still().anchored(pose)``.
+
+    Attributes:
+        period: Length of a run that is given none [s], above 0.
+    """
+
+    name: ClassVar[str] = "still"
+    path: ClassVar[Any] = staticmethod(_still)
+    period: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Check the period; raises InvalidInputError."""
+        self._set(period=positive("period", self.period))
