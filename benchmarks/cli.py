@@ -1,7 +1,7 @@
-"""The two commands: options, measurements, report."""
+"""The commands with a report: options, measurements, report."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import list_files, run_command
+from iiwa_dnn.app.command_line import run_command, tell
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Count, Folder, RunOptions, Time
 from iiwa_dnn.errors import MissingDependencyError
@@ -51,29 +51,6 @@ class BenchTargetsSettings(RunOptions):
     steps: Count = 10_000  # number of steps of each loop towards each kind of target
     period: Time = 1e-3  # control period [s]
     mink_python: str | None = None  # Python interpreter with mink; by default this one
-
-
-def bench_solvers(arguments: Sequence[str] | None = None, prog: str = "bench_solvers") -> int:
-    """Measure all solvers on all streams and write the report.
-
-    Args:
-        arguments: Command line without the program's name; None takes the process's own.
-        prog: Name of the command in messages.
-
-    Returns:
-        The exit code: 0 done, 2 bad input or something is missing.
-    """
-    return run_command(BenchSettings, prog, _solvers, arguments)
-
-
-def bench_loop(arguments: Sequence[str] | None = None, prog: str = "bench_loop") -> int:
-    """Measure steps, runs, start-up and memory and write the report; as `bench_solvers`."""
-    return run_command(BenchLoopSettings, prog, _loop, arguments)
-
-
-def bench_targets(arguments: Sequence[str] | None = None, prog: str = "bench_targets") -> int:
-    """Measure loops towards six kinds of targets and write the report; as `bench_solvers`."""
-    return run_command(BenchTargetsSettings, prog, _targets, arguments)
 
 
 def _targets(options: BenchTargetsSettings) -> int:
@@ -134,8 +111,7 @@ def _solvers(options: BenchSettings) -> int:
             print(f"{entry['name']:20} {verdict(entry['rows'])}")
     print(written[0])
     save_settings(options, folder)
-    if options.verbose:
-        list_files(folder)
+    tell(options)
     return 0
 
 
@@ -176,6 +152,19 @@ def _loop(options: BenchLoopSettings) -> int:
     }
     print(save_loop_report(results, folder)[0])
     save_settings(options, folder)
-    if options.verbose:
-        list_files(folder)
+    tell(options)
     return 0
+
+
+def _command(kind: type[Any], run: Callable[[Any], int]) -> Callable[..., int]:
+    """Return a command: its words (None: the process's own) and its name in messages to code."""
+
+    def command(arguments: Sequence[str] | None = None, prog: str = f"bench_{kind.command}") -> int:
+        return run_command(kind, prog, run, arguments)
+
+    return command
+
+
+bench_solvers = _command(BenchSettings, _solvers)
+bench_loop = _command(BenchLoopSettings, _loop)
+bench_targets = _command(BenchTargetsSettings, _targets)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -101,3 +102,16 @@ class MissingDependencyError(IiwaDnnError, ImportError):
         super().__init__(f"{missing} is missing: {remedy}")
         self.missing = missing
         self.remedy = remedy
+
+
+def import_extra(module: str, remedy: str) -> Any:
+    """Import a Python package that a plain install lacks.
+
+    Raises:
+        MissingDependencyError: It is not installed; the remedy says how to install it.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        package = module.partition(".")[0]
+        raise MissingDependencyError(f"the Python package {package}", remedy) from error

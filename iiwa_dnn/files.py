@@ -5,12 +5,13 @@ import math
 import os
 import secrets
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError
 
 if sys.version_info >= (3, 11):
@@ -84,6 +85,16 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
         FileError: If the file cannot be written.
     """
     write_atomically(path, lambda file: file.write(text.encode("utf-8")))
+
+
+def write_csv(path: str | os.PathLike[str], head: Iterable[str], table: Array) -> None:
+    """Write a table (k, columns) under a head as a CSV file, all digits kept, atomically.
+
+    Raises:
+        FileError: If the file cannot be written.
+    """
+    lines = (",".join(map(repr, row)) for row in table.tolist())
+    write_text(path, "\n".join([",".join(head), *lines]) + "\n")
 
 
 def write_json(path: str | os.PathLike[str], value: object) -> None:

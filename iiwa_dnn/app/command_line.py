@@ -46,17 +46,11 @@ class _Wrong(str):
 def run_command(
     kind: type[S], prog: str, run: Callable[[S], int], words: Sequence[str] | None = None
 ) -> int:
-    """Read a command's words, run it, and turn the package's errors into one line.
+    """Read the words of a command, run it, and turn the package's errors into one line.
 
-    Args:
-        kind: Dataclass of the command's options.
-        prog: Name of the command in messages.
-        run: The command; it takes the options and returns the exit code.
-        words: Command line without the program's name; None takes the process's own.
-
-    Returns:
-        The exit code; after an error of the package 2, or 1 where a step had no solution.
-        ``--verbose`` prints the error's traceback first.
+    Messages call the command `prog`; no words are the process's own. Returns the exit code of
+    `run`, after an error of the package 2, or 1 where a step had no solution; ``--verbose`` prints
+    the error's traceback first.
 
     Raises:
         SystemExit: After ``--help``, or when Ctrl-C or SIGTERM came (`iiwa_dnn.app.interrupts`).

@@ -31,13 +31,8 @@ _NOT_COMPARED = {"plots", "pictures", "video", "workers", "dask"}
 def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:
     """Prepare the folder of a run, unless it holds anything but an earlier pass of the same run.
 
-    Args:
-        options: Options of the run; with ``overwrite`` the folder may hold anything.
-        resumes: Names in the folder from which a sweep goes on. A sweep of another size may go on
-            in the same folder, since its finished cells stay.
-
-    Returns:
-        The folder.
+    With ``overwrite`` it may hold anything, and in any case what is named in `resumes`: from there
+    a sweep goes on, even one of another size, since its finished cells stay.
 
     Raises:
         FileError: The folder holds something else, or cannot be written to.

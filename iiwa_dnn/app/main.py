@@ -38,19 +38,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def run(name: str, words: Sequence[str] | None = None, prog: str | None = None) -> int:
-    """Run one command: the function ``run`` of the module that has its name.
-
-    Args:
-        name: The command, a key of `iiwa_dnn.app.options.COMMANDS`.
-        words: Its words; None takes the process's own.
-        prog: Name of the command in messages; None: ``iiwa-dnn`` and its name.
-
-    Returns:
-        The exit code.
-
-    Raises:
-        SystemExit: As in `iiwa_dnn.app.command_line.run_command`.
-    """
+    """Run one of `COMMANDS`, the function ``run`` of the module of its name; as `run_command`."""
     module = import_module(f"iiwa_dnn.app.{name.replace('-', '_')}")
     return run_command(COMMANDS[name], prog or f"{PROG} {name}", module.run, words)
 

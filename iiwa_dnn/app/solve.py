@@ -45,13 +45,7 @@ def run(options: SolveOptions) -> int:
 
 
 def load_problem(path: Path) -> QP:
-    """Read a quadratic program from an .npz file of the arrays P, q, G, h, A, b, lb, ub.
-
-    Args:
-        path: The file; P and q must be there, G with h and A with b.
-
-    Returns:
-        The program.
+    """Read a quadratic program from an .npz file of P and q and if need be G, h, A, b, lb, ub.
 
     Raises:
         FileError: The file cannot be read, or is no .npz archive of plain arrays.

@@ -108,14 +108,7 @@ def run(options: TrackOptions) -> int:
 def simulation(
     options: TrackOptions, robot: Robot, q0: Vector, plant: Plant | None = None
 ) -> Simulation:
-    """Return the run that the options ask for, its arguments checked and nothing written.
-
-    Args:
-        options: The options.
-        robot: The robot, n joints, with its limits.
-        q0: Joint positions at the start [rad], (n,).
-        plant: Moves under the commands; None: the ideal one.
-    """
+    """Return the run that the options ask for from q0 (n,) [rad], checked and nothing written."""
     for name, (idle, beside) in _IDLE.items():
         value, default = (getattr(o, name, None) for o in (options, type(options)))
         if value != default and idle(options):
@@ -209,16 +202,10 @@ def _posture_at(target: Target, start: Configuration, scheme: Scheme) -> Vector 
 def draw(
     options: TrackOptions, simulation: Simulation, more: More | None = None, last: Last = None
 ) -> int:
-    """Carry out a run, write it into its folder and print its summary.
+    """Carry out a run, write it into its folder and print its summary; return the exit code.
 
-    Args:
-        options: Options of the command.
-        simulation: The run.
-        more: Draws more figures into the folder and returns their files.
-        last: Writes more files into the folder, after the report.
-
-    Returns:
-        The exit code: 1 where a step disagreed, was not solved or broke a limit, else 0.
+    `more` draws more figures into the folder and returns their files, `last` writes more files
+    after the report.
     """
     folder = claim_folder(options)
     with progress_bar(simulation.steps, "step", options.quiet) as bar:

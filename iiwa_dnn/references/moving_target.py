@@ -8,7 +8,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import finite_array, not_negative, positive
-from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
+from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.references.base import Pose, Reference
 
 
@@ -123,11 +123,9 @@ class _Filter:
     """Time-optimal motion of a pose: six axes, the last three a rotation vector from `_anchor`."""
 
     def __init__(self, limits: tuple[float, float], acceleration: float, jerk: float) -> None:
-        try:  # here, since only filters of accelerations need it
-            from ruckig import InputParameter, Ruckig, Trajectory
-        except ImportError as error:
-            raise MissingDependencyError("ruckig", "pip install ruckig") from error
-        self._ruckig, self._ask, self._way = Ruckig(6), InputParameter(6), Trajectory(6)
+        ruckig = import_extra("ruckig", "pip install ruckig")  # for filters of accelerations only
+        self._ruckig, self._ask = ruckig.Ruckig(6), ruckig.InputParameter(6)
+        self._way = ruckig.Trajectory(6)
         # The limits of ruckig are those of each axis, these are of the whole vector.
         most = np.repeat(limits, 3) / math.sqrt(3.0)
         self._ask.max_velocity = most.tolist()

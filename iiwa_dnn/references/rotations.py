@@ -21,7 +21,8 @@ from iiwa_dnn.checks import Array
 Four = tuple[float, float, float, float]
 
 
-@njit(cache=True, error_model="numpy")
+# Task rows call it too: without `fastmath` a function takes that of whichever calls it first.
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def coefficients(square: float) -> Four:
     """Compute a, b and their derivatives by the angle over the angle, at a squared angle."""
     if square > 1.0:
@@ -47,7 +48,7 @@ def coefficients(square: float) -> Four:
     return a, b, slope_a, slope_b
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def cross(u: Array, v: Array) -> Array:
     """Compute the cross product u x v, (3,)."""
     out = np.empty(3)
@@ -57,7 +58,7 @@ def cross(u: Array, v: Array) -> Array:
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def rotated(vector: Array, v: Array) -> Array:
     """Compute exp[vector] v, (3,)."""
     square = vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2
@@ -96,7 +97,7 @@ def turn_target(target: Array, vector: Array, rate: Array) -> None:
     target[15:18] = left_jacobian(vector, rate) + rotated(vector, target[15:18])
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})  # as the task rows around it
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def rotation_log(R: Array, out: Array) -> None:
     """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 

@@ -66,11 +66,8 @@ def velocity_limit_excess(record: Record) -> FloatArray:
 def rate_limit_excess(record: Record, order: int) -> FloatArray:
     """Compute the excess of each joint's acceleration or jerk over its limit, (N, n); 0 below.
 
-    Finite differences of the commands, from rest, less the rounding that they carry on.
-
-    Args:
-        record: The run of a scheme with such limits.
-        order: 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
+    Finite differences of the commands, from rest, less the rounding that they carry on; the order
+    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
     """
     dt, still = record.settings["dt"], np.zeros((order, record.q.shape[1]))
     rates = np.diff(np.vstack([still, record.dq]), order, axis=0) / dt**order

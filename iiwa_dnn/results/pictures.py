@@ -6,7 +6,6 @@ record, nothing is simulated.
 
 from __future__ import annotations
 
-import importlib
 import os
 import tempfile
 from collections.abc import Callable, Iterator
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import FileError, MissingDependencyError
+from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, Record
@@ -133,11 +132,7 @@ def import_encoder() -> Any:
     Raises:
         MissingDependencyError: If it is not installed.
     """
-    try:
-        return importlib.import_module("imageio_ffmpeg")
-    except ImportError as error:
-        package = "the Python package imageio-ffmpeg"
-        raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
+    return import_extra("imageio_ffmpeg", "pip install 'iiwa-dnn[sim]'")
 
 
 def frame_times(record: Record) -> list[float]:

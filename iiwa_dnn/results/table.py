@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 
-from iiwa_dnn.files import write_text
+from iiwa_dnn.files import write_csv
 from iiwa_dnn.results.record import Record
 
 
@@ -21,5 +21,4 @@ def save_csv(record: Record, path: str | os.PathLike[str]) -> None:
     head = ["t", *joints, *"xyz", *(f"{axis}_desired" for axis in "xyz")]
     dq = np.vstack([record.dq, np.full(record.dof, np.nan)])
     table = np.column_stack([record.t, record.q, dq, record.position, record.position_desired])
-    lines = (",".join(map(repr, row)) for row in table.tolist())
-    write_text(path, "\n".join([",".join(head), *lines]) + "\n")
+    write_csv(path, head, table)

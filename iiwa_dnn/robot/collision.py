@@ -247,14 +247,11 @@ def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
 
 
 def _enclosing_capsule(points: Array) -> tuple[Array, Array, float]:
-    """Fit a capsule of small volume that holds every one of some points (k, 3) [m].
+    """Fit a capsule of small volume around points (k, 3) [m]; return its ends and its radius.
 
     The axis begins along each principal direction in turn and is then moved by Nelder and Mead's
     simplex method; for an axis and a radius the shortest segment is known in closed form, so the
-    capsule holds all points whatever the method reached.
-
-    Returns:
-        Ends of the segment, (3,) each, equal for a sphere, and the radius [m].
+    capsule holds all points whatever the method reached. The ends of a sphere are equal.
     """
     from scipy.optimize import minimize  # slow to import
 

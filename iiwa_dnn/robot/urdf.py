@@ -16,7 +16,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import FileError, MissingDependencyError
+from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -136,11 +136,7 @@ def _read(path: Path) -> ET.Element:
 
 def _expanded(path: Path) -> bytes:
     """Expand a xacro file."""
-    try:
-        import xacro
-    except ImportError as error:
-        package = "the Python package xacro"
-        raise MissingDependencyError(package, "pip install 'iiwa-dnn[xacro]'") from error
+    xacro = import_extra("xacro", "pip install 'iiwa-dnn[xacro]'")
     try:
         with redirect_stderr(io.StringIO()):
             return bytes(xacro.process_file(str(path)).toxml(encoding="utf-8"))
@@ -196,11 +192,7 @@ def _numbers(joint: ET.Element, tag: str, key: str, default: str) -> NDArray[np.
 
 
 def build_model(path: Path, root: ET.Element) -> pin.Model:
-    """Build the Pinocchio model of a URDF, its base fixed to the world, with no word printed.
-
-    Args:
-        path: The file that the XML came from, for the error.
-        root: The element ``<robot>``.
+    """Build the Pinocchio model of a URDF from `path`, its base fixed to the world, silently.
 
     Raises:
         FileError: If Pinocchio refuses the robot (its own first complaint is the reason), or no

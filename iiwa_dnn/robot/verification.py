@@ -8,14 +8,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from iiwa_dnn.errors import FileError, MissingDependencyError
+from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import Robot, file_of, tree_of
 
-try:
-    import yourdfpy
-except ImportError as error:
-    raise MissingDependencyError("yourdfpy", "pip install 'iiwa-dnn[verify]'") from error
+yourdfpy = import_extra("yourdfpy", "pip install 'iiwa-dnn[verify]'")
 
 _TOLERANCE = 1e-9  # of positions [m] and of the rotation matrices' entries
 

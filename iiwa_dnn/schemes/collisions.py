@@ -155,11 +155,7 @@ def stated(scheme: object, robot: Robot) -> dict[str, Any]:
 def recorded(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
     """Return a record's arrays ``distance`` and ``nearest`` where a scheme avoids collisions.
 
-    Args:
-        scheme: The scheme.
-        robot: The robot.
-        q: Joint positions [rad], (k, n).
-        t: Times [s], (k,).
+    q (k, n) [rad] are the joint positions at times t (k,) [s].
     """
     part = avoidance_of(scheme)
     if part is None:

@@ -11,9 +11,8 @@ acceleration, and the link's turning rate with its change are at most
     \omega = \sum_k \bar q_k, \quad
     \dot\omega = \sum_{j<k} \bar q_j \bar q_k
 
-since :math:`\ddot x = \sum_k \dot q_k^2\, z_k \times (z_k \times r_k) + 2 \sum_{j<k} \dot q_j
-\dot q_k\, z_j \times (z_k \times r_k)`. A prismatic joint counts with :math:`r_k = 1`, turns
-nothing and has no :math:`\bar q_k^2`.
+(docs/collisions.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
+:math:`\bar q_k^2`.
 """
 
 import numpy as np

@@ -57,14 +57,9 @@ class Scene(NamedTuple):
             numbers[at : at + points.size] = (points + obstacle.shift(t)).ravel()
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
-        """Compute the least distance of all pairs, and the pair that has it.
+        """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
 
-        Args:
-            q: Joint positions [rad], (k, n).
-            t: Times [s], (k,).
-
-        Returns:
-            Distances [m], (k,), and indices of pairs, (k,).
+        The joints are at q (k, n) [rad] at times t (k,) [s].
         """
         numbers, kinematics = self.numbers.copy(), Kinematics(self.robot, self.frames)
         distances, indices = np.empty(len(q)), np.empty(len(q), np.int64)
@@ -82,13 +77,9 @@ class Scene(NamedTuple):
 def make_scene(
     robot: Robot, obstacles: Sequence[Obstacle], self_collision: bool, parameters: Sequence[float]
 ) -> Scene:
-    """Lay the capsules of a robot, obstacles and their pairs out.
+    """Lay the capsules of a robot, obstacles and their pairs out; among them, or not, of links.
 
-    Args:
-        robot: The robot, n joints.
-        obstacles: The obstacles.
-        self_collision: Whether pairs of links are among the pairs.
-        parameters: The first four of `Scene.numbers`.
+    The parameters are the first four of `Scene.numbers`.
 
     Raises:
         InvalidInputError: There is no URDF file, no velocity limit of a joint, or no pair.

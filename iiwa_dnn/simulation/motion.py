@@ -25,10 +25,8 @@ Step = Callable[[VelocityField, Vector, float, float], Vector]
 def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
     """Raise InvalidInputError unless a run can take this motion.
 
-    Args:
-        motion: Name of the motion.
-        one_clock: Whether network or physics advance by one control period a step.
-        ahead: Whether a task tracks the target one control period ahead.
+    Network or physics that advance by one control period a step have one clock; `ahead` are tasks
+    that track the target one control period ahead.
     """
     checks.one_of("motion", motion, tuple(MOTIONS))
     if motion != "euler" and (one_clock or ahead):

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
-from iiwa_dnn.files import one_line, write_text
+from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
+from iiwa_dnn.files import one_line, write_csv
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Reference
@@ -72,10 +72,8 @@ class Trajectory:
         Raises:
             FileError: The file cannot be written, or holds something else when it is read back.
         """
-        groups = (f"{name}{i + 1}" for name in ("q", "dq", "ddq") for i in range(self.q.shape[1]))
         table = np.column_stack([self.t, self.q, self.dq, self.ddq])
-        lines = [",".join(["t", *groups]), *(",".join(map(repr, row)) for row in table.tolist())]
-        write_text(path, "\n".join(lines) + "\n")
+        write_csv(path, _head(self.q.shape[1]), table)
         back = Trajectory.load(path)
         if not np.array_equal(np.column_stack([back.t, back.q, back.dq, back.ddq]), table):
             raise FileError(path, "holds other numbers than were written")
@@ -90,9 +88,8 @@ class Trajectory:
         try:
             head, *lines = Path(path).read_text(encoding="utf-8").splitlines()
             table = np.array([[float(cell) for cell in line.split(",")] for line in lines])
-            n = (len(head.split(",")) - 1) // 3
-            groups = [f"{name}{i + 1}" for name in ("q", "dq", "ddq") for i in range(n)]
-            if n < 1 or head.split(",") != ["t", *groups]:
+            n = len(head.split(",")) // 3
+            if n < 1 or head.split(",") != _head(n):
                 raise FileError(path, "the header must be t,q1,...,dq1,...,ddq1,...")
             return cls(table[:, 0], *np.split(table[:, 1:], 3, axis=1))
         except FileError:
@@ -101,6 +98,10 @@ class Trajectory:
             raise FileError(path, f"cannot be read ({one_line(error)})") from error
         except (ValueError, IndexError) as error:
             raise FileError(path, f"not a trajectory: {one_line(error)}") from error
+
+
+def _head(joints: int) -> list[str]:
+    return ["t", *(f"{name}{i + 1}" for name in ("q", "dq", "ddq") for i in range(joints))]
 
 
 def retime(
@@ -173,15 +174,8 @@ def _optimum(
     record: Record, velocity: Vector, acceleration: Vector, points: int
 ) -> tuple[Any, float]:
     """Fit a spline to the joint path and let toppra time it; return it and its duration [s]."""
-    try:
-        import toppra
-        from toppra.constraint import (
-            DiscretizationType,
-            JointAccelerationConstraint,
-            JointVelocityConstraint,
-        )
-    except ImportError as error:
-        raise MissingDependencyError("toppra", "pip install 'iiwa-dnn[retime]'") from error
+    toppra = import_extra("toppra", "pip install 'iiwa-dnn[retime]'")
+    limit = toppra.constraint
     # The clock of the path: where a policy slowed it down, the path is not longer for that.
     share = np.ones(record.steps) if record.fraction is None else record.fraction
     clock = np.concatenate([[0.0], np.cumsum(share * np.diff(record.t))])
@@ -197,9 +191,10 @@ def _optimum(
         points *= 2
     both = np.array([-1.0, 1.0])
     constraints = [
-        JointVelocityConstraint(velocity[:, None] * both),
-        JointAccelerationConstraint(
-            acceleration[:, None] * both, discretization_scheme=DiscretizationType.Interpolation
+        limit.JointVelocityConstraint(velocity[:, None] * both),
+        limit.JointAccelerationConstraint(
+            acceleration[:, None] * both,
+            discretization_scheme=limit.DiscretizationType.Interpolation,
         ),
     ]
     fine = np.linspace(clock[0], clock[-1], max(points, len(knots) - 1) + 1)

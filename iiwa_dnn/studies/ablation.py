@@ -36,14 +36,7 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
     """Lay out a row for each combination, and find the closest to the paper's drift.
 
     A row is stable if the network is integrated implicitly, or if no explicit sub-step of its run
-    magnifies an error.
-
-    Args:
-        scope: Sizes of the experiments.
-        results: The numbers of `cells`, in that order.
-
-    Returns:
-        The table in JSON types.
+    magnifies an error. The results are those of `cells`, in that order; the table in JSON types.
     """
     drift = paper.DRIFT[paper.WEIGHTS.index(paper.WEIGHT)]
     rows = []

@@ -76,12 +76,7 @@ CLAIMS = (
 
 
 def tabulate(cells: Sequence[Row], results: Sequence[Row]) -> list[dict[str, Any]]:
-    """Lay out a row for each cell: its settings, its runs' numbers, and means of those completed.
-
-    Args:
-        cells: `iiwa_dnn.studies.atlas.cells`.
-        results: Their numbers, in that order.
-    """
+    """Lay out a row for each cell: settings, numbers of its runs, and means of those completed."""
     rows = []
     for cell, result in zip(cells, results, strict=True):
         means = {}

@@ -133,16 +133,10 @@ def _roughness(velocity: FloatArray) -> float:
 def tabulate(
     seeds: int, duration: float, results: Sequence[Mapping[str, Any]]
 ) -> list[dict[str, Any]]:
-    """Lay out a row for each pair, with means and 95 % intervals where there is chance.
+    """Lay the results of `cells` out in a row for each pair, in JSON types.
 
-    Args:
-        seeds: As for `cells`.
-        duration: As for `cells`.
-        results: The numbers of `cells`, in that order.
-
-    Returns:
-        Rows in JSON types: the names, the measures' means, and ``mse_ratio``, the mean squared
-        error without a countermeasure over that with it, with its interval by pairs.
+    It has the names, the measures' means, with 95 % intervals where there is chance, and
+    ``mse_ratio``, the mean squared error without a countermeasure over that with it.
     """
     left, rows = iter(results), []
     plain: dict[str, FloatArray] = {}

@@ -45,14 +45,7 @@ def save_paper_figures(
     tables: Mapping[str, Table],
     folder: str | os.PathLike[str],
 ) -> list[Path]:
-    """Draw ``fig1``, ``fig2`` and ``tables`` as PNG and PDF (`write_figures`); return the files.
-
-    Args:
-        fig1: The run of Fig. 1.
-        fig2: The runs of Fig. 2, by the names of its `PANELS`.
-        tables: ``table1``, ``table2`` and ``ablation``.
-        folder: The folder; made if need be.
-    """
+    """Draw ``fig1``, ``fig2`` (of runs by `PANELS`) and ``tables`` as `write_figures` does."""
     figures = {
         "fig1": partial(overview_figure, fig1),
         "fig2": partial(error_figure, fig2),

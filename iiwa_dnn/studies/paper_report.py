@@ -71,19 +71,10 @@ def write_paper_report(
     head: Mapping[str, str],
     figures: Iterable[Path] = (),
 ) -> Path:
-    """Write report.md.
+    """Write report.md into a folder that exists, and return the file.
 
-    Args:
-        folder: The folder; it must exist.
-        tables: ``table1``, ``table2`` and ``ablation``.
-        head: Date, machine, versions and the like, by names.
-        figures: The figures' files in that folder; the PNG ones are shown.
-
-    Returns:
-        The file written.
-
-    Raises:
-        FileError: If it cannot be written.
+    It begins with `head` (date, machine, versions by names) and shows the PNG files of `figures`;
+    the tables are ``table1``, ``table2`` and ``ablation``. Raises FileError if it cannot.
     """
     table1, table2 = tables["table1"], tables["table2"]
     names = list(dict.fromkeys([*table1["variants"], *table2["modes"]]))

@@ -160,10 +160,7 @@ def nearest_points(frames: Iterable[FrameState]) -> tuple[Matrix, Vector]:
 def run(variant: str, dt: float = 5e-4, duration: float = 10.0) -> Record:
     """Run one of `VARIANTS` through the authors' network, mu = 1e4, never settled.
 
-    Args:
-        variant: A name of `VARIANTS`.
-        dt: Period for which a program is held [s]; the authors' solver has none.
-        duration: Length of the run [s].
+    A program is held for dt [s]; the authors' solver has no such period.
     """
     rows, avoids = VARIANTS[variant]
     tasks: list[Task] = [PositionTask(gain=0.0), *([Posture(rows)] if rows else [])]

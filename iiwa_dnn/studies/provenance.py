@@ -18,12 +18,8 @@ _PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
 def fingerprint(task: Callable[..., Any]) -> dict[str, Any]:
     """Collect everything that the numbers of a function depend on besides its arguments.
 
-    Args:
-        task: A function of a module.
-
-    Returns:
-        ``versions`` of the packages that compute, and ``source``, a hash of the function's module,
-        of all of this package that it imports, and of the robots' URDFs.
+    That is ``versions`` of the packages that compute, and ``source``, a hash of the function's
+    module, of all of this package that it imports, and of the robots' URDFs.
     """
     digest = hashlib.sha256()
     for path in sources(Path(inspect.getfile(task))):

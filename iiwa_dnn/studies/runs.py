@@ -195,13 +195,8 @@ def amplification(qp: QP, step: float) -> float:
     and every other multiplier decays. A step of length h, in units of rho, multiplies the error
     along an eigenvector of their Jacobian by :math:`1 + h\lambda` (docs/theory.md).
 
-    Args:
-        qp: The program.
-        step: Length of the step, in units of rho.
-
-    Returns:
-        The largest :math:`|1 + h \lambda|`: above 1, the step is unstable. Eigenvalues at zero,
-        which belong to dependent equalities and to no error in x, are left out.
+    Above 1, the step is unstable. Eigenvalues at zero, which belong to dependent equalities and to
+    no error in x, are left out.
     """
     network = ProjectionNetwork(primal_projection=False)
     jacobian, moving = network.flow(qp).jacobian(network.initial_state(qp)), qp.q.size + qp.b.size

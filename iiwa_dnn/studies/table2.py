@@ -53,12 +53,7 @@ def cells(scope: Scope) -> list[HeartRun]:
 
 
 def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Lay out the table beside the paper's, with its verdicts, in JSON types.
-
-    Args:
-        scope: Sizes of the experiments.
-        results: The numbers of `cells`, in that order.
-    """
+    """Lay the results of `cells` out beside the paper's, with their verdicts, in JSON types."""
     modes: dict[str, Any] = {}
     growth: dict[str, float | None] = {}
     size = len(results) // len(MODES)

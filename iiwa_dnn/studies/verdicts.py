@@ -82,15 +82,10 @@ def judge_row(
 
 
 def judge_change(paper: float, ours: Estimate) -> Verdict:
-    """Judge a relative change, such as that of the error by the filter.
+    """Judge a relative change, such as that of the error by the filter; -0.1 is a tenth less.
 
-    Args:
-        paper: The paper's relative change; -0.1 is a tenth less.
-        ours: Ours, with its interval.
-
-    Returns:
-        ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
-        factor 2, ``same trend`` if only the former, else ``not reproduced``.
+    It is ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
+    factor 2, ``same trend`` if only the former, else ``not reproduced``.
     """
     ratio = ours.mean / paper if paper else None
     mine, said = _direction(ours), _direction(Estimate.exact(paper))

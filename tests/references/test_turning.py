@@ -22,6 +22,7 @@ from iiwa_dnn.references import (
     Reference,
     Tilting,
     Waypoints,
+    rotations,
 )
 
 TIMES = [2.0, 3.0, 5.0, 6.0, 8.5]
@@ -245,3 +246,9 @@ def test_a_bad_file_of_poses_is_told(
 ) -> None:
     with pytest.raises(FileError, match=problem):
         Waypoints.from_csv(write(tmp_path, header, np.array(rows)))
+
+
+def test_what_task_rows_call_too_states_its_arithmetic() -> None:
+    for function in (rotations.coefficients, rotations.cross, rotations.rotated):
+        # Unstated, it would be the first caller's, and bytes a matter of what was compiled first.
+        assert function.targetoptions["fastmath"] == {"contract"}

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from functools import partial
-from importlib import import_module
 from io import StringIO
 from queue import SimpleQueue
 from typing import Any
@@ -19,7 +18,7 @@ from iiwa_dnn.app.viewer.follower import Follower
 from iiwa_dnn.app.viewer.live import LivePanel
 from iiwa_dnn.app.viewer.replay import ReplayPanel
 from iiwa_dnn.app.viewer.stage import VIEWS, Stage, first_view
-from iiwa_dnn.errors import InvalidInputError, MissingDependencyError
+from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.robot.configuration import Configuration
@@ -45,15 +44,7 @@ class Session:
         self, host: Any, robot: Robot, q0: Vector, record: Record | None,
         scheme: DoubleIndicator | None,
     ) -> None:  # fmt: skip
-        """Put the robot and all controls into a browser.
-
-        Args:
-            host: The browser, a ``viser.ClientHandle``; or the server, for all of them.
-            robot: The robot, n joints.
-            q0: Joint positions at the start of the live mode [rad], (n,).
-            record: Run to replay; None: live mode only.
-            scheme: Scheme of the live mode; None takes the defaults.
-        """
+        """Put the robot and all controls into a browser; q0 (n,) [rad] and others as of `Page`."""
         follower = Follower(robot, q0, scheme)
         self.stage = Stage(host, robot, _middle(robot, q0, record))
         if getattr(getattr(host, "camera", None), "aspect", 1.0) < 1.0:  # a phone, upright
@@ -173,11 +164,7 @@ def _middle(robot: Robot, q0: Vector, record: Record | None) -> FloatArray:
 
 def _open_server(title: str, host: str, port: int) -> Any:
     """Serve an empty page with a title, in the look of the project."""
-    try:
-        viser: Any = import_module("viser")
-    except ImportError as error:
-        remedy = "pip install 'iiwa-dnn[view]'"
-        raise MissingDependencyError("the Python package viser", remedy) from error
+    viser = import_extra("viser", "pip install 'iiwa-dnn[view]'")
     port = _checked_port(host, port)
     with redirect_stdout(StringIO()):  # its banner; the command prints the address
         server = viser.ViserServer(host=host, port=port, label=title, verbose=False)

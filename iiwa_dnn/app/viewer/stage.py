@@ -28,13 +28,7 @@ class Stage:
     """
 
     def __init__(self, host: Any, robot: Robot, point: FloatArray) -> None:
-        """Put the robot's shapes and a floor on the page.
-
-        Args:
-            host: The browser, or the server.
-            robot: The robot.
-            point: The point that the views turn to [m], (3,).
-        """
+        """Put the robot's shapes and a floor on the page; views turn to a point (3,) [m]."""
         self.host, self.robot, self._point = host, robot, point
         self._data = robot.model.createData()
         scene = host.scene
