@@ -72,12 +72,7 @@ def _solvers(options: BenchSettings) -> int:
         checks.integer(f"--{name}", getattr(options, name), 50)
     folder = claim_folder(options)
     # Here, since the peers are in an extra.
-    from benchmarks.measurement import (
-        CHUNK,
-        measure_batch,
-        measure_known,
-        measure_stream,
-    )
+    from benchmarks.measurement import CHUNK, measure_batch, measure_known, measure_stream
     from benchmarks.peers import PEERS
     from benchmarks.report import environment, save_report, verdict
     from benchmarks.streams import all_streams

@@ -331,10 +331,7 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
             _per_call(lambda k: scheme.build_qp(confs[k], targets[k]), steps),
         ),
         ("network: DNNSolver.solve", _per_call(lambda k: solver.solve(programs[k]), steps)),
-        (
-            "kinematics, program and network: Controller.answer",
-            _per_call(answer, steps),
-        ),
+        ("kinematics, program and network: Controller.answer", _per_call(answer, steps)),
         ("reference: sample, per target", _each(lambda: reference.sample(record.t[:-1]), steps)),
         ("the whole loop, per step", _each(simulation.run, steps)),
         (

@@ -1,7 +1,5 @@
 """Programs and answers of a stretch of control steps, kept in one array until they are recorded."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.control.policies import Resolution

@@ -20,8 +20,6 @@ A. Escande, N. Mansard, P.-B. Wieber, "Hierarchical quadratic programming: fast 
 humanoid-robot motion generation", Int. J. Robotics Research 33 (2014).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

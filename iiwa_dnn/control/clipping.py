@@ -4,8 +4,6 @@ The network's own answer is within them. A drive that watches its own limits doe
 joints' true positions, so that no disturbance breaks a limit.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

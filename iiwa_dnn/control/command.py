@@ -1,7 +1,5 @@
 """The decision of one control step, and the evidence for it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.control.answers import Answers

@@ -17,8 +17,6 @@ Source: R. E. Kalman, "A new approach to linear filtering and prediction problem
 Engineering 82 (1960).
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Any
 

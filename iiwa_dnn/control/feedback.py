@@ -26,8 +26,6 @@ and Learning Systems 27 (2016), which calls it noise-tolerant; the gain is that 
 first-order Kalman filter.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -7,8 +7,6 @@ The moving average is the paper's anti-noise mechanism, equation (9):
     w_{\text{filtered}}(t) = \frac1N \sum_{i=0}^{N-1} w_{\text{noisy}}(t - i\,\Delta t)
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn import checks

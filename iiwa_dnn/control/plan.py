@@ -1,7 +1,5 @@
 """A scheme laid out for a robot's control loop: the arrays that its compiled steps work in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

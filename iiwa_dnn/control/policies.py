@@ -36,8 +36,6 @@ Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A.
 "Control of redundant robots under hard joint constraints", IEEE Trans. Robotics 31 (2015).
 """
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Literal, NamedTuple
 

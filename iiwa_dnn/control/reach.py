@@ -1,7 +1,5 @@
 """The reach of a task: how much of it the limits of a program allow, and what stands in the way."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Answers to the programs of a loop that its compiled step does not give."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.control.plan import Plan

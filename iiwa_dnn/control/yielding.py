@@ -23,8 +23,6 @@ Source of the damping: Y. Nakamura, H. Hanafusa, "Inverse kinematic solutions wi
 robustness for robot manipulator control", J. Dynamic Systems, Measurement, and Control 108 (1986).
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -15,8 +15,6 @@ optimization", IEEE Transactions on Automatic Control 66 (2021), whose scaling b
 for every network here.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

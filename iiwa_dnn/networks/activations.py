@@ -13,8 +13,6 @@ Sanchez-Torres, E. N. Sanchez, A. G. Loukianov, "Predefined-time stability of dy
 with sliding modes", American Control Conference (2015).
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 

@@ -6,8 +6,6 @@ Source: B. Stellato, G. Banjac, P. Goulart, A. Bemporad, S. Boyd, "OSQP: an oper
 solver for quadratic programs", Mathematical Programming Computation 12 (2020).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Dynamic neural network: an ODE for one quadratic program, and the reading of its state."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import asdict, dataclass

@@ -1,7 +1,5 @@
 """Many small programs of one shape at once, over all cores."""
 
-from __future__ import annotations
-
 import math
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple

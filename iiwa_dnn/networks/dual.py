@@ -28,8 +28,6 @@ constraints", Physics Letters A 298 (2002); S. Liu, J. Wang, "A simplified dual 
 quadratic programming with its KWTA application", IEEE Transactions on Neural Networks 17 (2006).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar, NamedTuple

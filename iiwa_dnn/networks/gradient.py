@@ -10,8 +10,6 @@ Source: Y. Zhang, K. Chen, H.-Z. Tan, "Performance analysis of gradient neural n
 online time-varying matrix inversion", IEEE Transactions on Automatic Control 54 (2009).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

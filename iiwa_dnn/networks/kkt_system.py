@@ -14,8 +14,6 @@ Source of the second: C. Kanzow, "Some noninterior continuation methods for line
 problems", SIAM Journal on Matrix Analysis and Applications 17 (1996).
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 import numpy as np

@@ -20,8 +20,6 @@ the correction is that of P. Tseng, "A modified forward-backward splitting metho
 monotone mappings", SIAM Journal on Control and Optimization 38 (2000), as a flow.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -20,8 +20,6 @@ Transactions on Systems, Man, and Cybernetics B 34 (2004). The decrease is that 
 method for a class of linear variational inequalities", Mathematical Programming 66 (1994).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

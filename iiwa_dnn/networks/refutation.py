@@ -9,8 +9,6 @@ the rows that take part then takes out the rest of the residuals, and `iiwa_dnn.
 verifies the result.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_implicit

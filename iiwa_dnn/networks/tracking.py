@@ -14,8 +14,6 @@ inversion", IEEE Transactions on Systems, Man, and Cybernetics: Systems 47 (2017
 coefficients of all were derived anew from Taylor's series, and are tested for order and stability.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

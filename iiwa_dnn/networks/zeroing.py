@@ -22,8 +22,6 @@ joint-angular-drift problems of redundant robot manipulators", IEEE/ASME Transac
 Mechatronics 23 (2018).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

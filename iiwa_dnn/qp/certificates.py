@@ -20,8 +20,6 @@ direction's residuals as they are, every KKT point has an entry of at least :mat
 sum of their absolute values. Rounding is counted against the certificate.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -10,8 +10,6 @@ Its loops are plain on purpose: for seven joints a BLAS call costs more than its
 view of an array, since numba counts its references.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 

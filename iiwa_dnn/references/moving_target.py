@@ -5,11 +5,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import finite_array, not_negative, positive
+from iiwa_dnn.checks import Array, finite_array, not_negative, positive
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.references.base import Pose, Reference
+
+_Place = tuple[Array, Array]  # position and rotation
 
 
 class MovingTarget(Reference):
@@ -57,7 +59,7 @@ class MovingTarget(Reference):
         elif jerk is not None:
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
         self._time: float | None = None
-        self._velocity: NDArray[np.float64] = np.zeros(6)
+        self._velocity: Array = np.zeros(6)
         self._wanted = pose.position.copy(), pose.rotation.copy()
         self.set(pose.position, pose.rotation)
         self._now = self._wanted
@@ -85,30 +87,29 @@ class MovingTarget(Reference):
         """Infinite: it does not repeat."""
         return math.inf
 
-    def _targets(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _targets(self, times: Array) -> Array:
         return np.stack([self._move_to(t) for t in times.tolist()])
 
-    def _move_to(self, t: float) -> NDArray[np.float64]:
+    def _move_to(self, t: float) -> Array:
         """Let the target move until time t; returns its data (18,)."""
         elapsed = 0.0 if self._time is None else t - self._time
         if elapsed > 0.0:
-            (position, rotation), (place, turn) = self._now, self._wanted
-            if self._filter is not None:
-                self._time = t
-                moved = self._filter.move(self._now, self._wanted, elapsed)
-                self._now, self._velocity = moved[:2], moved[2]
-                return np.concatenate([self._now[0], self._now[1].ravel(), self._velocity])
-            shift, axis = place - position, np.asarray(pin.log3(turn @ rotation.T))
-            shift = shift * _share(float(np.linalg.norm(shift)), self.speed * elapsed)
-            axis = axis * _share(float(np.linalg.norm(axis)), self.rate * elapsed)
-            self._velocity = np.concatenate([shift, axis]) / elapsed
-            self._now = position + shift, pin.exp3(axis) @ rotation
+            move = self._straight if self._filter is None else self._filter.move
+            *now, self._velocity = move(self._now, self._wanted, elapsed)
+            self._now = now[0], now[1]
         if self._time is None or elapsed > 0.0:
             self._time = t
         position, rotation = self._now
         return np.concatenate([position, rotation.ravel(), self._velocity])
 
-    def accelerations(self, t: float) -> NDArray[np.float64]:
+    def _straight(self, now: _Place, goal: _Place, elapsed: float) -> tuple[Array, Array, Array]:
+        """Return position, rotation and velocities (6,) after a time [s] at the largest speeds."""
+        shift, axis = goal[0] - now[0], np.asarray(pin.log3(goal[1] @ now[1].T))
+        shift = shift * _share(float(np.linalg.norm(shift)), self.speed * elapsed)
+        axis = axis * _share(float(np.linalg.norm(axis)), self.rate * elapsed)
+        return now[0] + shift, pin.exp3(axis) @ now[1], np.concatenate([shift, axis]) / elapsed
+
+    def accelerations(self, t: float) -> Array:
         """Return zeros, (6,): it is not known how the target will move on."""
         return np.zeros(6)
 
@@ -131,18 +132,13 @@ class _Filter:
         self._ask.max_velocity = most.tolist()
         self._ask.max_acceleration = (acceleration / limits[0] * most).tolist()
         self._ask.max_jerk = (jerk / limits[0] * most).tolist()
-        self._goal: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
+        self._goal: _Place | None = None
         self._spent = 0.0
-        self._motion: NDArray[np.float64] = np.zeros((2, 6))
-        self._start: NDArray[np.float64] = np.zeros(3)
-        self._anchor: NDArray[np.float64] = np.eye(3)
+        self._motion: Array = np.zeros((2, 6))
+        self._start: Array = np.zeros(3)
+        self._anchor: Array = np.eye(3)
 
-    def move(
-        self,
-        now: tuple[NDArray[np.float64], NDArray[np.float64]],
-        goal: tuple[NDArray[np.float64], NDArray[np.float64]],
-        elapsed: float,
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def move(self, now: _Place, goal: _Place, elapsed: float) -> tuple[Array, Array, Array]:
         """Return position (3,), rotation (3, 3) and velocities (6,) after a time [s]."""
         if self._goal is not goal:
             axis = np.asarray(pin.log3(goal[1] @ now[1].T))
@@ -159,7 +155,7 @@ class _Filter:
         self._motion = np.stack([velocity, (later - velocity) / _STEP])
         return self._start + shift[:3], pin.exp3(shift[3:]) @ self._anchor, velocity
 
-    def _at(self, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _at(self, t: float) -> tuple[Array, Array]:
         """Displacement and velocities (6,), the latter's last three of the world's frame."""
         place, speed, _ = map(np.array, self._way.at_time(min(t, self._way.duration)))
         if t >= self._way.duration:

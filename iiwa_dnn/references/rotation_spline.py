@@ -28,12 +28,7 @@ _CONVERGED = 1e-13  # change of an angular velocity, relative to the largest
 
 
 def fit_rotations(times: Array, quaternions: Array, ends: str) -> Array:
-    """Fit the spline.
-
-    Args:
-        times: Times [s], (m,), increasing.
-        quaternions: Unit quaternions w, x, y, z, (m, 4).
-        ends: ``"clamped"``, ``"natural"`` or ``"closed"``, as of `Waypoints`.
+    """Fit the spline to unit quaternions w, x, y, z (m, 4) at times (m,) [s]; ends of `Waypoints`.
 
     Returns:
         Coefficients of x^3, x^2 and x of each piece's polynomial, and the rotation vector from the

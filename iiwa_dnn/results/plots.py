@@ -60,12 +60,8 @@ def write_figures(
 ) -> list[Path]:
     """Draw figures in the style of the package and write each as PNG and PDF, atomically.
 
-    Args:
-        figures: Functions that draw them, by the names of the files.
-        folder: The folder; made if need be.
-
-    Returns:
-        The files, each PNG followed by its PDF.
+    The functions that draw them go by the names of the files; the folder is made if need be.
+    Returns the files, each PNG followed by its PDF.
 
     Raises:
         FileError: If the folder cannot be written.

@@ -60,13 +60,9 @@ def torque_limits(robot: Robot) -> NDArray[np.float64]:
 def build_spec(robot: Robot) -> mujoco.MjSpec:
     """Describe a robot to MuJoCo: its URDF, a torque motor on each joint, its collision pairs.
 
-    Args:
-        robot: The robot, from a URDF file; its locked joints are welded. The mechanical stops are
-            the URDF's: the robot's own position limits are a matter of the controller.
-
-    Returns:
-        A specification, ready to be compiled. Body 0 is the world; every link is a body of its
-        own, ``TIP_SITE`` is at the tip, joints and motors stand in Pinocchio's order.
+    Locked joints are welded. The mechanical stops are the URDF's: the robot's own position limits
+    are a matter of the controller. Body 0 is the world; every link is a body of its own,
+    ``TIP_SITE`` is at the tip, joints and motors stand in Pinocchio's order.
 
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
@@ -110,18 +106,10 @@ def compile_model(
     friction: NDArray[np.float64] | None = None,
     mass_factors: NDArray[np.float64] | None = None,
 ) -> mujoco.MjModel:
-    """Compile a robot for simulation.
+    """Compile a robot (`build_spec`) for steps of so long [s], with an implicit method for damping.
 
-    Args:
-        robot: The robot; see `build_spec`, also for the errors.
-        timestep: Physics step [s].
-        dynamics: Damping and rotor inertia of the drives; None takes the estimates.
-        friction: Coulomb friction of the joints [N m], (n,); None for none.
-        mass_factors: Factors on the masses and inertias of the links that each joint carries,
-            (n,); None for one.
-
-    Returns:
-        The model, integrated by MuJoCo's implicit method for the damping.
+    Drives without `dynamics` have the estimates, joints Coulomb friction (n,) [N m]; masses and
+    inertias of the links that each joint carries are multiplied by `mass_factors` (n,).
     """
     mj, spec = import_mujoco(), build_spec(robot)
     dynamics = JointDynamics() if dynamics is None else dynamics

@@ -107,18 +107,9 @@ def lift_targets(
     r"""Put :math:`a_d - \dot J \dot q + 2 \delta (v_d - J \dot q)` in the place of the twists.
 
     With the gain squared, the rows of the velocity level are then those of the acceleration level.
-
-    Args:
-        kinematics: Kinematics at the joint positions.
-        frames: Names of the tracked frames.
-        damping: `damping_of`, (6 frames,).
-        targets: One `Target.data` after the other, (18 frames,).
-        wanted: Accelerations of the targets, linear and angular, (6 frames,).
-        q: Joint positions [rad], (n,).
-        dq: Joint velocities [rad/s], (n,).
-
-    Returns:
-        The targets, a copy, (18 frames,).
+    The kinematics are those of q (n,) [rad] and dq (n,) [rad/s], `damping` is that of `damping_of`;
+    the targets, of which a copy is returned, stand one after the other, (18 frames,), like their
+    accelerations, linear and angular, `wanted` (6 frames,).
     """
     model, data, *_ = kinematics.pinocchio
     pin.forwardKinematics(model, data, q, dq, np.zeros(dq.size))

@@ -191,21 +191,11 @@ def joint_bounds(
     last: float, before: float, above: float, below: float, fastest: float, accel: float,
     jerk: float, dt: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Compute the bounds of one joint's next command [rad/s].
+    """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
 
-    Args:
-        last: Last command [rad/s].
-        before: The command before it [rad/s].
-        above: Way to the upper position limit [rad].
-        below: Way to the lower position limit [rad].
-        fastest: Velocity limit [rad/s]; inf for none, as with the next two.
-        accel: Acceleration limit [rad/s^2].
-        jerk: Jerk limit [rad/s^3].
-        dt: Control period [s].
-
-    Returns:
-        Lower and upper bound, the former never above the latter; jerk and acceleration are within
-        their limits at both, whatever the state is.
+    Jerk and acceleration are within their limits at both, whatever the state is. `last` and
+    `before` are the commands until now [rad/s], `above` and `below` the ways to the position limits
+    [rad]; a limit of inf is none.
     """
     first, final = last - accel * dt, last + accel * dt
     if jerk < np.inf:

@@ -22,13 +22,9 @@ from iiwa_dnn.robot import Robot
 
 
 def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> list[float]:
-    """Bound the motion of points of one joint's link as seen from another's.
+    """Bound the motion of points (k, 3) [m] of the second joint's link as seen from the first's.
 
-    Args:
-        robot: The robot, n joints.
-        first: Index of Pinocchio's joint that carries the observer; 0 is the world.
-        second: Index of the joint that carries the points.
-        points: The points in the frame of `second` [m], (k, 3).
+    The joints are Pinocchio's, 0 the world; the points are in the frame of the second.
 
     Returns:
         Speed [m/s], acceleration [m/s^2], turning rate [rad/s] and its change [rad/s^2]; then of

@@ -9,12 +9,7 @@ from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.control.filters import MovingAverage
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
-from iiwa_dnn.simulation.noise import (
-    NOISE_ENTRIES,
-    NoiseEntry,
-    VelocityDisturbance,
-    gaussian_noise,
-)
+from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, VelocityDisturbance, gaussian_noise
 
 
 class SignalChain:

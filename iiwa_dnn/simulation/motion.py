@@ -81,19 +81,11 @@ MOTIONS: dict[str, Method] = {
 def accelerated(
     method: Method, ask: VelocityField, last: Vector, q: Vector, t: float, dt: float
 ) -> tuple[Vector, Vector]:
-    """Integrate joint positions and velocities over one step of the acceleration level.
+    """Integrate positions q (n,) [rad] and velocities over one step of the acceleration level.
 
-    Args:
-        method: The method.
-        ask: Velocity that the controller wants dt after it is at joint positions and a time.
-        last: Joint velocities [rad/s], (n,), from which the controller starts; overwritten.
-        q: Joint positions [rad], (n,).
-        t: Time [s].
-        dt: Length of the step [s].
-
-    Returns:
-        Joint velocities after the step [rad/s], (n,), and their mean in it; Euler holds one
-        acceleration.
+    The velocity that is asked for is wanted dt later; the controller starts from `last` (n,)
+    [rad/s], which is overwritten. Returns the velocities after the step [rad/s], (n,), and their
+    mean in it; Euler holds one acceleration.
     """
     n, before = q.size, last.copy()
 

@@ -23,12 +23,7 @@ from iiwa_dnn.networks import (
     SimplifiedDualNetwork,
 )
 from iiwa_dnn.networks.activated import ActivatedNetwork
-from iiwa_dnn.networks.activations import (
-    FixedTime,
-    PowerSigmoid,
-    PredefinedTime,
-    SignBiPower,
-)
+from iiwa_dnn.networks.activations import FixedTime, PowerSigmoid, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.gradient import GradientNetwork
 from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler
@@ -219,9 +214,6 @@ def cells(
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
     """Carry out the runs of one cell.
-
-    Args:
-        settings: One of `cells`.
 
     Returns:
         For each of `MEASURES` a list with a number for each seed, None where the run failed: the

@@ -51,11 +51,8 @@ def learn(jacobian: Matrix, moved: Vector, motion: pin.SE3) -> None:
     Source: C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations",
     Mathematics of Computation 19 (1965); for arms, K. Hosoda, M. Asada, "Versatile visual servoing
     without knowledge of true Jacobian", IROS 1994.
-
-    Args:
-        jacobian: The estimate, as `Kinematics.jacobian`, (n, 6).
-        moved: Motion of the joints [rad], (n,).
-        motion: Motion of the tool that was measured, of the world's frame.
+    The estimate is as `Kinematics.jacobian`, (n, 6); the joints moved by (n,) [rad], the tool by a
+    measured motion of the world's frame.
     """
     if (square := moved @ moved) > 0.0:
         missing = pin.log6(motion).vector - moved @ jacobian

@@ -80,10 +80,7 @@ def pairs() -> list[tuple[str, str]]:
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
-    """Carry out one run and sum it up.
-
-    Args:
-        settings: One of `cells`.
+    """Carry out the run of one of `cells` and sum it up.
 
     Returns:
         ``mse_m2``, over samples and axes, and ``max_error_m`` after ``SETTLED_AFTER``;

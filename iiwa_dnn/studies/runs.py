@@ -146,10 +146,7 @@ def paper_robot() -> Robot:
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
-    """Carry out one run and sum it up.
-
-    Args:
-        settings: Those of a `HeartRun`.
+    """Carry out the `HeartRun` of these settings and sum it up.
 
     Returns:
         Some of `compute_metrics`, and: ``status``; ``total_variation_rad_s``, of the joint

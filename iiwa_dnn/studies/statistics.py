@@ -72,14 +72,7 @@ class Estimate:
 
 
 def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
-    """Estimate the mean of independent samples, with its confidence interval.
-
-    Args:
-        samples: At least two finite numbers, (k,).
-        confidence: Probability that the interval holds the true mean, above 0 and below 1.
-
-    Returns:
-        The estimate, in the unit of the samples.
+    """Estimate the mean of independent samples (k,), with its confidence interval.
 
     Raises:
         InvalidInputError: There are fewer than two samples, one is not finite, or the confidence
@@ -110,14 +103,9 @@ def paired_difference(
 
 
 def trend(x: ArrayLike, y: ArrayLike) -> Trend:
-    """Tell the trend of y over x: the sign of Kendall's tau, or ``constant``.
+    """Tell the trend of y over x, (k,): the sign of Kendall's tau, or ``none`` where that is zero.
 
-    Args:
-        x: Numbers, (k,), k at least 2.
-        y: Numbers, (k,); ``constant`` if they spread over at most ``FLAT`` of their mean.
-
-    Returns:
-        ``none`` where tau is zero.
+    It is ``constant`` if y spreads over at most ``FLAT`` of its mean.
 
     Raises:
         InvalidInputError: The lengths differ, there are fewer than two, or one is not finite.

@@ -51,14 +51,8 @@ def judge_row(
 ) -> Verdict:
     """Judge a row of numbers that belong to the increasing parameter x.
 
-    Args:
-        x: The parameter, (k,).
-        paper: The paper's numbers, (k,); None where the paper has none.
-        ours: Ours, (k,); None where a run came to no number.
-
-    Returns:
-        The verdict on the entries that the paper has, two at least; a number that we lack makes
-        it ``not reproduced``.
+    The verdict is on the entries that the paper has, two at least; a number that we lack makes it
+    ``not reproduced``.
 
     Raises:
         InvalidInputError: The lengths differ, or the paper has fewer than two numbers.

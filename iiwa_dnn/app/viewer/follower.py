@@ -75,15 +75,9 @@ class Follower:
     def __init__(
         self, robot: Robot, q0: ArrayLike, scheme: DoubleIndicator | None = None, dt: float = 5e-3
     ) -> None:
-        """Start at rest.
+        """Start at rest at q0 (n,) [rad], the posture to come back to where the scheme has none.
 
-        Args:
-            robot: The robot.
-            q0: Joint positions at the start [rad], (n,); also the posture to come back to, where
-                the scheme has none.
-            scheme: Weight, gains and kinetic index; None takes the defaults. Gains above 1 / dt,
-                as a run of a shorter period may have, are lowered to it.
-            dt: Control period [s].
+        Gains above 1 / dt, as a run of a shorter period may have, are lowered to it.
 
         Raises:
             InvalidInputError: If `q0` is not acceptable.

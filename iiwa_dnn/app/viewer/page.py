@@ -99,13 +99,9 @@ class Page:
     ) -> None:
         """Serve the page; `run` or `tick` moves it.
 
-        Args:
-            robot: The robot, with the limits that both modes show and the live mode keeps.
-            q0: Joint positions at the start of the live mode [rad], (n,).
-            record: Run to replay; without one the page starts in live mode.
-            scheme: Scheme of the live mode; None takes the defaults.
-            host: Address to listen on; ``"0.0.0.0"`` lets other machines in.
-            port: Port to listen on; 0 takes a free one.
+        Both modes show the robot's limits. The live mode keeps them and starts from q0 (n,) [rad];
+        without a record the page starts in it. The host ``"0.0.0.0"`` lets other machines in, the
+        port 0 is a free one.
 
         Raises:
             MissingDependencyError: If viser is not installed.

@@ -1,7 +1,5 @@
 """Integrator of a network: it advances a state by a time, or until the network has settled."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar, Protocol
 
 from iiwa_dnn.networks.base import Network, settings_of

@@ -1,7 +1,5 @@
 """Explicit Euler with a step that is computed to be stable."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar

@@ -16,8 +16,6 @@ Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient 
 SIAM J. Numer. Anal. 35 (1998).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.networks.base import Flow, Network

@@ -8,8 +8,6 @@ Source: P. Bogacki, L. F. Shampine, "A 3(2) pair of Runge-Kutta formulas", Appli
 Letters 2 (1989), as `scipy.integrate.RK23` implements it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

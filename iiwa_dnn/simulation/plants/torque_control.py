@@ -59,12 +59,8 @@ class TorqueGains:
 class TorqueController:
     """The torque loop of an arm with n joints, and its observer; `reset` comes first.
 
-    Args:
-        robot: The robot as the controller knows it.
-        period: Control period, in which a velocity command is reached [s].
-        timestep: Time between two calls of `torque` [s].
-        gains: Stiffness; None takes the defaults.
-        dynamics: Damping and rotor inertia as the controller knows them; None takes the estimates.
+    Robot and dynamics are as the controller knows them, the latter by default the estimates. A
+    velocity command is reached within a period [s]; `torque` is called every timestep [s].
 
     Attributes:
         gains: Stiffness.
