@@ -10,8 +10,7 @@ The moving average is the paper's anti-noise mechanism, equation (9):
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.qp import Vector
 
 
 class MovingAverage:
@@ -37,27 +36,9 @@ class MovingAverage:
             return sample
         if self._count == 0:
             self._samples = np.zeros((self.window, sample.size))
-        mean: Vector = _window_mean(self._samples, self._count, sample)
+        self._samples[self._count % self.window] = sample
         self._count += 1
+        filled = min(self._count, self.window)
+        # A running sum would be quicker and would drift by its rounding.
+        mean: Vector = self._samples[:filled].sum(axis=0) / filled
         return mean
-
-
-@compiled
-def _window_mean(samples: Matrix, count: int, sample: Vector) -> Vector:
-    """Put the sample (n,) that comes after `count` others into the ring `samples` (window, n).
-
-    Returns:
-        The mean of the window, (n,), or of the samples that there are.
-    """
-    window, n = samples.shape
-    for i in range(n):
-        samples[count % window, i] = sample[i]
-    filled = min(count + 1, window)
-    mean = np.zeros(n)
-    # A running sum would be quicker and would drift by its rounding.
-    for k in range(filled):
-        for i in range(n):
-            mean[i] += samples[k, i]
-    for i in range(n):
-        mean[i] /= filled
-    return mean
