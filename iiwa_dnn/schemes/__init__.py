@@ -14,6 +14,7 @@ from iiwa_dnn.schemes.costs import CyclicMotion as CyclicMotion
 from iiwa_dnn.schemes.costs import KineticEnergy as KineticEnergy
 from iiwa_dnn.schemes.costs import Manipulability as Manipulability
 from iiwa_dnn.schemes.double_indicator import DoubleIndicator as DoubleIndicator
+from iiwa_dnn.schemes.double_indicator import PseudoInverse as PseudoInverse
 from iiwa_dnn.schemes.frame_tasks import AxisTask as AxisTask
 from iiwa_dnn.schemes.frame_tasks import PoseTask as PoseTask
 from iiwa_dnn.schemes.frame_tasks import RelativePoseTask as RelativePoseTask
@@ -30,6 +31,5 @@ from iiwa_dnn.schemes.parts import Limit as Limit
 from iiwa_dnn.schemes.parts import Part as Part
 from iiwa_dnn.schemes.parts import Step as Step
 from iiwa_dnn.schemes.parts import Task as Task
-from iiwa_dnn.schemes.pseudo_inverse import PseudoInverse as PseudoInverse
 from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask
 from iiwa_dnn.schemes.tasks import PositionTask as PositionTask
