@@ -7,7 +7,6 @@ and where the peer has arrived: from the first step on whose position error is b
 as it stays there.
 """
 
-import argparse
 import tempfile
 import warnings
 from collections.abc import Sequence
@@ -17,6 +16,7 @@ from typing import Any
 import numpy as np
 
 import iiwa_dnn
+from benchmarks.collisions import read_arguments
 from benchmarks.control import LOOPS, measure_steps
 from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot import urdf
@@ -81,18 +81,13 @@ def compare(own: dict[str, Any], peer: dict[str, Any]) -> tuple[float, float, fl
 
 def bench_arms(arguments: Sequence[str] | None = None, prog: str = "arms") -> int:
     """Measure the scenes and print the tables; returns 0."""
-    parser = argparse.ArgumentParser(prog, description=bench_arms.__doc__)
-    parser.add_argument("--steps", type=int, default=2000, help="number of steps of each scene")
-    parser.add_argument("--placo-python", type=Path, help="Python interpreter with PlaCo")
-    parser.add_argument("--mink-python", type=Path, help="Python interpreter with mink")
-    options = parser.parse_args(arguments)
-    pythons = {"placo": options.placo_python, "mink": options.mink_python}
+    steps, pythons = read_arguments(prog, bench_arms.__doc__, 2000, arguments)
     times, motions, missing = [], [], set()
     warnings.simplefilter("ignore")
     for name in SCENES:
         if "velocity" in name:  # no frame's target
             continue
-        rows, absent = measure_scene(name, options.steps, 5e-3, pythons)
+        rows, absent = measure_scene(name, steps, 5e-3, pythons)
         missing.update(absent)
         found = {row["name"]: row for row in rows}
         own = found[OWN]

@@ -20,13 +20,22 @@ RADII, DISTANCE = (0.05, 0.1, 0.1), 0.03  # [m]
 _NAMES = ("iiwa_dnn, with q + dt dq", "PlaCo", "Pink, daqp", "mink, daqp")
 
 
+def read_arguments(
+    prog: str, about: str | None, steps: int, words: Sequence[str] | None
+) -> tuple[int, dict[str, Path | None]]:
+    """Return the number of steps, by default `steps`, and the peers' Python interpreters."""
+    parser = argparse.ArgumentParser(prog, description=about)
+    parser.add_argument("--steps", type=int, default=steps, help="number of steps of each scene")
+    for name, key in (("PlaCo", "placo"), ("mink", "mink")):
+        help_text = f"Python interpreter with {name}"
+        parser.add_argument(f"--{key}-python", type=Path, dest=key, help=help_text)
+    options = vars(parser.parse_args(words))
+    return options.pop("steps"), options
+
+
 def bench_collisions(arguments: Sequence[str] | None = None, prog: str = "collisions") -> int:
     """Measure and print a table; returns 0."""
-    parser = argparse.ArgumentParser(prog, description=bench_collisions.__doc__)
-    parser.add_argument("--steps", type=int, default=10_000, help="number of steps")
-    parser.add_argument("--placo-python", type=Path, help="Python interpreter with PlaCo")
-    parser.add_argument("--mink-python", type=Path, help="Python interpreter with mink")
-    options = parser.parse_args(arguments)
+    count, pythons = read_arguments(prog, bench_collisions.__doc__, 10_000, arguments)
     robot = paper_robot()
     moving = [c for c in collision_model(robot).capsules if not c.link.endswith("_0")]
     scene = {
@@ -34,12 +43,11 @@ def bench_collisions(arguments: Sequence[str] | None = None, prog: str = "collis
         "radii": [c.radius for c in moving], "balls": BALLS, "ball_radii": RADII,
         "distance": DISTANCE,
     }  # fmt: skip
-    pythons = {"placo": options.placo_python, "mink": options.mink_python}
     loops = [loop for loop in LOOPS if loop.name in _NAMES]
-    rows, missing = measure_steps(options.steps, 1e-3, pythons, scene=scene, loops=loops)
+    rows, missing = measure_steps(count, 1e-3, pythons, scene=scene, loops=loops)
     balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
     judge = iiwa_dnn.CollisionAvoidance(balls, self_collision=False).scene(robot)
-    print(f"{len(judge.pairs)} pairs, {options.steps} steps of 1 ms, distance {DISTANCE} m")
+    print(f"{len(judge.pairs)} pairs, {count} steps of 1 ms, distance {DISTANCE} m")
     print("| loop | median [us] | p99 [us] | error [m] | least distance [m] | variation [rad] |")
     print("| --- | --- | --- | --- | --- | --- |")
     for row in rows:

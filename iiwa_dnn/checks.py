@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from numbers import Integral, Real
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,10 +53,18 @@ def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
         )
 
 
-def instance(argument: str, value: object, kind: type[T]) -> T:
+def instance(argument: str, value: T, kind: type[Any]) -> T:
     """The value, or an InvalidInputError unless it is an object of a class or of a subclass."""
     if not isinstance(value, kind):
         problem = f"must be an iiwa_dnn.{kind.__name__}, not {value!r:.80}"
+        raise InvalidInputError(argument, problem, value)
+    return value
+
+
+def offers(argument: str, value: T, *names: str) -> T:
+    """The value, or an InvalidInputError unless it is an object, no class, with these members."""
+    if isinstance(value, type) or not all(hasattr(value, name) for name in names):
+        problem = f"must be an object with {' and '.join(names)}, not {value!r:.80}"
         raise InvalidInputError(argument, problem, value)
     return value
 
@@ -94,6 +102,14 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
         raise InvalidInputError(argument, "must be finite", value)
     array.setflags(write=False)
     return array
+
+
+def rotation(argument: str, value: ArrayLike) -> Array:
+    """A read-only copy of the value (3, 3), or an InvalidInputError unless it is a rotation."""
+    turn = finite_array(argument, value, (3, 3))
+    if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
+        raise InvalidInputError(argument, "is not a rotation matrix", value)
+    return turn
 
 
 def read_only(array: Array) -> Array:

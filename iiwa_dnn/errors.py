@@ -25,7 +25,7 @@ class InvalidInputError(IiwaDnnError, ValueError):
     """
 
     def __init__(self, argument: str, problem: str, value: object = None) -> None:
-        super().__init__(f"{argument}: {problem}")
+        super().__init__(f"{argument}: {' '.join(problem.split())}")  # an array takes many lines
         self.argument = argument
         self.value = value
 
@@ -43,15 +43,19 @@ class NotFoundError(IiwaDnnError, LookupError):
         self.kind = kind
         self.name = name
         self.available = tuple(available)
-        near = get_close_matches(name, self.available, n=3)
-        listed = ", ".join(near or self.available[:12])
-        label = "did you mean" if near else "there are"
-        hint = f"; {label}: {listed}" if listed else ""
-        super().__init__(f"no {kind} {name!r}{hint}")
+        super().__init__(f"no {kind} {name!r}{suggestion(name, self.available)}")
 
     def __str__(self) -> str:
         # LookupError's own __str__ is Exception's; KeyError's would add quotes.
         return str(self.args[0])
+
+
+def suggestion(name: str, available: Iterable[str]) -> str:
+    """Return ``; did you mean: ...`` with the names nearest to one, else ``; there are: ...``."""
+    names = tuple(available)
+    near = get_close_matches(name, names, n=3)
+    listed = ", ".join(near or names[:12])
+    return f"; {'did you mean' if near else 'there are'}: {listed}" if listed else ""
 
 
 class FileError(IiwaDnnError, OSError):
@@ -63,7 +67,7 @@ class FileError(IiwaDnnError, OSError):
     """
 
     def __init__(self, path: str | os.PathLike[str], reason: str) -> None:
-        self.path = os.fspath(path)
+        self.path = str(path)
         self.reason = reason
         super().__init__(f"{self.path}: {reason}")
 

@@ -18,9 +18,8 @@ def run(options: AtlasOptions) -> int:
     budgets = [checks.integer("evaluations", count, 1) for count in options.evaluations]
     if not budgets or budgets != sorted(set(budgets)):
         raise InvalidInputError("evaluations", "must rise, and there must be one at least")
-    cells = atlas.cells(
-        options.seeds, options.other_seeds, budgets, options.schemes or tuple(SCHEMES)
-    )
+    names = options.schemes or tuple(SCHEMES), options.networks
+    cells = atlas.cells(options.seeds, options.other_seeds, budgets, *names)
     rows = tabulate(cells, run_sweep(options, atlas.measure, cells)[1])
     write_json(options.out / "atlas.json", rows)
     head = (

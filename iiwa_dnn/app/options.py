@@ -204,6 +204,7 @@ class AtlasOptions(SweepOptions):
     seeds: Count = 100  # number of noises with the first scheme
     other_seeds: Count = 10  # number of noises with the other schemes and budgets
     schemes: _Schemes = ()  # names of the schemes (none: all)
+    networks: _Schemes = ()  # names of the networks (none: all)
     evaluations: _Counts = (1, 2, 4, 8, 16)  # budgets: evaluations of a network a control period
     plots: _Flag = True  # draw no figure
 

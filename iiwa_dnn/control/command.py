@@ -47,5 +47,21 @@ class Command:
         return asked and self._index not in self._answers.unsolved
 
     def __repr__(self) -> str:
-        dq = np.array2string(self.dq, precision=4, separator=", ")
-        return f"<Command dq = {dq} rad/s, {self.action.name.lower()}, ok = {self.ok}>"
+        dq, words = np.array2string(self.dq, precision=4, separator=", "), _WORDS[self.action]
+        if self.action is Action.NONE and not self.ok:
+            words = "not settled"
+        if (found := self.resolution) is not None:
+            sides = zip(("lower", "upper"), (found.sides < 0, found.sides > 0), strict=True)
+            against = [f"joint {i + 1} {side} bound" for side, at in sides for i in at.nonzero()[0]]
+            against += [f"inequality row {i + 1}" for i in found.rows.nonzero()[0]]
+            words += f", against {', '.join(against)}" if against else ""
+        return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
+
+
+_WORDS = {
+    Action.NONE: "solved",
+    Action.FALLBACK: "solved by the reference solver",
+    Action.SLOW: "no solution: slower along the path",
+    Action.RELAX: "no solution: as near to the task as the limits allow",
+    Action.STOP: "no solution: stopped",
+}

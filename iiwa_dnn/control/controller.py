@@ -23,6 +23,7 @@ from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes.base import targets_of
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
@@ -76,8 +77,9 @@ class Controller:
         checks.one_of("policy", policy, POLICIES)
         checks.positive("dt", dt)
         self.robot = checks.instance("robot", robot, Robot)
-        self.scheme, self.reference = scheme, reference
-        self.dt, self.mode, self.policy = dt, mode, policy
+        self.scheme = checks.offers("scheme", scheme, "build_qp", "settings")
+        by_frame(reference, robot.tip)
+        self.reference, self.dt, self.mode, self.policy = reference, dt, mode, policy
         given = DNNSolver(tol=tol) if solver is None else solver
         self.solver = checks.instance("solver", given, DNNSolver)
         self.delay = 0.0
@@ -213,8 +215,7 @@ class Controller:
         if target is None:
             targets: Vector = self.sample(np.array([t]))[0]
             return targets
-        given = {self.robot.tip: target} if isinstance(target, Target) else target
-        return np.concatenate([given[name].data for name in self.plan.frames])
+        return np.concatenate(targets_of(self.robot.tip, self.plan.frames, target))
 
     def sample(self, times: Vector) -> Matrix:
         """Return the reference's targets at many times, one frame after the other, (k, 18 frames).

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from pinocchio import log3
 
+from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references import Reference, Target
@@ -21,8 +23,14 @@ FAR, TURNED = 0.05, 0.2
 
 
 def by_frame(reference: References | None, tip: str) -> Mapping[str, Reference]:
-    """Return references by frame name: one alone is the tip's; none where there is none."""
-    return {tip: reference} if isinstance(reference, Reference) else reference or {}
+    """Return references by frame name: one alone is the tip's; none where there is none.
+
+    Raises:
+        InvalidInputError: One of them is no reference.
+    """
+    one = not isinstance(reference, Mapping) and reference is not None
+    given: Any = {tip: reference} if one else reference or {}
+    return {name: checks.instance("reference", path, Reference) for name, path in given.items()}
 
 
 def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> dict[str, Reference]:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import largest_residuals
@@ -98,7 +99,10 @@ class CrossCheck:
 
     def __post_init__(self) -> None:
         """Check the names and the tolerances; raises InvalidInputError naming the argument."""
-        for name in self.solvers:
+        given: Any = self.solvers
+        if not isinstance(given, tuple | list):
+            raise InvalidInputError("solvers", f"must be a tuple of names, not {given!r}", given)
+        for name in given:
             checks.one_of("solvers", name, SOLVERS)
         for name in ("tolerance", "reference_tolerance"):
             checks.positive(name, getattr(self, name))

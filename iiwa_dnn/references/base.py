@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn.checks import Array, finite, finite_array, positive, read_only
+from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
 from iiwa_dnn.references.rotations import rotation_log
 from iiwa_dnn.references.targets import Target, Targets
 
@@ -167,7 +167,7 @@ class Reference(ABC):
         Raises:
             InvalidInputError: If the pose is not finite or has wrong shapes.
         """
-        clone = copy.copy(self)
+        clone, pose = copy.copy(self), offers("pose", pose, "position", "rotation")
         position = finite_array("position", pose.position, (3,))
         rotation = finite_array("rotation", pose.rotation, (3, 3))
         base = np.concatenate([position, rotation.ravel(), np.zeros(6)])

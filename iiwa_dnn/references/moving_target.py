@@ -7,7 +7,8 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, finite_array, not_negative, positive
+from iiwa_dnn import checks
+from iiwa_dnn.checks import Array, finite_array, not_negative, offers, positive
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.references.base import Pose, Reference
 
@@ -60,6 +61,7 @@ class MovingTarget(Reference):
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
         self._time: float | None = None
         self._velocity: Array = np.zeros(6)
+        offers("pose", pose, "position", "rotation")
         self._wanted = pose.position.copy(), pose.rotation.copy()
         self.set(pose.position, pose.rotation)
         self._now = self._wanted
@@ -76,9 +78,7 @@ class MovingTarget(Reference):
                 target stays as it was.
         """
         place = finite_array("position", position, (3,))
-        turn = self._wanted[1] if rotation is None else finite_array("rotation", rotation, (3, 3))
-        if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
-            raise InvalidInputError("rotation", "is not a rotation matrix", rotation)
+        turn = self._wanted[1] if rotation is None else checks.rotation("rotation", rotation)
         if not (np.array_equal(place, self._wanted[0]) and np.array_equal(turn, self._wanted[1])):
             self._wanted = place, turn
 

@@ -6,6 +6,7 @@ from typing import SupportsIndex, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.checks import finite_array, read_only
 
 Self = TypeVar("Self", bound="_Data")  # typing.Self needs Python 3.11
@@ -67,10 +68,11 @@ class Target(_Data):
         """Copy the four arrays into one.
 
         Raises:
-            InvalidInputError: An array is not finite or has a wrong shape; it is named.
+            InvalidInputError: An array is not finite, has a wrong shape or is no rotation; it is
+                named.
         """
         place = finite_array("position", position, (3,))
-        turn = finite_array("rotation", rotation, (3, 3)).ravel()
+        turn = checks.rotation("rotation", rotation).ravel()
         linear = finite_array("linear_velocity", linear_velocity, (3,))
         angular = finite_array("angular_velocity", angular_velocity, (3,))
         self.data = np.concatenate([place, turn, linear, angular])

@@ -122,6 +122,7 @@ class Tilting(_OnPath):
     turns: int = 1
 
     def __post_init__(self) -> None:
+        checks.instance("along", self.along, Reference)
         rate = 2.0 * np.pi * checks.integer("turns", self.turns, 1) / self.along.duration
         self._set(along=self.along.at_rest(), angle=_acute(self.angle))
         self._set(axis=vector3("axis", self.axis))
@@ -205,6 +206,7 @@ class OnSurface(_OnPath):
     lead: float = 2.0
 
     def __post_init__(self) -> None:
+        checks.instance("along", self.along, Reference)
         curvature = 0.0 if self.radius is None else 1.0 / positive("radius", self.radius)
         self._set(along=self.along.at_rest(), lead=positive("lead", self.lead))
         normal: Array = np.zeros(3)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.results.metrics import (
     compute_metrics,
@@ -40,8 +41,13 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
 
     Returns:
         The reasons, the gravest first; empty if there is none.
+
+    Raises:
+        InvalidInputError: `run` is neither.
     """
     record = run if isinstance(run, Record) else None
+    if record is None and not (isinstance(run, Mapping) and "settings" in run):
+        raise InvalidInputError("run", f"must be a record or its metrics, not {run!r:.80}", run)
     metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
     return [
         *path_completed(metrics),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.files import plain
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
@@ -116,7 +117,7 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         The metrics, units in their names. A number that does not exist is None: an overflow, an
         unknown wall time, a maximum over no steps.
     """
-    error = position_error(record)
+    error = position_error(checks.instance("record", record, Record))
     duration = float(record.t[-1] - record.t[0])
     wall, settings = record.wall_time_s, record.settings
     metrics: dict[str, Any] = plain(

@@ -74,6 +74,8 @@ def load_robot(
     mobile = mobile or (arm is not None and arm.mobile)
     root = urdf.read(path, mobile)
     full = urdf.build_model(path, root)
+    if not isinstance(locked, Iterable):
+        raise InvalidInputError("locked", f"must be names of joints, not {locked!r}", locked)
     chosen = (locked,) if isinstance(locked, str) else tuple(locked)
     frozen = tuple(dict.fromkeys((*(_still(full, arm.tip) if arm is not None else ()), *chosen)))
     # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, suggestion
 from iiwa_dnn.files import one_line
 
 Vector = NDArray[np.float64]
@@ -136,9 +136,7 @@ class Box(Obstacle):
         for half in self.half_extents:
             checks.positive("half_extents", half)
         if self.rotation is not None:
-            turn = checks.finite_array("rotation", self.rotation, (3, 3))
-            if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
-                raise InvalidInputError("rotation", "is no rotation matrix", self.rotation)
+            turn = checks.rotation("rotation", self.rotation)
             self._set("rotation", tuple(map(tuple, turn.tolist())))
 
     @property
@@ -217,10 +215,8 @@ def make_obstacle(table: dict[str, Any]) -> Obstacle:
     kind = by_name[name]
     known = {field.name for field in fields(kind)} - {"motion"}
     if unknown := sorted(values.keys() - known):
-        there = ", ".join(sorted(known))
-        raise InvalidInputError(
-            unknown[0], f"is no parameter of {kind.__name__}; there are {there}"
-        )
+        problem = f"is no parameter of {kind.__name__}{suggestion(unknown[0], sorted(known))}"
+        raise InvalidInputError(unknown[0], problem)
     try:
         return kind(**values)
     except TypeError as error:

@@ -113,10 +113,10 @@ class Robot:
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
         """
-        if self.model.existFrame(name, pin.FrameType.BODY):
+        if self.model.existFrame(str(name), pin.FrameType.BODY):
             return int(self.model.getFrameId(name, pin.FrameType.BODY))
         if name not in self.frame_names:
-            raise NotFoundError("frame", name, self.frame_names)
+            raise NotFoundError("frame", str(name), self.frame_names)
         return int(self.model.getFrameId(name))
 
     def with_limits(

@@ -72,9 +72,8 @@ class JointTorque(WeightedCost):
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""
-        M, model = step.inertia, step.robot.model
-        h = pin.rnea(model, model.createData(), step.q, step.dq, np.zeros(step.q.size))
-        return self.weight * M @ M, self.weight * M @ h
+        M = step.inertia
+        return self.weight * M @ M, self.weight * M @ step.bias
 
 
 def check_parts(costs: Sequence[Cost], tasks: Sequence[Task]) -> None:

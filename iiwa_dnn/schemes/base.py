@@ -1,6 +1,6 @@
 """Schemes: costs, tasks and limits composed into the program of a control step."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -70,7 +70,7 @@ class Scheme:
             ("tasks", tasks, Task),
             ("limits", limits, Limit),
         ):
-            if isinstance(parts, Part):
+            if isinstance(parts, Part) or not isinstance(parts, Iterable):
                 raise InvalidInputError(name, f"must be a list of parts, not {parts!r}", parts)
             for part in parts:
                 if not isinstance(part, kind):
@@ -132,14 +132,15 @@ class Scheme:
         Raises:
             InvalidInputError: A task's frame has no target, or a part does not fit the robot.
         """
-        layout = self.layout(conf.robot)
+        layout = self.layout(checks.instance("conf", conf, Configuration).robot)
         if layout.needs_period:
             checks.positive("dt", dt)
         kinematics = Kinematics(conf.robot, layout.frames, layout.needs_inertia)
         q = conf.arrays[0]
         kinematics.update(q)
-        targets = targets_of(layout, target)
-        data, given = np.empty(layout.size), np.concatenate(list(targets.values()))
+        found = targets_of(conf.robot.tip, layout.target_frames, target)
+        targets = dict(zip(layout.target_frames, found, strict=True))
+        data, given = np.empty(layout.size), np.concatenate(found)
         moving = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
         if layout.damping.size:
             size = layout.damping.size
@@ -190,14 +191,16 @@ class Scheme:
 _LISTS = ("costs", "tasks", "limits")
 
 
-def targets_of(layout: Layout, target: Target | Mapping[str, Target]) -> dict[str, Vector]:
-    """Return `Target.data`, (18,), of each frame that tasks track, in the layout's order.
+def targets_of(
+    tip: str, frames: Sequence[str], target: Target | Mapping[str, Target]
+) -> list[Vector]:
+    """Return `Target.data`, (18,), of each of the frames; one target alone is the tip's.
 
     Raises:
-        InvalidInputError: A frame has no target.
+        InvalidInputError: A frame has no target, or another object in its place.
     """
-    given = target if isinstance(target, Mapping) else {layout.robot.tip: target}
-    for name in layout.target_frames:
+    given = target if isinstance(target, Mapping) else {tip: target}
+    for name in frames:
         if name not in given:
             raise InvalidInputError("target", f"is missing for frame {name!r}", sorted(given))
-    return {name: given[name].data for name in layout.target_frames}
+    return [checks.instance("target", given[name], Target).data for name in frames]

@@ -16,15 +16,15 @@ a high number of degrees of freedom", ICRA 1987.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
+from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
@@ -68,7 +68,7 @@ class CollisionAvoidance(Limit):
     moves: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        one = isinstance(self.obstacles, Obstacle)
+        one = isinstance(self.obstacles, Obstacle) or not isinstance(self.obstacles, Iterable)
         given: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
         for number, obstacle in enumerate(given, 1):
             if not isinstance(obstacle, Obstacle):
@@ -96,7 +96,10 @@ class CollisionAvoidance(Limit):
             for number, table in enumerate(tables.pop("obstacle", []), 1):
                 where = f"obstacle {number}: "
                 obstacles.append(make_obstacle(table))
-            where = ""
+            where, known = "", [field.name for field in fields(cls) if field.init]
+            for key in tables.keys() - known:
+                hint = suggestion(key, known[1:])
+                raise TypeError(f"unexpected keyword argument {key!r}{hint}")
             return cls(obstacles, **tables)
         except (IiwaDnnError, TypeError, ValueError, AttributeError) as error:
             text = one_line(error).replace(f"{cls.__name__}.__init__() ", "")

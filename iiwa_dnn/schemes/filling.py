@@ -1,7 +1,5 @@
 """The answers of parts without a compiled form, checked and added to an assembled program."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

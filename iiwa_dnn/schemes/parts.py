@@ -11,6 +11,7 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from pinocchio import rnea
 
 from iiwa_dnn.checks import read_only
 from iiwa_dnn.qp import Matrix, Vector
@@ -72,6 +73,12 @@ class Step:
     def inertia(self) -> Matrix:
         """Joint-space inertia matrix [kg m^2], (n, n)."""
         return read_only(np.array(Configuration(self.robot, self.q).inertia))
+
+    @property
+    def bias(self) -> Vector:
+        """Joint torques of gravity, Coriolis and centrifugal forces [N m], (n,)."""
+        model, data, *_ = self._kinematics.pinocchio
+        return np.array(rnea(model, data, self.q, self.dq, np.zeros(self.q.size)))
 
 
 class Part:

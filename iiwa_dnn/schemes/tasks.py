@@ -48,9 +48,11 @@ class GainTask(Task):
     next_gain: float | None
 
     def _check(self, name: str) -> None:
-        """Check gain, by the name that users know it by, weight, tracking and its gain."""
+        """Check gain, by the name that users know it by, weight, priority, tracking, its gain."""
         checks.not_negative(name, self.gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
+        if self.priority is not None:
+            checks.integer("priority", self.priority, 1)
         for name in ("weight", "next_gain"):
             if getattr(self, name) is not None:
                 checks.not_negative(name, getattr(self, name))

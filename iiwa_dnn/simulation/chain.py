@@ -40,8 +40,14 @@ class SignalChain:
         drawn = gaussian_noise(noise, steps, joints, seed)
         self._noise, self._noise_at = (drawn if noise > 0.0 else None), noise_at
         times = dt * np.arange(steps, dtype=np.float64)
-        self._disturbance = None if disturbance is None else disturbance.at(times)
-        self._estimator = None if estimator is None else JointEstimator(estimator, dt)
+        self._disturbance = self._estimator = None
+        if disturbance is not None:
+            checks.instance("disturbance", disturbance, VelocityDisturbance)
+            self._disturbance = disturbance.at(times)
+        if estimator is not None:
+            self._estimator = JointEstimator(
+                checks.instance("estimator", estimator, NoiseModel), dt
+            )
         # A window longer than the run never fills; so none is too long for the memory.
         self._window = min(filter_window, steps)
         noisy, estimates = self._noise is not None, estimator is not None

@@ -1,7 +1,7 @@
 """The runner: controller, plant, noise and check in one loop, which ends in a Record."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +10,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.feedback import IntegralFeedback
-from iiwa_dnn.control.paths import References
+from iiwa_dnn.control.paths import References, by_frame
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -73,17 +73,17 @@ class Simulation:
     ) -> None:
         """Check the arguments, those of `simulate`, and draw the noise; q0 has the shape (n,)."""
         checks.positive("dt", dt)
-        paths = reference.values() if isinstance(reference, Mapping) else [reference]
-        length = max(path.duration for path in paths) if duration is None else duration
-        checks.positive("duration", length)
+        start = Configuration(robot, q0)
+        paths = by_frame(reference, robot.tip).values()
+        asked = max((path.duration for path in paths), default=dt) if duration is None else duration
+        length = checks.positive("duration", asked)
         self._ideal = plant is None or isinstance(plant, IdealPlant)
         checks.not_negative("integral_gain", integral_gain)
         checks.integer("seed", seed, 0)
         self.steps = steps = step_count(length, dt)
-        self._plant = IdealPlant() if plant is None else plant
+        self._plant = IdealPlant() if plant is None else checks.offers("plant", plant, "start")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
         self._robot, self._dt, self._seed = robot, dt, seed
-        start = Configuration(robot, q0)
         self._q0 = start.arrays[0]
         solver = DNNSolver(tol=tol) if solver is None else solver
         self._controller = Controller(

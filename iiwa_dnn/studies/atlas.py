@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, NotFoundError
 from iiwa_dnn.networks import (
     DualNetwork,
     Network,
@@ -177,7 +177,11 @@ def cell(
 
 
 def cells(
-    seeds: int, others: int, evaluations: Sequence[int], schemes: Sequence[str] = tuple(SCHEMES)
+    seeds: int,
+    others: int,
+    evaluations: Sequence[int],
+    schemes: Sequence[str] = tuple(SCHEMES),
+    networks: Sequence[str] = (),
 ) -> list[dict[str, Any]]:
     """List the cells: every network with every scheme and disturbance, and the budgets.
 
@@ -187,28 +191,34 @@ def cells(
         evaluations: Evaluations a control period: all of them with the first scheme, undisturbed
             and with white noise; the middle one with everything.
         schemes: Names of the schemes.
+        networks: Names of the networks; none: all.
 
     Raises:
         InvalidInputError: A scheme is not one of `SCHEMES`, or there is none.
+        NotFoundError: A network is not one of `NETWORKS`.
     """
     for name in schemes or [""]:
         if name not in SCHEMES:
             raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {name!r}")
+    networks = networks or tuple(NETWORKS)
+    for name in networks:
+        if name not in NETWORKS:
+            raise NotFoundError("network", name, NETWORKS)
     middle = evaluations[len(evaluations) // 2]
     whole = [
         cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
         for scheme in schemes
-        for network in NETWORKS
+        for network in networks
         for kind in DISTURBANCES
     ]
     budgets = [
         cell(network, schemes[0], kind, count, others)
-        for network in NETWORKS
+        for network in networks
         for kind in ("none", "white")
         for count in evaluations
         if count != middle
     ]
-    first = len(NETWORKS) * len(DISTURBANCES)
+    first = len(networks) * len(DISTURBANCES)
     return whole[:first] + budgets + whole[first:]
 
 

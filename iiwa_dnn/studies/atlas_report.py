@@ -152,7 +152,9 @@ def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> s
     """Write ``report.md`` and, where asked for, the figure; returns the text."""
     first, middle = rows[0]["scheme"], rows[0]["evaluations"]
     schemes = list(dict.fromkeys(row["scheme"] for row in rows))
-    league = sorted(NETWORKS, key=lambda name: _rank(rows, name))
+    names = dict.fromkeys(row["network"] for row in rows)
+    claims = [claim for claim in CLAIMS if {claim.better, claim.worse} <= names.keys()]
+    league = sorted(names, key=lambda name: _rank(rows, name))
     kinds = markdown_table(
         ("network", "evaluation", *DISTURBANCES),
         ([name, "system" if NETWORKS[name].systems else "product",
@@ -170,7 +172,7 @@ def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> s
         ("claim", "disturbance", "measure", "ours", "beside", "verdict"),
         (
             [v["text"], v["disturbance"], v["measure"], *map(_number, v["values"]), v["verdict"]]
-            for v in (judge(rows, claim) for claim in CLAIMS)
+            for v in (judge(rows, claim) for claim in claims)
         ),
     )
     parts = ["# Atlas of neurodynamic control", head]

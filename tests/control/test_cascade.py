@@ -10,7 +10,7 @@ import qpsolvers
 import scipy.linalg
 import scipy.sparse
 
-from benchmarks.priorities import KINDS, PRIORITIES, compare, programs
+from benchmarks.priorities import KINDS, PRIORITIES, SCHEME, compare, programs
 from helpers_simulation import paper_robot
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.networks.solver import DNNSolver
@@ -34,15 +34,6 @@ from iiwa_dnn.simulation import simulate
 ROBOT = paper_robot()
 
 
-def scheme() -> Scheme:
-    tasks = [
-        PositionTask(priority=1),
-        OrientationTask(priority=2),
-        PostureTask({"iiwa7_joint_1": 0.5, "iiwa7_joint_3": -0.4}, priority=3),
-    ]
-    return Scheme([KineticEnergy(1.0)], tasks, [JointLimits()])
-
-
 def lexicographic(qp: QP, priorities: Vector) -> list[float] | None:
     """Level by level with another solver; returns the residual of each, None where it fails."""
     A, b, missing = np.zeros((0, 7)), np.zeros(0), []
@@ -64,8 +55,7 @@ def lexicographic(qp: QP, priorities: Vector) -> list[float] | None:
 
 def test_levels_of_conflicting_tasks_are_those_of_another_solver() -> None:
     rng, conflicts, compared = np.random.default_rng(11), 0, 0
-    chosen = scheme()
-    priorities = chosen.layout(ROBOT).priorities
+    chosen, priorities = SCHEME, PRIORITIES
     for _ in range(60):
         q = rng.uniform(0.8 * ROBOT.q_lower, 0.8 * ROBOT.q_upper)
         conf = Configuration(ROBOT, q)

@@ -14,7 +14,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Status
-from iiwa_dnn.references import Circle, Heart, MovingTarget, Reference
+from iiwa_dnn.references import Circle, Heart, MovingTarget, Reference, Target
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import (
     CyclicMotion,
@@ -116,6 +116,20 @@ def test_any_scheme_will_do() -> None:
     command = controller_of(PseudoInverse()).step(conf.q, 0.0, target)
     expected = PseudoInverse().velocity(conf, target)
     np.testing.assert_allclose(command.dq, expected, rtol=0, atol=1e-8)
+
+
+def test_a_command_says_in_words_what_it_is() -> None:
+    start = paper_start()
+    far = Target(start.position + [0.5, 0.0, 0.0], start.rotation)
+    controller = Controller(paper_robot(), DoubleIndicator(), policy="stop")
+    stopped = repr(controller.step(PAPER_Q0, 0.0, far))
+    assert stopped.endswith("no solution: stopped, against joint 4 lower bound; ok = False>")
+    controller.policy = "relax"
+    assert "as near to the task as the limits allow, against" in repr(
+        controller.step(PAPER_Q0, 0.0, far)
+    )
+    there = Target(start.position, start.rotation)
+    assert repr(controller.step(PAPER_Q0, 0.0, there)).endswith("rad/s, solved; ok = True>")
 
 
 def test_an_unknown_mode_is_named() -> None:

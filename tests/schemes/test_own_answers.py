@@ -1,7 +1,5 @@
 """Answers of parts of one's own that are none: each is refused, or blamed, by the part's name."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -46,7 +46,8 @@ class MujocoPlant(Plant):
             problem = f"must be at most {_COARSEST:g} s, not {timestep:g}"
             raise InvalidInputError("physics_dt", problem, timestep)
         self.timestep = timestep
-        self.disturbances = Disturbances() if disturbances is None else disturbances
+        wrong = Disturbances() if disturbances is None else disturbances
+        self.disturbances = checks.instance("disturbances", wrong, Disturbances)
         self.gains = TorqueGains() if gains is None else gains
         self.dynamics = JointDynamics() if dynamics is None else dynamics
 

@@ -190,9 +190,9 @@ def test_the_ghost_stands_where_the_last_link_has_to_be(shared):
 @needs_browser
 def test_the_path_so_far_is_drawn(browser, session):
     session.replay.playback.seek(4.0)
-    wait_for(lambda: red(picture(browser)).sum() > 50, "a drawn path")
+    assert wait_for(lambda: red(picture(browser)).sum() > 50, "a drawn path")
     session.replay.playback.seek(0.0)
-    wait_for(lambda: red(picture(browser)).sum() == 0, "no path at the start")
+    assert wait_for(lambda: red(picture(browser)).sum() == 0, "no path at the start")
 
 
 @needs_browser
@@ -240,9 +240,9 @@ def test_play_runs_and_pause_stops(browser, session):
 @needs_browser
 def test_live_the_arm_follows_the_dragged_target(browser, session):
     click(browser, "live")
-    wait_for(lambda: session.live.active, "the live mode")
-    wait_for(lambda: len(sliders(browser)) == 4, "weight and gains")
-    wait_for(lambda: "distance to the target" in browser.page_source, "the read-out")
+    assert wait_for(lambda: session.live.active, "the live mode")
+    assert wait_for(lambda: len(sliders(browser)) == 4, "weight and gains")
+    assert wait_for(lambda: "distance to the target" in browser.page_source, "the read-out")
     start = np.array(session.live.target.position)
     drag(browser, session, 0.05)
     moved = wait_for(
@@ -253,18 +253,22 @@ def test_live_the_arm_follows_the_dragged_target(browser, session):
         "the target to be dragged",
     )
     follower = session.live.follower
-    wait_for(
+    assert wait_for(
         lambda: np.linalg.norm(follower.configuration.position - moved) < 1e-3,
         "the arm to follow",
     )
-    wait_for(lambda: buttons(browser, "● live"), "the mark of the live mode")
+    assert wait_for(lambda: buttons(browser, "● live"), "the mark of the live mode")
     before = follower.scheme.weight
     press(browser, Keys.ARROW_RIGHT)
-    wait_for(lambda: follower.scheme.weight > before, "the weight to change")
+    assert wait_for(lambda: follower.scheme.weight > before, "the weight to change")
     click(browser, "Target back to the start")
-    wait_for(lambda: np.linalg.norm(follower.configuration.position - start) < 1e-3, "the way back")
+    assert wait_for(
+        lambda: np.linalg.norm(follower.configuration.position - start) < 1e-3, "the way back"
+    )
     click(browser, "replay")
-    wait_for(lambda: not session.live.active and buttons(browser, "Play"), "the replay again")
+    assert wait_for(
+        lambda: not session.live.active and buttons(browser, "Play"), "the replay again"
+    )
 
 
 @needs_browser

@@ -1,0 +1,72 @@
+"""Objects of a wrong kind: each call is refused by the package's own error, naming the argument."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn as d
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import heart, paper_robot, paper_start
+
+EYE = np.eye(3)
+
+
+def drive(*more: Any, scheme: Any = None, reference: Any = None, **options: Any) -> Any:
+    scheme = d.DoubleIndicator() if scheme is None else scheme
+    reference = heart() if reference is None else reference
+    return d.simulate(paper_robot(), scheme, reference, *(more or (PAPER_Q0,)), dt=1e-3, **options)
+
+
+def step(target: Any) -> Any:
+    return d.Controller(paper_robot(), d.DoubleIndicator()).step(PAPER_Q0, 0.0, target)
+
+
+CALLS: dict[str, tuple[Callable[[], Any], str]] = {
+    "reference class": (lambda: drive(reference=d.Heart), "reference: must be an iiwa_dnn.Ref"),
+    "reference array": (lambda: drive(reference=EYE[0]), "reference: must be an iiwa_dnn.Ref"),
+    "no reference": (lambda: drive(reference={}), "reference: is missing"),
+    "reference class of a frame": (lambda: drive(reference={"x": d.Heart}), "reference: must be"),
+    "scheme class": (lambda: drive(scheme=d.DoubleIndicator), "scheme: must be an object with bui"),
+    "scheme text": (lambda: drive(scheme="paper"), "scheme: must be an object with build_qp"),
+    "plant class": (lambda: drive(plant=d.MujocoPlant), "plant: must be an object with start"),
+    "estimator": (lambda: drive(estimator=3), "estimator: must be an iiwa_dnn.NoiseModel"),
+    "disturbance": (lambda: drive(disturbance=0.1), "disturbance: must be an iiwa_dnn.Velocity"),
+    "reference of a controller": (
+        lambda: d.Controller(paper_robot(), d.DoubleIndicator(), EYE), "reference: must be",
+    ),
+    "target array": (lambda: step(np.zeros(3)), "target: must be an iiwa_dnn.Target"),
+    "target configuration": (lambda: step(paper_start()), "target: must be an iiwa_dnn.Target"),
+    "target of another frame": (lambda: step({"x": 1}), "target: is missing for frame 'iiwa7_fl"),
+    "program of an array": (
+        lambda: d.DoubleIndicator().build_qp(paper_start(), np.zeros(18)), "target: must be",
+    ),
+    "program at a list": (
+        lambda: d.DoubleIndicator().build_qp(list(PAPER_Q0), None), "conf: must be",
+    ),
+    "pose list": (lambda: d.Circle().anchored([0, 0, 0]), "pose: must be an object with position"),
+    "pose of a target": (lambda: d.MovingTarget(EYE), "pose: must be an object with position"),
+    "no rotation": (lambda: d.Target(EYE[0], 2.0 * EYE), "rotation: is not a rotation matrix"),
+    "path of a surface": (lambda: d.OnSurface(3), "along: must be an iiwa_dnn.Reference"),
+    "path that tilts": (lambda: d.Tilting(d.Circle), "along: must be an iiwa_dnn.Reference"),
+    "no list of costs": (lambda: d.Scheme(3), "costs: must be a list of parts"),
+    "priority 0": (lambda: d.PositionTask(priority=0), "priority: must be a whole number of at"),
+    "obstacles": (lambda: d.CollisionAvoidance(3), "obstacles: number 1 must be a Sphere"),
+    "solvers": (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),
+    "disturbances": (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
+    "frame": (lambda: paper_robot().frame_id(None), "no frame 'None'"),
+    "locked": (lambda: d.load_robot("iiwa7", locked=3), "locked: must be names of joints"),
+    "record": (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
+    "run": (lambda: d.failures("runs/heart"), "run: must be a record or its metrics"),
+    "file": (lambda: d.Record.load(3), "3: "),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CALLS)
+def test_a_wrong_object_is_refused_by_name(case: str) -> None:
+    call, said = CALLS[case]
+    with pytest.raises(d.IiwaDnnError) as refused:
+        call()
+    assert str(refused.value).startswith(said)
+    assert "\n" not in str(refused.value)
