@@ -26,5 +26,5 @@ def run(options: AtlasOptions) -> int:
         f"{options.seeds} seeds with the first scheme, {options.other_seeds} with the others and "
         f"at the other budgets; half a heart in {atlas.DURATION:g} s, errors of its second half."
     )
-    tell(options, write_report(options.out, rows, head, options.plots).rstrip("\n"))
+    tell(options, write_report(options.out, rows, head, options.plots))
     return 0

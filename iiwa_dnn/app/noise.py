@@ -8,8 +8,8 @@ from iiwa_dnn.app.command_line import tell
 from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.files import write_json, write_text
-from iiwa_dnn.results.markdown import markdown_table
+from iiwa_dnn.files import write_json
+from iiwa_dnn.results.markdown import markdown_table, save_markdown
 from iiwa_dnn.results.plots import write_figures
 from iiwa_dnn.studies import noise_study
 
@@ -34,7 +34,7 @@ def run(options: NoiseOptions) -> int:
     write_json(options.out / "noise.json", rows)
     write_figures({"noise": partial(noise_study.noise_figure, rows)}, options.out)
     text = _report(rows, seeds, duration)
-    write_text(options.out / "report.md", text + "\n")
+    save_markdown(options.out, [text])
     tell(options, text)
     return 0 if all(row["completed"] for row in rows) else 1
 

@@ -203,10 +203,6 @@ class Lissajous(Reference):
         self._set(numbers=np.concatenate([self.amplitudes, rates, self.phases]))
 
 
-def _still(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    """Add nothing to targets (k, 18) in `out`; see `Reference.path`."""
-
-
 @dataclass(frozen=True, eq=False)
 class Still(Reference):
     """A pose to go to and to hold: ``Still().anchored(pose)``.
@@ -216,7 +212,7 @@ class Still(Reference):
     """
 
     name: ClassVar[str] = "still"
-    path: ClassVar[Any] = staticmethod(_still)
+    path: ClassVar[Any] = staticmethod(lambda *_: None)
     period: float = 10.0
 
     def __post_init__(self) -> None:

@@ -1,13 +1,23 @@
 """Tables, lists and pictures in Markdown."""
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+
+from iiwa_dnn.files import write_text
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Lay out a table in Markdown, its cells made fit to stand in one."""
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
+
+
+def save_markdown(folder: str | os.PathLike[str], parts: Iterable[str]) -> Path:
+    """Write parts as report.md into a folder, and return the file; raises FileError."""
+    path = Path(folder) / "report.md"
+    write_text(path, "\n\n".join(parts) + "\n")
+    return path
 
 
 def bullets(lines: Iterable[str]) -> str:

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.files import prepare_folder, write_json, write_text
+from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.results.failures import describe, failures, path_completed
 from iiwa_dnn.results.frames import save_frames
-from iiwa_dnn.results.markdown import bullets, markdown_table, show_figures
+from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
@@ -167,9 +167,7 @@ def write_report(
         markdown_table(("package", "version"), versions),
         *show_figures(figures, _CAPTIONS),
     ]
-    path = Path(folder) / "report.md"
-    write_text(path, "\n\n".join(parts) + "\n")
-    return path
+    return save_markdown(folder, parts)
 
 
 def settings_lines(metrics: Mapping[str, Any]) -> str:

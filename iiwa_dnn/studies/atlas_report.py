@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import matplotlib
 import numpy as np
 
-from iiwa_dnn.files import write_text
-from iiwa_dnn.results.markdown import markdown_table
+from iiwa_dnn.results.markdown import markdown_table, save_markdown
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.studies.atlas import MEASURES, NETWORKS
 from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
@@ -186,9 +185,8 @@ def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> s
         "## Every scheme with every disturbance: RMS position error [m]",
         everywhere, "## Verdicts", verdicts,
     ]  # fmt: skip
-    text = "\n\n".join(parts) + "\n"
-    write_text(folder / "report.md", text)
-    return text
+    save_markdown(folder, parts)
+    return "\n\n".join(parts)
 
 
 def _rank(rows: Sequence[Row], name: str) -> float:

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.files import write_text
-from iiwa_dnn.results.markdown import bullets, markdown_table, show_figures
+from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 
 Table = Mapping[str, Any]
 
@@ -96,9 +95,7 @@ def write_paper_report(
         _ablation(tables["ablation"]),
         *show_figures(figures, _CAPTIONS),
     ]
-    path = Path(folder) / "report.md"
-    write_text(path, "\n\n".join(parts) + "\n")
-    return path
+    return save_markdown(folder, parts)
 
 
 def findings(tables: Mapping[str, Table]) -> list[str]:

@@ -27,14 +27,9 @@ class Curves:
         self, gui: Any, title: str, colours: tuple[str, ...], ends: tuple[float, float],
         powers: bool = False,
     ) -> None:  # fmt: skip
-        """Put an empty diagram on the page.
+        """Put an empty diagram on a page or in a browser, a colour for each curve.
 
-        Args:
-            gui: Where the diagram is added, a page's or a browser's.
-            title: Name and unit of the curves.
-            colours: Colour of each curve, k of them.
-            ends: Ends of the horizontal axis.
-            powers: True if `ends`, and the times of `show`, are decimal logarithms.
+        With `powers` its ends, and the times of `show`, are decimal logarithms.
         """
         from viser import uplot  # of an extra
 

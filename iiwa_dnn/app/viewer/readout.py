@@ -15,15 +15,9 @@ _ROW = "display:flex;align-items:center;gap:6px;margin:3px 0;font-size:12px"
 
 
 def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
-    """Draw joint positions as marks on bars that reach from limit to limit.
+    """Draw joint positions q (n,) [rad] as marks on bars from limit to limit, infinite for none.
 
-    Args:
-        q: Joint positions [rad], (n,).
-        lower: Lower limits [rad], (n,); infinite for none.
-        upper: Upper limits [rad], (n,).
-
-    Returns:
-        HTML, one row a joint; a mark near a limit, or beyond it, is red.
+    A mark near a limit, or beyond it, is red; returns HTML, one row a joint.
     """
     rows = []
     for i, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True), 1):
