@@ -17,6 +17,7 @@ from iiwa_dnn.networks.integrators import (
     ImplicitEuler,
     Integrator,
     barrier,
+    closing,
 )
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.networks.integrators.implicit import settle_implicit
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 LARGE, HUGE = 150, 400
 """Variables from which on the barrier comes before the search for a certificate, and from which on
 a cold start goes through it at once."""
+SPARSE = 0.1
+"""Share of numbers that are not zero below which a large program goes through the barrier first."""
 WORK = 20_000
 """Linear systems times variables of a first try: the rest of the budget is for the second."""
 
@@ -169,7 +172,7 @@ class DNNSolver:
         primal, dual, gap = settled[2:]
         doubtful = 0.1 * tol < primal + dual + gap <= 3.0 * tol
         if doubtful and point.dot(point) > (1e13 * tol) ** 2:  # rounding may decide: try for better
-            worse = barrier.worse(qp, point, (primal, dual, gap))
+            worse = closing.worse(qp, point, (primal, dual, gap))
             if not within(*worse, tol):
                 again = self._second_try(network, qp, state, point, (*settled[:2], *worse))
                 settled = (again[0], *settled[1:]) if again[2:] == worse else again
@@ -198,25 +201,37 @@ class DNNSolver:
         settler = self.settler
         if type(settler) is not ImplicitEuler or network.compiled is None:
             return settler.settle(network, qp, state, point, self.tol)
-        if qp.sizes[0] >= HUGE and not state.any():
+        if self._through_barrier(qp) and not state.any():
             return barrier.settle(qp, state, point, self.tol, settler.max_steps)
         budget = min((settler.max_steps + 1) // 2, WORK // qp.sizes[0] + 1)
         return settle_implicit(
             qp.data, *qp.sizes, state, point, self.tol, budget, settler.long_step
         )
 
+    @staticmethod
+    def _through_barrier(qp: QP) -> bool:
+        """Tell whether a cold start goes through the barrier at once."""
+        n = qp.sizes[0]
+        return n >= HUGE or (n >= LARGE and np.count_nonzero(qp.data) < SPARSE * qp.data.size)
+
     def _second_try(
         self, network: Network, qp: QP, state: Vector, point: Vector, settled: Settled
     ) -> Settled:
-        """Start again through the barrier, with the rest of the budget; take the better point."""
-        settler = self.settler
-        if type(settler) is not ImplicitEuler or network.compiled is None or qp.sizes[0] >= HUGE:
+        """Start again the other way, with the rest of the budget; take the better point."""
+        settler, n = self.settler, qp.sizes[0]
+        if type(settler) is not ImplicitEuler or network.compiled is None or n >= HUGE:
             return settled
-        other = point.copy()
         left = settler.max_steps - settled[0]
         if left <= 0:
             return settled
-        again = barrier.settle(qp, state, other, self.tol, left)
+        other = point.copy()
+        if self._through_barrier(qp):
+            state[:], left = 0.0, min(left, WORK // n + 1)
+            again: Settled = settle_implicit(
+                qp.data, *qp.sizes, state, other, self.tol, left, settler.long_step
+            )
+        else:
+            again = barrier.settle(qp, state, other, self.tol, left)
         if not max(again[2:]) < max(settled[2:]):
             return again[0] + settled[0], *settled[1:]
         point[:] = other

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from iiwa_dnn.qp.dense import add_scaled, dot
 from iiwa_dnn.qp.layout import Matrix, Triple, Vector, compiled, larger, offsets
 
+LONG = 64
+"""Variables from which on the gap, a long sum, is computed accurately."""
+
 
 @compiled
 def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
@@ -40,7 +43,46 @@ def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Trip
             add_scaled(gradient, z, data, row, n)
     for i in range(n):
         dual = larger(dual, abs(gradient[i]))
-    return primal, dual, abs(gap)
+    return primal, dual, abs(gap if n < LONG else accurate_gap(data, n, m, p, point))
+
+
+@compiled
+def _add_product(total: float, rest: float, a: float, b: float) -> tuple[float, float]:
+    """Add a b to a sum; the roundings of product and sum go to `rest`.
+
+    Source: T. Ogita, S. M. Rump, S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26
+    (2005).
+    """
+    value, far, wide = a * b, 134217729.0 * a, 134217729.0 * b
+    a_high, b_high = far - (far - a), wide - (wide - b)
+    a_low, b_low = a - a_high, b - b_high
+    lost = a_low * b_low - (((value - a_high * b_high) - a_low * b_high) - a_high * b_low)
+    new = total + value
+    part = new - total
+    return new, rest + (((total - (new - part)) + (value - part)) + lost)
+
+
+@compiled
+def accurate_gap(data: Vector, n: int, m: int, p: int, point: Vector) -> float:
+    """Compute the duality gap of [x | y | z | z_box] with its sign, as if in twice the digits."""
+    at_q, at_G, _, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    gap, rest = 0.0, 0.0
+    for i in range(n):
+        row, row_rest, x, multiplier = data[at_q + i], 0.0, point[i], point[n + p + m + i]
+        for k in range(n):
+            if data[i * n + k] != 0.0:
+                row, row_rest = _add_product(row, row_rest, data[i * n + k], point[k])
+        gap, rest = _add_product(gap, rest + row_rest * x, row, x)
+        end = data[at_ub + i] if multiplier > 0.0 else data[at_lb + i]
+        if abs(end) < np.inf:
+            gap, rest = _add_product(gap, rest, end, multiplier)
+    for j in range(p):
+        gap, rest = _add_product(gap, rest, data[at_b + j], point[n + j])
+    for j in range(m):
+        if point[n + p + j] != 0.0:
+            gap, rest = _add_product(gap, rest, data[at_h + j], point[n + p + j])
+    return gap + rest
 
 
 @compiled

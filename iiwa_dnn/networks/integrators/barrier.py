@@ -31,7 +31,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.qp.layout import Triple, Vector
+from iiwa_dnn.networks.integrators.closing import closings, worse
+from iiwa_dnn.networks.integrators.eliminations import elimination
+from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -42,12 +44,16 @@ EPS = 1e-16
 """Least eps times delta: below, rounding of A^T A/delta could make K indefinite."""
 REFINED = 4
 """Solutions of one system, the first and its refinements."""
+LEAST = 1e-30
+"""Least weight of a row, of one that takes no part."""
 NEAR = 1e-3
 """Size of the scaled residuals from which on the point is judged in the program's own units."""
 MOST = 150
 """Systems of one attempt."""
 STALLED = 25
 """Steps without a better point before an attempt is given up."""
+WIDE = 1e-3
+"""Largest gap that is taken for rounding where the other residuals are small."""
 NETWORK_STEPS = 10
 """Linearly implicit steps of the projection network after an attempt."""
 
@@ -64,7 +70,10 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
         for attempt in ATTEMPTS:
             if run.systems >= max_systems or run.attempt(*attempt):
                 break
-    return run.systems, run.time, *kkt_point(qp.data, *qp.sizes, state, point)
+    residuals, fixed = kkt_point(qp.data, *qp.sizes, state, point), qp.lb == qp.ub
+    z_box, bounds = point[-qp.q.size :], state[-2 * qp.q.size :].reshape(2, -1)
+    bounds[:, fixed] = np.maximum(z_box[fixed], 0.0), np.maximum(-z_box[fixed], 0.0)
+    return run.systems, run.time, *residuals
 
 
 class _Run:
@@ -74,40 +83,20 @@ class _Run:
         self.qp, self.state, self.point, self.tol = qp, state, point, tol
         self.systems, self.limit, self.time, self.best = 0, 0, 0.0, np.inf
         self.residuals = (np.inf, np.inf, np.inf)
-        limited, self.fixed = np.isfinite(qp.h), np.flatnonzero(qp.lb == qp.ub)
-        self.rows = np.flatnonzero(limited)
-        A, G = np.vstack([qp.A, np.eye(qp.q.size)[self.fixed]]), qp.G[self.rows]
-        self.P, self.A, self.G = qp.P.copy(), A, G.copy()
-        self.d, self.f, self.e = (np.ones(k) for k in (qp.q.size, len(A), len(G)))
-        self._equilibrate()
-        q = qp.q * self.d
-        self.c = 1.0 / max(np.abs(self.P).max(axis=0).mean(), np.abs(q).max(), 1e-300)
-        self.P *= self.c
-        self.q, self.b = q * self.c, np.concatenate([qp.b, qp.lb[self.fixed]]) * self.f
-        self.upper = np.flatnonzero((qp.ub < np.inf) & (qp.lb < qp.ub))
-        self.lower = np.flatnonzero((qp.lb > -np.inf) & (qp.lb < qp.ub))
-        upper, lower = (qp.ub / self.d)[self.upper], (qp.lb / self.d)[self.lower]
-        self.chi = np.concatenate([qp.h[self.rows] * self.e, upper, -lower])
-        self.parts = len(G), len(G) + len(self.upper)
-        self.gram = self.A.T @ self.A
-
-    def _equilibrate(self) -> None:
-        for _ in range(10):
-            sizes = [np.abs(rows).max(axis=0) for rows in (self.P, self.A, self.G) if len(rows)]
-            d, f, e = (
-                1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
-                for size in (
-                    np.max(sizes, axis=0),
-                    np.abs(self.A).max(axis=1, initial=0.0),
-                    np.abs(self.G).max(axis=1, initial=0.0),
-                )
-            )
-            self.P *= d[:, None] * d
-            self.A *= f[:, None] * d
-            self.G *= e[:, None] * d
-            self.d, self.f, self.e = self.d * d, self.f * f, self.e * e
-            if all(np.abs(1.0 - scale).max(initial=0.0) < 1e-2 for scale in (d, f, e)):
-                break
+        # A variable whose bounds meet is a number; its multiplier is what the others leave over.
+        self.moving, self.rows = np.flatnonzero(qp.lb < qp.ub), np.flatnonzero(np.isfinite(qp.h))
+        rest = np.where(qp.lb < qp.ub, 0.0, qp.lb)
+        P, G = qp.P[self.moving], qp.G[self.rows]
+        q, b, h = qp.q[self.moving] + P @ rest, qp.b - qp.A @ rest, qp.h[self.rows] - G @ rest
+        self.system = elimination(*(v[:, self.moving] for v in (P, qp.A, G)))
+        (self.d, self.f, self.e), self.c = self.system.equilibrate(q)
+        self.P, self.A, self.G = self.system.matrices
+        self.AT, self.GT = self.A.T, self.G.T
+        self.q, self.b = q * self.d * self.c, b * self.f
+        lb, ub = qp.lb[self.moving] / self.d, qp.ub[self.moving] / self.d
+        self.upper, self.lower = np.flatnonzero(ub < np.inf), np.flatnonzero(lb > -np.inf)
+        self.chi = np.concatenate([h * self.e, ub[self.upper], -lb[self.lower]])
+        self.parts = h.size, h.size + self.upper.size
 
     def times(self, x: Vector) -> Vector:
         """Compute Omega x."""
@@ -116,55 +105,56 @@ class _Run:
     def transposed(self, mu: Vector) -> Vector:
         """Compute Omega^T mu."""
         first, second = self.parts
-        total: Vector = self.G.T @ mu[:first]
+        total: Vector = self.GT @ mu[:first]
         total[self.upper] += mu[first:second]
         total[self.lower] -= mu[second:]
         return total
 
     def factor(self, weights: Vector) -> bool:
-        """Factor K = P + eps I + A^T A/delta + Omega^T W Omega; False if that is not possible.
+        """Factor the system for the weights of all rows; False if that is not possible.
 
-        eps is enlarged until K is positive definite to working precision.
+        eps is enlarged until the matrix is positive definite to working precision.
         """
-        from scipy.linalg.lapack import dpotrf
-
         first, second = self.parts
-        rows = np.sqrt(weights[:first])[:, None] * self.G
-        self.H = rows.T @ rows
-        self.H += self.P
-        self.H += self.gram / self.delta
-        diagonal = np.einsum("ii->i", self.H)
-        diagonal[self.upper] += weights[first:second]
-        diagonal[self.lower] += weights[second:]
+        self.weights, self.box = np.maximum(weights, LEAST), np.zeros_like(self.q)
+        self.box[self.upper] += weights[first:second]
+        self.box[self.lower] += weights[second:]
         self.eps = EPS / self.delta
         while self.eps < 1.0 and self.systems < self.limit:
             self.systems += 1
-            K = self.H.copy()
-            K.flat[:: len(K) + 1] += self.eps
-            self.L, info = dpotrf(K.T, lower=1, overwrite_a=1, clean=0)
-            if info == 0:
+            if self.system.factor(self.weights[:first], self.box + self.eps, self.delta):
                 return True
             self.eps *= 10.0
         return False
 
-    def solve(self, rx: Vector, ry: Vector) -> tuple[Vector, Vector]:
-        """Solve [H + eps I, A^T; A, -delta] (dx, dy) = (rx, ry), refined."""
-        from scipy.linalg.lapack import dpotrs
+    def solve(self, rx: Vector, ry: Vector, rmu: Vector) -> tuple[Vector, Vector, Vector]:
+        """Solve one step's system for dx, dy and dmu, refined.
 
-        delta, dx, dy, before = self.delta, np.zeros_like(rx), np.zeros_like(ry), np.inf
-        scale = max(np.abs(rx).max(), np.abs(ry).max(initial=0.0))
-        ex, ey = rx, ry
+        Its lines are (P + eps) dx + A^T dy + Omega^T dmu = rx, A dx - delta dy = ry and
+        Omega dx - dmu/W = rmu. The bounds' multipliers are eliminated, but refined with the rest.
+        """
+        first, w, delta, before = self.parts[0], self.weights, self.delta, np.inf
+        errors = rx, ry, rmu
+        dx, dy, dmu = (np.zeros_like(v) for v in errors)
+        scale = max(np.abs(v).max(initial=0.0) for v in errors)
         for _ in range(REFINED):
-            change, _ = dpotrs(self.L, ex + self.A.T @ (ey / delta), lower=1)
-            dx, dy = dx + change, dy + (self.A @ change - ey) / delta
-            gap = ry - self.A @ dx
-            ex = rx - (self.H @ dx + self.eps * dx + self.A.T @ (dy - self.A @ dx / delta))
-            ey = gap + delta * dy
-            error = max(np.abs(ex).max(), np.abs(ey).max(initial=0.0))
+            ex, ey, emu = errors
+            pushed = w * emu
+            pushed[:first] = 0.0
+            x, y, g = self.system.solve(ex + self.transposed(pushed), ey, emu[:first])
+            mu = w * (self.times(x) - emu)
+            mu[:first] = g
+            dx, dy, dmu = dx + x, dy + y, dmu + mu
+            errors = (
+                rx - (self.P @ dx + self.eps * dx + self.AT @ dy + self.transposed(dmu)),
+                ry - self.A @ dx + delta * dy,
+                rmu - self.times(dx) + dmu / w,
+            )
+            error = max(np.abs(v).max(initial=0.0) for v in errors)
             if not 1e-13 * scale < error < 0.5 * before:
                 break
             before = error
-        return dx, dy
+        return dx, dy, dmu
 
     def judge(self, x: Vector, y: Vector, mu: Vector) -> float:
         """Judge the point in the program's own units and keep it if it is the best so far.
@@ -174,15 +164,17 @@ class _Run:
         """
         n, m, p = self.qp.sizes
         s, z_u_l = np.zeros_like(self.state), np.split(mu, self.parts)
-        multipliers = y * self.f / self.c
-        s[:n], s[n : n + p] = x * self.d, multipliers[:p]
+        s[self.moving], s[n : n + p] = x * self.d, y * self.f / self.c
         s[n + p + self.rows] = z_u_l[0] * self.e / self.c
         bounds = s[n + p + m :].reshape(2, n)
-        bounds[0, self.upper] = z_u_l[1] / (self.d[self.upper] * self.c)
-        bounds[1, self.lower] = z_u_l[2] / (self.d[self.lower] * self.c)
-        bounds[0, self.fixed] = np.maximum(multipliers[p:], 0.0)
-        bounds[1, self.fixed] = np.maximum(-multipliers[p:], 0.0)
-        residuals = worse(self.qp, self.point, kkt_point(self.qp.data, n, m, p, s, self.point))
+        bounds[0, self.moving[self.upper]] = z_u_l[1] / (self.d[self.upper] * self.c)
+        bounds[1, self.moving[self.lower]] = z_u_l[2] / (self.d[self.lower] * self.c)
+        return self.keep(s)
+
+    def keep(self, s: Vector) -> float:
+        """Keep the state s if it is the best so far; returns its largest residual."""
+        found = kkt_point(self.qp.data, *self.qp.sizes, s, self.point)
+        residuals = worse(self.qp, self.point, found)
         largest = max(residuals) if sum(residuals) < np.inf else np.inf
         if largest < self.best:
             self.best, self.residuals = largest, residuals
@@ -193,7 +185,7 @@ class _Run:
         """Find x and y that balance cost and limits, and positive mu and slacks around them."""
         self.delta = delta
         self.factor(np.ones_like(self.chi))
-        x, y = self.solve(-self.q + self.transposed(self.chi), self.b)
+        x, y, _ = self.solve(-self.q, self.b, self.chi)
         slack = self.chi - self.times(x)
         mu, s = (np.maximum(v - min(v.min(initial=0.0), 0.0), 1e-2) for v in (-slack, slack))
         return x, y, mu + (slack > 0.0).any(), s + (slack < 0.0).any()
@@ -203,9 +195,7 @@ class _Run:
     ) -> tuple[Vector, Vector, Vector, Vector]:
         """Solve one linearly implicit step with s dmu + mu ds = target; returns dx, dy, dmu, ds."""
         rd, rp, ri = rates
-        W, t = 1.0 / (s / mu + self.delta), ri + target / mu
-        dx, dy = self.solve(-rd - self.transposed(W * t), -rp)
-        dmu = W * (self.times(dx) + t)
+        dx, dy, dmu = self.solve(-rd, -rp, -ri - target / mu)
         return dx, dy, dmu, (target - s * dmu) / mu
 
     def attempt(self, delta: float, share: float, fall: float) -> bool:
@@ -214,7 +204,7 @@ class _Run:
         x, y, mu, s = kept = self.start(delta)
         last = min(self.limit, self.systems + MOST)
         while self.systems < last:
-            rd = self.P @ x + self.q + self.A.T @ y + self.transposed(mu)
+            rd = self.P @ x + self.q + self.AT @ y + self.transposed(mu)
             rates = rd, self.A @ x - self.b, self.times(x) + s - self.chi
             nu = float(s @ mu) / k
             size = max(nu, *(float(np.abs(r).max(initial=0.0)) for r in rates))
@@ -248,42 +238,25 @@ class _Run:
 
     def network(self, x: Vector, y: Vector, mu: Vector, active: NDArray[np.bool_]) -> bool:
         """Take linearly implicit steps of the projection network; returns whether it settled."""
-        mu, delta = np.where(active, mu, 0.0), self.delta
+        mu, delta, last = np.where(active, mu, 0.0), self.delta, np.inf
         for _ in range(NETWORK_STEPS):
             full = self.systems >= self.limit
             if full or not self.factor(np.where(active, 1.0 / delta, 0.0)):
                 break
             slack = self.times(x) - self.chi
-            rd = self.P @ x + self.q + self.A.T @ y + self.transposed(mu)
-            push = np.where(active, slack / delta, 0.0)
-            dx, dy = self.solve(-rd - self.transposed(push), self.b - self.A @ x)
-            mu = mu + push + np.where(active, self.times(dx) / delta, 0.0)
+            rd = self.P @ x + self.q + self.AT @ y + self.transposed(mu)
+            dx, dy, dmu = self.solve(-rd, self.b - self.A @ x, np.where(active, -slack, 0.0))
+            mu = np.where(active, mu + dmu, 0.0)
             x, y, self.time = x + dx, y + dy, self.time + 1.0 / delta
-            if self.judge(x, y, np.maximum(mu, 0.0)) <= 0.5 * self.tol:
+            value = self.judge(x, y, np.maximum(mu, 0.0))
+            before, active = active, mu + self.times(x) - self.chi > 0.0
+            if value <= 0.5 * self.tol or (value > 0.5 * last and (active == before).all()):
                 break
-            active = mu + self.times(x) - self.chi > 0.0
-            mu = np.where(active, mu, 0.0)
+            mu, last = np.where(active, mu, 0.0), value
+        if self.best > self.tol >= 1.1 * max(self.residuals[:2]) and self.best <= WIDE:
+            states = closings(self.qp, self.state.copy(), self.tol)
+            return any(self.keep(s) <= self.tol for s in states)
         return self.best <= self.tol
-
-
-def worse(qp: QP, point: Vector, residuals: Triple) -> Triple:
-    """Return the residuals of ``[x | y | z | z_box]``, or those of numpy's sums where larger.
-
-    Sums in another order round otherwise, and a claim has to hold for all: to the dual residual,
-    whose multipliers may be very large, its rounding is added.
-    """
-    n, m, p = qp.sizes
-    P, q, G, h, A, b, lb, ub = qp.arrays()
-    x, y, z, z_box = np.split(point, [n, n + p, n + p + m])
-    Px, down, up = P @ x, np.minimum(z_box, 0.0), np.maximum(z_box, 0.0)
-    rows, low, high = np.isfinite(h), np.isfinite(lb), np.isfinite(ub)
-    primal = max(np.abs(A @ x - b).max(initial=0.0), (G @ x - h).max(initial=0.0))
-    gap = x @ Px + q @ x + h[rows] @ z[rows] + b @ y + lb[low] @ down[low] + ub[high] @ up[high]
-    sizes = np.abs(z_box) + np.abs(G).T @ np.abs(z) + np.abs(A).T @ np.abs(y)
-    rounding = 0.25 * np.finfo(float).eps * sizes.max()
-    dual = np.abs(Px + q + G.T @ z + A.T @ y + z_box).max() + rounding
-    first, second, third = np.maximum(residuals, (primal, dual, abs(gap))).tolist()
-    return first, second, third
 
 
 def _length(v: Vector, dv: Vector) -> float:
