@@ -37,7 +37,10 @@ OPTIONS = {
         "eps_duality_gap_abs": tol, "eps_duality_gap_rel": 0.0,
     },
     "clarabel": lambda tol: {"tol_gap_abs": tol, "tol_gap_rel": 0.0, "tol_feas": tol},
-    "highs": lambda tol: {"primal_feasibility_tolerance": tol, "dual_feasibility_tolerance": tol},
+    "highs": lambda tol: {
+        "primal_feasibility_tolerance": tol, "dual_feasibility_tolerance": tol,
+        "time_limit": FAILED,
+    },
     "proxqp": lambda tol: {"eps_abs": tol, "eps_rel": 0.0, "check_duality_gap": True},
 }  # fmt: skip
 
