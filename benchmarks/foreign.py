@@ -104,6 +104,8 @@ def measure(
     title: str, problems: list[tuple[str, qpsolvers.Problem]], tol: float, warm: bool = False
 ) -> None:
     """Print a line for each solver: solved, false claims, times, and the names that failed."""
+    if not problems:
+        return
     print(f"\n{title}: {len(problems)} programs at {tol:g}")
     solve = {
         name: partial(qpsolvers.solve_problem, solver=name, **options(tol))

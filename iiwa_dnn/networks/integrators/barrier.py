@@ -16,7 +16,11 @@ which is smooth and holds the multipliers positive; at rest :math:`\mu_j (\chi -
 Its linearly implicit steps of length :math:`1/\delta`, with the slack :math:`\nu/\mu` as a variable
 s of its own, are those of a proximal interior-point method; as :math:`\nu` falls, its equilibrium
 moves to that of the projection network. From there on linearly implicit steps of the projection
-network itself settle what is left, on the rows that are active.
+network itself settle what is left, on the rows that are active. Each step's linear system is that
+of `iiwa_dnn.networks.integrators.eliminations`; variables whose bounds meet take no part.
+
+**Rounding.** Where rounding is all that is left of the gap, `iiwa_dnn.networks.integrators.closing`
+picks other multipliers within the tolerance. This is no step of a flow.
 
 Sources: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
 RAL-TR-2001-034; S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM
@@ -35,7 +39,7 @@ from iiwa_dnn.networks.integrators.closing import closings, worse
 from iiwa_dnn.networks.integrators.eliminations import elimination
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import LONG, kkt_point
 
 ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2), (1e-9, 0.9, 0.0))
 """Inverse of the steps' length [1/rho], share of the way to the boundary that is gone, and
@@ -61,7 +65,8 @@ NETWORK_STEPS = 10
 def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
     """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s.
 
-    Works in numpy and LAPACK: it is meant for large programs and for those that are left over.
+    Works in numpy, LAPACK and SuperLU: it is meant for large programs and for those left over.
+    From n = 64 on the residuals are the larger of those of two orders of the sums.
     """
     run = _Run(qp, state, point, tol)
     run.limit = max_systems
@@ -73,11 +78,13 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
     residuals, fixed = kkt_point(qp.data, *qp.sizes, state, point), qp.lb == qp.ub
     z_box, bounds = point[-qp.q.size :], state[-2 * qp.q.size :].reshape(2, -1)
     bounds[:, fixed] = np.maximum(z_box[fixed], 0.0), np.maximum(-z_box[fixed], 0.0)
-    return run.systems, run.time, *residuals
+    # Few terms: one order of the sum is as good as another.
+    long = qp.q.size >= LONG and run.best < np.inf
+    return run.systems, run.time, *(run.residuals if long else residuals)
 
 
 class _Run:
-    """The scaled program, its condensed system, and the best point so far."""
+    """The scaled program, its linear system, and the best point so far."""
 
     def __init__(self, qp: QP, state: Vector, point: Vector, tol: float) -> None:
         self.qp, self.state, self.point, self.tol = qp, state, point, tol
@@ -85,7 +92,7 @@ class _Run:
         self.residuals = (np.inf, np.inf, np.inf)
         # A variable whose bounds meet is a number; its multiplier is what the others leave over.
         self.moving, self.rows = np.flatnonzero(qp.lb < qp.ub), np.flatnonzero(np.isfinite(qp.h))
-        rest = np.where(qp.lb < qp.ub, 0.0, qp.lb)
+        self.rest = rest = np.where(qp.lb < qp.ub, 0.0, qp.lb)
         P, G = qp.P[self.moving], qp.G[self.rows]
         q, b, h = qp.q[self.moving] + P @ rest, qp.b - qp.A @ rest, qp.h[self.rows] - G @ rest
         self.system = elimination(*(v[:, self.moving] for v in (P, qp.A, G)))
@@ -164,6 +171,7 @@ class _Run:
         """
         n, m, p = self.qp.sizes
         s, z_u_l = np.zeros_like(self.state), np.split(mu, self.parts)
+        s[:n] = self.rest
         s[self.moving], s[n : n + p] = x * self.d, y * self.f / self.c
         s[n + p + self.rows] = z_u_l[0] * self.e / self.c
         bounds = s[n + p + m :].reshape(2, n)

@@ -32,14 +32,15 @@ def worse(qp: QP, point: Vector, residuals: Triple) -> Triple:
     n, m, p = qp.sizes
     P, q, G, h, A, b, lb, ub = qp.arrays()
     x, y, z, z_box = np.split(point, [n, n + p, n + p + m])
+    Px = P @ x
     primal = max(np.abs(A @ x - b).max(initial=0.0), (G @ x - h).max(initial=0.0))
     sizes = np.abs(z_box) + np.abs(G).T @ np.abs(z) + np.abs(A).T @ np.abs(y)
     rounding = 0.25 * np.finfo(float).eps * sizes.max()
-    dual = np.abs(P @ x + q + G.T @ z + A.T @ y + z_box).max() + rounding
+    dual = np.abs(Px + q + G.T @ z + A.T @ y + z_box).max() + rounding
     rows, low, high = np.isfinite(h), np.isfinite(lb), np.isfinite(ub)
     ends = lb[low] @ np.minimum(z_box, 0.0)[low], ub[high] @ np.maximum(z_box, 0.0)[high]
     # In qpsolvers' order.
-    gap = x @ (P @ x) + q @ x + h[rows] @ z[rows] + b @ y + ends[0] + ends[1]
+    gap = x @ Px + q @ x + h[rows] @ z[rows] + b @ y + ends[0] + ends[1]
     first, second, third = np.maximum(residuals, (primal, dual, abs(gap))).tolist()
     return first, second, third
 

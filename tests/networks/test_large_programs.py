@@ -1,0 +1,124 @@
+"""Large sparse programs, and those in which rounding alone is left of the gap."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import scipy.sparse as spa
+
+import iiwa_dnn
+from iiwa_dnn import QP
+from iiwa_dnn.networks.integrators import barrier
+from iiwa_dnn.networks.integrators.closing import closings
+from iiwa_dnn.networks.integrators.eliminations import Augmented, Condensed, elimination
+from iiwa_dnn.qp.residuals import accurate_gap, kkt_point
+
+
+def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
+    """Make a sparse program of balances and capacities from its solution, which is unique.
+
+    Some variables are fixed, some rows are limits from both sides, and q follows from the KKT
+    conditions with multipliers of 1e2 times `size`.
+    """
+    rng = np.random.default_rng([91, seed])
+    m, p = n // 4, n // 2
+    A, G = (spa.random(k, n, 0.02, random_state=rng).toarray() for k in (p, m))
+    A[np.arange(p), rng.permutation(n)[:p]] = 1.0
+    x = np.round(size * rng.uniform(0.0, 100.0, n) * (rng.uniform(size=n) < 0.7), 3)
+    P = np.diag(rng.uniform(0.1, 1.0, n))
+    lb, ub = np.where(rng.uniform(size=n) < 0.9, 0.0, -np.inf), np.full(n, np.inf)
+    fixed = rng.uniform(size=n) < 0.1
+    lb[fixed] = ub[fixed] = x[fixed]
+    h, active = G @ x + 1.0, np.arange(m) % 2 == 0
+    h[active] -= 1.0
+    z = np.where(active, rng.uniform(1.0, 100.0, m), 0.0) * size
+    y, at_zero = size * rng.uniform(-100.0, 100.0, p), (x == lb) & ~fixed
+    z_box = np.where(at_zero, -size * rng.uniform(1.0, 100.0, n), 0.0)
+    q = -(P @ x + A.T @ y + G.T @ z + z_box)
+    G, h = np.vstack([G, -G[active]]), np.concatenate([h, 10.0 - h[active]])
+    return QP(P, q, G, h, A, A @ x, lb, ub), x
+
+
+def test_both_eliminations_solve_the_whole_system() -> None:
+    rng = np.random.default_rng(5)
+    qp, _ = blend(0, 160)
+    (n, m, p), delta = qp.sizes, 1e-4
+    w, box = 10.0 ** rng.uniform(-3.0, 3.0, m), rng.uniform(0.1, 1.0, n)
+    right = [rng.standard_normal(k) for k in (n, p, m)]
+    assert type(elimination(qp.P.copy(), qp.A.copy(), qp.G.copy())) is Augmented
+    dense = rng.standard_normal((n, n))
+    assert type(elimination(dense, qp.A.copy(), qp.G.copy())) is Condensed
+    for kind in (Condensed, Augmented):
+        system = kind(qp.P.copy(), qp.A.copy(), qp.G.copy())
+        (d, f, e), c = system.equilibrate(qp.q)
+        P, A, G = (np.asarray(spa.csr_matrix(v).todense()) for v in system.matrices)
+        np.testing.assert_allclose(P, c * d[:, None] * qp.P * d, rtol=1e-12)
+        np.testing.assert_allclose(A, f[:, None] * qp.A * d, rtol=1e-12)
+        np.testing.assert_allclose(G, e[:, None] * qp.G * d, rtol=1e-12)
+        assert system.factor(w, box, delta)
+        found = np.concatenate(system.solve(*right))
+        zeros = np.zeros((p, m))
+        K = np.block(
+            [
+                [P + np.diag(box), A.T, G.T],
+                [A, -delta * np.eye(p), zeros],
+                [G, zeros.T, -np.diag(1.0 / w)],
+            ]
+        )
+        known = np.linalg.solve(K, np.concatenate(right))
+        np.testing.assert_allclose(found, known, rtol=1e-6, atol=1e-8 * np.abs(known).max())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sparse_programs_of_known_solution_settle(seed: int) -> None:
+    qp, x = blend(seed)
+    problem = qp.to_qpsolvers()
+    solution = iiwa_dnn.solve_problem(problem)
+    assert solution.found
+    assert solution.is_optimal(1e-9)
+    # No eigenvalue of P is below 0.1, and half of it times |dx|^2 is at most the gap.
+    np.testing.assert_allclose(solution.x, x, atol=np.sqrt(2e-9 / 0.1))
+
+
+def test_a_warm_start_from_the_barriers_state_is_at_rest() -> None:
+    qp, _ = blend(1)
+    solver = iiwa_dnn.DNNSolver()
+    assert solver.solve(qp).found
+    assert solver.solve(qp).iterations <= 2
+
+
+def test_the_accurate_gap_is_that_of_fractions() -> None:
+    qp, _ = blend(2, 80, size=1e4)
+    n, m, p = qp.sizes
+    state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
+    barrier.settle(qp, state, point, 1e-6, 100)
+    x, y, z, z_box = (
+        [Fraction(v) for v in part] for part in np.split(point, [n, n + p, n + p + m])
+    )
+    P, q, h, b = (np.vectorize(Fraction, otypes=[object])(v) for v in (qp.P, qp.q, qp.h, qp.b))
+    gap = sum(x[i] * (q[i] + sum(P[i] * x)) for i in range(n)) + sum(b * y) + sum(h * z)
+    for i in range(n):
+        end = qp.ub[i] if z_box[i] > 0 else qp.lb[i]
+        gap += Fraction(end) * z_box[i] if np.isfinite(end) else 0
+    assert accurate_gap(qp.data, n, m, p, point) == pytest.approx(float(gap), rel=1e-9, abs=1e-20)
+    residuals = qp.residuals(point[:n], point[n : n + p], point[n + p : n + p + m], point[-n:])
+    assert residuals.gap == abs(accurate_gap(qp.data, n, m, p, point))
+
+
+def test_gaps_of_rounding_are_closed() -> None:
+    closed = 0
+    for seed in range(6):
+        qp, x = blend(seed, 80, size=300.0)
+        n, m, p = qp.sizes
+        state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
+        # Terms of 1e9: a rounding of one is 1e-7.
+        barrier.settle(qp, state, point, 1e-6, 1000)
+        before = state.copy()
+        for s in closings(qp, state, 1e-8):
+            found = kkt_point(qp.data, n, m, p, s, point)
+            np.testing.assert_allclose(point[:n], x, rtol=1e-9, atol=1e-4)
+            if max(found) <= 1e-8:
+                closed += 1
+                break
+        np.testing.assert_array_equal(state, before)
+    assert closed >= 5
