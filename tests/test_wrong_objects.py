@@ -23,6 +23,35 @@ def step(target: Any) -> Any:
     return d.Controller(paper_robot(), d.DoubleIndicator()).step(PAPER_Q0, 0.0, target)
 
 
+class Programless:
+    def build_qp(self, conf: Any, target: Any) -> None: ...
+
+    def settings(self) -> dict[str, Any]:
+        return {}
+
+
+class Distant(d.Cost):
+    def quadratic(self, step: d.Step) -> Any:
+        return EYE, step.target("x").position
+
+
+class Overwriting(d.Cost):
+    def quadratic(self, step: d.Step) -> Any:
+        step.q[:] = 0.0
+
+
+class Plain(d.Reference):
+    """A path that is no dataclass."""
+
+    name = "plain"
+    period = 1.0
+
+    def displacement(self, t: Any) -> Any:
+        return np.zeros((*np.shape(t), 3))
+
+    velocity = displacement
+
+
 CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "reference class": (lambda: drive(reference=d.Heart), "reference: must be an iiwa_dnn.Ref"),
     "reference array": (lambda: drive(reference=EYE[0]), "reference: must be an iiwa_dnn.Ref"),
@@ -60,6 +89,10 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "record": (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
     "run": (lambda: d.failures("runs/heart"), "run: must be a record or its metrics"),
     "file": (lambda: d.Record.load(3), "3: "),
+    "no program": (lambda: drive(scheme=Programless()), "build_qp: must be an iiwa_dnn.QP, not No"),
+    "no such target": (
+        lambda: drive(scheme=d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'",
+    ),
 }  # fmt: skip
 
 
@@ -70,3 +103,28 @@ def test_a_wrong_object_is_refused_by_name(case: str) -> None:
         call()
     assert str(refused.value).startswith(said)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("dt", -1.0), ("mode", "x"), ("policy", None), ("scheme", None), ("robot", "iiwa7"),
+        ("reference", d.Heart), ("solver", d.ProjectionNetwork()),
+    ],
+)  # fmt: skip
+def test_an_attribute_of_a_controller_is_checked_as_its_argument_is(name: str, value: Any) -> None:
+    controller = d.Controller(paper_robot(), d.DoubleIndicator(), heart())
+    with pytest.raises(d.InvalidInputError, match=f"^{name}: must be"):
+        setattr(controller, name, value)
+    assert controller.step(PAPER_Q0, 0.0).ok
+
+
+def test_a_part_cannot_move_the_robot_that_it_is_asked_about() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        drive(scheme=d.Scheme([Overwriting()], [d.PositionTask()]))
+
+
+def test_a_path_needs_not_be_a_dataclass() -> None:
+    record = drive(reference=Plain().anchored(paper_start()), duration=0.01)
+    assert record.settings["reference"] == {"name": "plain"}
+    assert d.failures(record) == []

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +13,7 @@ from pinocchio import computeJointJacobians, updateFramePlacement, updateFramePl
 from iiwa_dnn import checks
 from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.command import Command
-from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far
+from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far, warn_if_outside
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.recourse import answer
@@ -73,24 +73,17 @@ class Controller:
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
-        checks.one_of("mode", mode, MODES)
-        checks.one_of("policy", policy, POLICIES)
-        checks.positive("dt", dt)
-        self.robot = checks.instance("robot", robot, Robot)
-        self.scheme = checks.offers("scheme", scheme, "build_qp", "settings")
-        by_frame(reference, robot.tip)
-        self.reference, self.dt, self.mode, self.policy = reference, dt, mode, policy
-        given = DNNSolver(tol=tol) if solver is None else solver
-        self.solver = checks.instance("solver", given, DNNSolver)
-        self.delay = 0.0
-        self._q = np.zeros(robot.dof)
-        self._begun = False
+        self.mode, self.policy, self.dt = mode, policy, dt
+        self.robot, self.scheme, self.reference = robot, scheme, reference
+        self.solver = DNNSolver(tol=tol) if solver is None else solver
+        self.delay, self._begun, self._q = 0.0, False, np.zeros(robot.dof)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        object.__setattr__(self, name, value)
-        if name in _PLANNED:
+        if check := _CHECKS.get(name):
+            check(name, value)
             self._plan: Plan | None = None
             self._room: Room | None = None
+        object.__setattr__(self, name, value)
 
     def step(
         self,
@@ -168,10 +161,8 @@ class Controller:
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, where the scheme has none."""
-        if problem := self.robot.outside(start.q):
-            warnings.warn(f"the start posture {problem}", stacklevel=4)
-        anchored = getattr(self.scheme, "anchored", None)
-        if anchored is not None:
+        warn_if_outside(start, stacklevel=4)
+        if (anchored := getattr(self.scheme, "anchored", None)) is not None:
             self.scheme = anchored(start)
         self._q[:] = start.q
         self._begun = True
@@ -347,4 +338,13 @@ class Controller:
         return QP.from_data(data, plan.sizes)
 
 
-_PLANNED = frozenset({"robot", "scheme", "reference", "dt", "mode", "policy", "solver"})
+# What a plan depends on; a change of it is checked, and makes another plan.
+_CHECKS: dict[str, Callable[[str, Any], object]] = {
+    "robot": partial(checks.instance, kind=Robot),
+    "scheme": lambda name, value: checks.offers(name, value, "build_qp", "settings"),
+    "reference": lambda name, value: by_frame(value, ""),
+    "dt": checks.positive,
+    "mode": partial(checks.one_of, choices=MODES),
+    "policy": partial(checks.one_of, choices=POLICIES),
+    "solver": partial(checks.instance, kind=DNNSolver),
+}

@@ -49,6 +49,12 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
     return {name: given[name] for name in frames}
 
 
+def warn_if_outside(start: Configuration, stacklevel: int) -> None:
+    """Warn where a motion begins outside the joint limits."""
+    if problem := start.robot.outside(start.q):
+        warnings.warn(f"the start posture {problem}", stacklevel=stacklevel + 1)
+
+
 def warn_if_far(
     scheme: Scheme, frames: Sequence[str], start: Configuration, targets: Vector, stacklevel: int
 ) -> None:

@@ -117,6 +117,7 @@ class Plan:
         work = np.concatenate([head, network, inertia, constants, np.zeros(3 * n + m + p)])
         self.past, self.q = work[1 : 1 + 2 * dof], work[1 + 2 * dof : 1 + 3 * dof]
         self.last = self.past[:dof]
+        self._shown = checks.read_only(self.q), checks.read_only(self.last)  # to parts of one's own
         self._restrain(dt)
         self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
         self._constants = work[1 + 3 * dof + NETWORK + inertia.size :][: constants.size]
@@ -225,7 +226,7 @@ class Plan:
         self.assemble(data, targets)
         if self.layout.custom:
             by_name = {name: targets[18 * i : 18 * i + 18] for i, name in enumerate(self.frames)}
-            step = Step(self.kinematics, by_name, t, self._dt, self.q, self.last)
+            step = Step(self.kinematics, by_name, t, self._dt, *self._shown)
             fill(self.layout, data, step, self._unseen)
             self._unseen = False
         if self.accelerates:
@@ -236,7 +237,8 @@ class Plan:
 
 def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:
     """Sizes of the programs of a scheme that builds them in a way of its own, from one of them."""
-    sizes = scheme.build_qp(conf, Target(conf.position, conf.rotation)).sizes
+    qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
+    sizes = checks.instance("build_qp", qp, QP).sizes
     dof, slack = conf.robot.dof, getattr(scheme, "slack", 0)
     if sizes[0] != dof + slack:
         problem = f"built a program in {sizes[0]} variables for {dof} joints and {slack} slacks"

@@ -222,8 +222,8 @@ class Reference(ABC):
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, in JSON types, to make the path again, not anchored."""
-        parameters = [f.name for f in fields(self) if f.init]  # type: ignore[arg-type]
-        values = {name: getattr(self, name) for name in parameters}
+        parts = fields(self) if "__dataclass_fields__" in dir(self) else ()  # type: ignore[arg-type]
+        values = {part.name: getattr(self, part.name) for part in parts if part.init}
         return {"name": self.name} | {name: _plain(value) for name, value in values.items()}
 
 

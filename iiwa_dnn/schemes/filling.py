@@ -85,7 +85,8 @@ def _shaped(
     if array.shape != shape:
         problem = f"{name} has shape {array.shape}, not {shape}"
         raise InvalidInputError(type(part).__name__, problem, array)
-    if not (np.isfinite(array) | (array == idle)).all():
+    finite = np.isfinite(array)
+    if not finite.all() and not (finite | (array == idle)).all():
         problem = f"{name} holds {'NaN' if np.isnan(array).any() else 'an infinite number'}"
         raise InvalidInputError(type(part).__name__, problem, array)
     return array

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pinocchio import rnea
 
 from iiwa_dnn.checks import read_only
+from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
@@ -66,8 +67,15 @@ class Step:
         return FrameState(*self._kinematics.frame(self.robot.tip if name is None else name))
 
     def target(self, name: str | None = None) -> Target:
-        """Return the target of a frame that some task tracks; None stands for the tip."""
-        return Target.from_data(self._targets[self.robot.tip if name is None else name])
+        """Return the target of a frame that some task tracks; None stands for the tip.
+
+        Raises:
+            NotFoundError: No task tracks a frame of that name.
+        """
+        frame = self.robot.tip if name is None else name
+        if frame not in self._targets:
+            raise NotFoundError("target of frame", frame, self._targets)
+        return Target.from_data(self._targets[frame])
 
     @property
     def inertia(self) -> Matrix:

@@ -81,7 +81,8 @@ class Simulation:
         checks.not_negative("integral_gain", integral_gain)
         checks.integer("seed", seed, 0)
         self.steps = steps = step_count(length, dt)
-        self._plant = IdealPlant() if plant is None else checks.offers("plant", plant, "start")
+        self._plant = IdealPlant() if plant is None else plant
+        checks.offers("plant", self._plant, "start", "read", "move", "packages", "settings")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
         self._robot, self._dt, self._seed = robot, dt, seed
         self._q0 = start.arrays[0]
