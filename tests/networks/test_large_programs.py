@@ -112,9 +112,10 @@ def test_gaps_of_rounding_are_closed() -> None:
         n, m, p = qp.sizes
         state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
         # Terms of 1e9: a rounding of one is 1e-7.
-        barrier.settle(qp, state, point, 1e-6, 1000)
+        barrier.settle(qp, state, point, 1e-5, 1000)
         before = state.copy()
-        for s in closings(qp, state, 1e-8):
+        dual = kkt_point(qp.data, n, m, p, state, point)[1]
+        for s in closings(qp, state, 1e-8 - dual):
             found = kkt_point(qp.data, n, m, p, s, point)
             np.testing.assert_allclose(point[:n], x, rtol=1e-9, atol=1e-4)
             if max(found) <= 1e-8:

@@ -93,9 +93,12 @@ class _Run:
         # A variable whose bounds meet is a number; its multiplier is what the others leave over.
         self.moving, self.rows = np.flatnonzero(qp.lb < qp.ub), np.flatnonzero(np.isfinite(qp.h))
         self.rest = rest = np.where(qp.lb < qp.ub, 0.0, qp.lb)
-        P, G = qp.P[self.moving], qp.G[self.rows]
+        # Views where all take part, without a copy.
+        columns = slice(None) if self.moving.size == qp.q.size else self.moving
+        rows = slice(None) if self.rows.size == qp.h.size else self.rows
+        P, G = qp.P[columns], qp.G[rows]
         q, b, h = qp.q[self.moving] + P @ rest, qp.b - qp.A @ rest, qp.h[self.rows] - G @ rest
-        self.system = elimination(*(v[:, self.moving] for v in (P, qp.A, G)))
+        self.system = elimination(*(v[:, columns] for v in (P, qp.A, G)))
         (self.d, self.f, self.e), self.c = self.system.equilibrate(q)
         self.P, self.A, self.G = self.system.matrices
         self.AT, self.GT = self.A.T, self.G.T
@@ -262,7 +265,7 @@ class _Run:
                 break
             mu, last = np.where(active, mu, 0.0), value
         if self.best > self.tol >= 1.1 * max(self.residuals[:2]) and self.best <= WIDE:
-            states = closings(self.qp, self.state.copy(), self.tol)
+            states = closings(self.qp, self.state.copy(), self.tol - self.residuals[1])
             return any(self.keep(s) <= self.tol for s in states)
         return self.best <= self.tol
 

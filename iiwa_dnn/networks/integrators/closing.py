@@ -17,10 +17,10 @@ from iiwa_dnn.qp.layout import Triple, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import accurate_gap, kkt_point
 
-TRIALS = 20
+TRIALS = 40
 """States of one search."""
-SHARE = 0.3
-"""Largest change of the dual residual by a random change of the multipliers, over the tolerance."""
+SHARE = 0.5
+"""Change of the dual residual by a random change of the multipliers, over the room for it."""
 
 
 def worse(qp: QP, point: Vector, residuals: Triple) -> Triple:
@@ -45,11 +45,11 @@ def worse(qp: QP, point: Vector, residuals: Triple) -> Triple:
     return first, second, third
 
 
-def closings(qp: QP, state: Vector, tol: float) -> Iterator[Vector]:
+def closings(qp: QP, state: Vector, room: float) -> Iterator[Vector]:
     """Yield states near `state` (3n + m + p,) whose gap is zero but for rounding.
 
-    From the second on, x moves by a rounding and all multipliers a little, each time in another
-    direction, so that the sums round in another way.
+    The dual residual grows by less than `room`. From the second on, x moves by a rounding and all
+    multipliers a little, each time in another direction, so that the sums round in another way.
     """
     n, m, p = qp.sizes
     point, rng, of_rows = np.empty(2 * n + m + p), np.random.default_rng(0), slice(n, n + p + m)
@@ -66,7 +66,7 @@ def closings(qp: QP, state: Vector, tol: float) -> Iterator[Vector]:
         s = state.copy()
         if trial:
             change = movable * rng.uniform(-1.0, 1.0, p + m)
-            s[of_rows] += SHARE * tol / np.abs(rows.T @ change).max() * change
+            s[of_rows] += SHARE * room / np.abs(rows.T @ change).max() * change
             s[:n] *= 1.0 + np.finfo(float).eps * inside * rng.integers(-1, 2, n)
         for _ in range(2):
             kkt_point(qp.data, n, m, p, s, point)

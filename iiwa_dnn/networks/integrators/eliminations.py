@@ -82,8 +82,8 @@ class Condensed(_Matrices):
     """Cholesky factor of P + B + eps I + A^T A/delta + G^T W G, dense."""
 
     def __init__(self, *matrices: Matrix) -> None:
-        """Keep the matrices, (n, n), (p, n) and (m, n), which are copies."""
-        self.matrices, self.delta = matrices, 0.0
+        """Copy the matrices, (n, n), (p, n) and (m, n)."""
+        self.matrices, self.delta = tuple(matrix.copy() for matrix in matrices), 0.0
 
     @staticmethod
     def largest(matrix: Matrix, axis: int) -> Vector:  # noqa: D102
