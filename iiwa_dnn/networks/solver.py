@@ -80,7 +80,7 @@ class DNNSolver:
         """
         checks.positive("tol", tol)
         given: object = network
-        if not isinstance(given, Network | None):
+        if not (given is None or isinstance(given, Network)):
             problem = f"must be an object of a Network's class, not {network!r}"
             raise InvalidInputError("network", problem, network)
         self._kept: deque[tuple[Network, Sizes, Vector]]
@@ -179,7 +179,7 @@ class DNNSolver:
                 primal, dual, gap = settled[2:]
         # The state is not kept without a solution: the multipliers grow without bound then, or are
         # no numbers any more, and would spoil every later call.
-        if not within(primal, dual, gap, tol):
+        if not (primal <= tol and dual <= tol and gap <= tol):
             if not math.isfinite(primal + dual + gap):
                 return Solution(point, sizes, Status.NOT_FINITE, *settled)
             if n >= LARGE:
@@ -274,6 +274,9 @@ class DNNSolver:
                     return state
             except IndexError:  # another thread was quicker
                 pass
+        if type(network) is ProjectionNetwork:  # its own state, without a copy and a check
+            n, m, p = qp.sizes
+            return np.zeros(3 * n + m + p)
         state = np.array(network.initial_state(qp), dtype=np.float64)
         check_size("network", state, network.state_size(qp))
         return state
@@ -300,13 +303,16 @@ def solve_problem(
     Raises:
         InvalidInputError: The problem is malformed or not convex; the message names the argument.
     """
-    qp = problem if isinstance(problem, QP) else QP.from_qpsolvers(problem)
+    if isinstance(problem, QP):
+        qp, problem = problem, problem.to_qpsolvers()
+    else:
+        qp = QP.from_qpsolvers(problem)
     qp.check_values()
-    given = DNNSolver(tol=tol) if solver is None else solver
-    solver = checks.instance("solver", given, DNNSolver)
-    solver.reset()
-    stated = qp.to_qpsolvers() if isinstance(problem, QP) else problem
-    return solver.solve(qp).to_qpsolvers(stated)
+    if solver is None:
+        solver = DNNSolver(tol=tol)
+    else:
+        checks.instance("solver", solver, DNNSolver).reset()
+    return solver.solve(qp).to_qpsolvers(problem)
 
 
 provide(solve_problem)

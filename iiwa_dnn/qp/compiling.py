@@ -34,7 +34,9 @@ class Watch(event.Listener):
         """Note when the outermost function begins."""
         if self._depth == 0:
             self._began = time.perf_counter()
-            own = event.data["dispatcher"].py_func.__module__.startswith("iiwa_dnn.")
+            function = event.data["dispatcher"].py_func
+            # The user's own functions may come from a string and have no module.
+            own = str(function.__module__).startswith("iiwa_dnn.")
             if own and not self.quiet and sys.stderr.isatty():
                 print(NOTICE, file=sys.stderr, flush=True)
                 self.quiet = True
@@ -77,6 +79,33 @@ class Apart:
         made: Any = self._function.overloads[self._arguments]
         address: int = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
         return address
+
+
+class Exactly:
+    """A function that is compiled, at its first call, for one signature and for no other.
+
+    A call is quicker than where numba chooses among several signatures, and arguments of other
+    types do not make it compile anew.
+
+    Attributes:
+        call: Calls it; arguments of other types raise TypeError.
+    """
+
+    def __init__(self, function: Callable[..., Any], signature: str) -> None:
+        """Take a function and numba's signature, as `Apart` does; M is a matrix, row by row."""
+        self._function: Any = function
+        types = signature.replace("M", "float64[:,::1]").replace("V", "float64[::1]")
+        self._arguments, _ = normalize_signature(types)
+        self.call: Callable[..., Any] = self._first_call
+
+    def _first_call(self, *arguments: Any) -> Any:
+        """Compile the function, or read it from disk, and let it be called itself from now on."""
+        if not isinstance(self._function, Dispatcher):  # NUMBA_DISABLE_JIT
+            raise TypeError("is not compiled")
+        self._function.compile(self._arguments)
+        self._function.disable_compile()
+        self.call = self._function
+        return self.call(*arguments)
 
 
 def _entrance(expected: Any, result: Any) -> Any:

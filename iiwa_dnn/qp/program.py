@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.compiling import Exactly
 from iiwa_dnn.qp.dense import ROUNDING, is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, offsets
 from iiwa_dnn.qp.residuals import point_residuals
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 __all__ = ["FIELDS", "QP", "Matrix", "Vector"]
 
 _FLOAT = np.dtype(np.float64)
+_NO_ROWS, _NOTHING = np.empty((0, 0)), np.empty(0)
+_ABSENT = (_NO_ROWS, _NOTHING) * 3 + (_NOTHING, _NOTHING)
 
 FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 """Names of the eight arrays, in the order of `QP.data` and of qpsolvers."""
@@ -51,23 +54,6 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
         (slice(start, end), shape)
         for start, end, shape in zip([0, *ends], ends, shapes, strict=False)
     )
-
-
-@lru_cache
-def _absent(sizes: Sizes) -> tuple[list[int], list[Vector]]:
-    """Count the numbers of each field; return what stands for a field that is left out."""
-    n, counts = sizes[0], [place.stop - place.start for place, _ in _places(sizes)]
-    empty = np.empty(0)
-    return counts, [
-        empty,
-        empty,
-        empty,
-        empty,
-        empty,
-        empty,
-        np.full(n, -np.inf),
-        np.full(n, np.inf),
-    ]
 
 
 class _Field:
@@ -128,22 +114,21 @@ class QP:
         """
         given = (P, q, G, h, A, b, lb, ub)
         arrays = [
-            v if v is None or (type(v) is np.ndarray and v.dtype is _FLOAT) else numbers(name, v)
-            for name, v in zip(FIELDS, given, strict=True)
+            empty
+            if v is None
+            else v
+            if type(v) is np.ndarray and v.dtype == _FLOAT and v.flags.carray
+            else np.array(numbers(name, v), order="C")
+            for name, v, empty in zip(FIELDS, given, _ABSENT, strict=True)
         ]
-        if arrays[1] is None or arrays[1].size == 0:
-            raise InvalidInputError("q", "is empty", q)
-        require_pairs(arrays)
-        n = arrays[1].size
-        _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
-        self.sizes = n, m, p
-        counts, absent = _absent(self.sizes)
-        full = [absent[i] if array is None else array for i, array in enumerate(arrays)]
-        if [array.size for array in full] != counts:
-            for name, array, (_, shape) in zip(FIELDS, full, _places(self.sizes), strict=True):
-                if array.size != math.prod(shape):
-                    raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
-        self.data = np.concatenate(full, axis=None)
+        P, q, G, h, A, b, _, _ = arrays
+        self.data, self.sizes = _NOTHING, (q.size, h.size, b.size)
+        if P.ndim == G.ndim == A.ndim == 2:
+            with suppress(TypeError):  # a vector of another dimension
+                self.data = _pack.call(*arrays, lb is None, ub is None)
+        if not self.data.size:
+            stated = [None if w is None else v for v, w in zip(arrays, given, strict=True)]
+            self.data, self.sizes = _gather(stated)
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
@@ -265,6 +250,62 @@ def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
         if not (data[i] <= data[i + n] and data[i] < np.inf and data[i + n] > -np.inf):
             return False
     return is_convex(data, n, np.empty(n * n))
+
+
+@compiled
+def _packed(
+    P: Matrix, q: Vector, G: Matrix, h: Vector, A: Matrix, b: Vector, lb: Vector, ub: Vector,
+    no_lb: bool, no_ub: bool,
+) -> Vector:  # fmt: skip
+    """Write the arrays into one; returns an empty one unless their shapes agree."""
+    n, m, p = q.size, h.size, b.size
+    _, at_G, at_A, at_lb = offsets(n, m, p)
+    fits = n > 0 and P.shape == (n, n) and len(G) == m and len(A) == p
+    fits = fits and (m == 0 or G.shape[1] == n) and (p == 0 or A.shape[1] == n)
+    fits = fits and (no_lb or lb.size == n) and (no_ub or ub.size == n)
+    data = np.empty(at_lb + 2 * n if fits else 0)
+    if fits:
+        _put(P, data, 0)
+        for i in range(n):
+            data[n * n + i] = q[i]
+            data[at_lb + i] = -np.inf if no_lb else lb[i]
+            data[at_lb + n + i] = np.inf if no_ub else ub[i]
+        _put(G, data, at_G)
+        for j in range(m):
+            data[at_G + m * n + j] = h[j]
+        _put(A, data, at_A)
+        for j in range(p):
+            data[at_A + p * n + j] = b[j]
+    return data
+
+
+@compiled
+def _put(rows: Matrix, data: Vector, at: int) -> None:
+    """Write a matrix into `data`, row by row, from `at` on."""
+    columns = np.uint64(rows.shape[1])
+    for i in range(len(rows)):
+        start = np.uint64(at) + np.uint64(i) * columns
+        for k in range(columns):
+            data[start + k] = rows[i, k]
+
+
+_pack = Exactly(_packed, "V(M, V, M, V, M, V, V, V, b1, b1)")
+
+
+def _gather(arrays: Sequence[NDArray[np.float64] | None]) -> tuple[Vector, Sizes]:
+    """Check the shapes of the arguments of `QP`, a row as a vector too; return data and sizes."""
+    if arrays[1] is None or arrays[1].size == 0:
+        raise InvalidInputError("q", "is empty", arrays[1])
+    require_pairs(arrays)
+    n = arrays[1].size
+    _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
+    free, empty = np.full(n, np.inf), np.empty(0)
+    absent = (empty, empty, empty, empty, empty, empty, -free, free)
+    full = [v if array is None else array for v, array in zip(absent, arrays, strict=True)]
+    for name, array, (_, shape) in zip(FIELDS, full, _places((n, m, p)), strict=True):
+        if array.size != math.prod(shape):
+            raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
+    return np.concatenate(full, axis=None), (n, m, p)
 
 
 def numbers(name: str, value: Any) -> NDArray[np.float64]:

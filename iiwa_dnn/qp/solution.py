@@ -137,14 +137,15 @@ class Solution(NamedTuple):
             if self.certificate is not None:
                 extras["certificate"] = self.certificate
             return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
-        x, bounded = self.x, problem.lb is not None or problem.ub is not None
+        (n, m, p), point = self.sizes, self.point
+        x, bounded = point[:n], problem.lb is not None or problem.ub is not None
         return qpsolvers.Solution(
             problem,
             extras,
-            found=True,
-            obj=float(x.dot(0.5 * problem.P.dot(x) + problem.q)),
-            x=x,
-            y=self.y,
-            z=self.z,
-            z_box=self.z_box if bounded else np.empty(0),
+            True,
+            float(0.5 * x.dot(problem.P.dot(x)) + x.dot(problem.q)),
+            x,
+            point[n : n + p],
+            point[n + p : n + p + m],
+            point[n + p + m :] if bounded else np.empty(0),
         )

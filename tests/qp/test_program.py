@@ -1,5 +1,7 @@
 """The program's container, its checks and its judgement of a solution."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import qpsolvers
@@ -34,6 +36,29 @@ def test_sparse_and_single_row_problems_are_taken() -> None:
     qp = QP.from_qpsolvers(problem)
     np.testing.assert_array_equal(qp.P, np.eye(3))
     assert qp.G.shape == (1, 3)
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        np.asfortranarray,
+        np.ndarray.tolist,
+        lambda a: np.repeat(a, 2, axis=-1)[..., ::2],
+        lambda a: np.array(a, dtype=">f8"),
+        lambda a: np.array(a, dtype=np.float32),
+        lambda a: np.array(a, dtype=np.int8),
+        lambda a: (a.setflags(write=False), a)[1],
+    ],
+    ids=["columns", "lists", "slices", "swapped", "single", "integers", "read-only"],
+)
+def test_arrays_of_every_kind_make_the_same_program(kind: Callable[[np.ndarray], object]) -> None:
+    rng = np.random.default_rng(0)
+    shapes = ((3, 3), (3,), (4, 3), (4,), (2, 3), (2,), (3,), (3,))
+    arrays = [rng.integers(-9, 9, shape).astype(float) for shape in shapes]
+    expected = np.concatenate([array.ravel() for array in arrays])
+    qp = QP(*[kind(array.copy()) for array in arrays])
+    assert qp.sizes == (3, 4, 2)
+    np.testing.assert_array_equal(qp.data, expected)
 
 
 def test_fields_are_views_of_one_array_and_copies_of_what_was_given() -> None:
