@@ -81,33 +81,6 @@ class Apart:
         return address
 
 
-class Exactly:
-    """A function that is compiled, at its first call, for one signature and for no other.
-
-    A call is quicker than where numba chooses among several signatures, and arguments of other
-    types do not make it compile anew.
-
-    Attributes:
-        call: Calls it; arguments of other types raise TypeError.
-    """
-
-    def __init__(self, function: Callable[..., Any], signature: str) -> None:
-        """Take a function and numba's signature, as `Apart` does; M is a matrix, row by row."""
-        self._function: Any = function
-        types = signature.replace("M", "float64[:,::1]").replace("V", "float64[::1]")
-        self._arguments, _ = normalize_signature(types)
-        self.call: Callable[..., Any] = self._first_call
-
-    def _first_call(self, *arguments: Any) -> Any:
-        """Compile the function, or read it from disk, and let it be called itself from now on."""
-        if not isinstance(self._function, Dispatcher):  # NUMBA_DISABLE_JIT
-            raise TypeError("is not compiled")
-        self._function.compile(self._arguments)
-        self._function.disable_compile()
-        self.call = self._function
-        return self.call(*arguments)
-
-
 def _entrance(expected: Any, result: Any) -> Any:
     """Make the call that enters a function of these types at an address."""
 

@@ -16,7 +16,7 @@ ROUNDING = 1e-5
 """Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry: a
 matrix that was computed in single precision has them. The answer is a KKT point of P as given."""
 
-TWO, THREE = np.uint64(2), np.uint64(3)
+TWO, THREE, FOUR = np.uint64(2), np.uint64(3), np.uint64(4)
 
 # reassoc lets a sum run in several lanes. Comparisons are left alone, so a NaN stays a NaN.
 SUMS = {"contract", "reassoc"}
@@ -38,6 +38,46 @@ def add_scaled(out: Vector, factor: float, a: Vector, at_a: int, n: int) -> None
     start = np.uint64(at_a)
     for i in range(np.uint64(n)):
         out[i] += factor * a[start + i]
+
+
+@njit(cache=True, error_model="numpy", fastmath=SUMS)
+def rows_dot(data: Vector, at: int, rows: int, n: int, x: Vector, out: Vector, at_out: int) -> None:
+    """Write the products of so many rows (n,) of `data` from `at` on with x[:n] into `out`."""
+    size, a, j = np.uint64(n), np.uint64(at), np.uint64(at_out)
+    end = j + np.uint64(rows)
+    while j + THREE < end:  # four rows at once: fewer loads for each product
+        b, c, d = a + size, a + TWO * size, a + THREE * size
+        first, second, third, fourth = 0.0, 0.0, 0.0, 0.0
+        for k in range(size):
+            factor = x[k]
+            first += data[a + k] * factor
+            second += data[b + k] * factor
+            third += data[c + k] * factor
+            fourth += data[d + k] * factor
+        out[j], out[j + ONE], out[j + TWO], out[j + THREE] = first, second, third, fourth
+        a, j = d + size, j + FOUR
+    while j < end:
+        first = 0.0
+        for k in range(size):
+            first += data[a + k] * x[k]
+        out[j] = first
+        a, j = a + size, j + ONE
+
+
+@njit(cache=True, error_model="numpy", fastmath=SUMS | {"nnan", "nsz"})
+def _largest(values: Vector, n: int) -> float:
+    largest = 0.0
+    for k in range(np.uint64(n)):
+        value = abs(values[k])
+        largest = value if value > largest else largest
+    return largest
+
+
+@compiled
+def largest_magnitude(values: Vector, n: int) -> float:
+    """Return the largest of the first n magnitudes, NaN where one is NaN or infinite."""
+    # Without regard to NaN, a maximum is taken in several lanes.
+    return _largest(values, n) if all_finite(values, 0, n) else np.nan
 
 
 @compiled
@@ -113,6 +153,25 @@ def factor_solve(K: Vector, n: int, rhs: Vector, out: Vector) -> None:
 
 
 @compiled
+def add_outers(
+    out: Vector, data: Vector, n: int, a: int, b: int, c: int, d: int,
+    one: float, two: float, three: float, four: float,
+) -> None:  # fmt: skip
+    """Do what `add_outer` does for four rows of `data` at once, which begin at a, b, c and d."""
+    size = np.uint64(n)
+    first, second, third, fourth = np.uint64(a), np.uint64(b), np.uint64(c), np.uint64(d)
+    for i in range(size):
+        row = i * size
+        v, w = one * data[first + i], two * data[second + i]
+        y, z = three * data[third + i], four * data[fourth + i]
+        for k in range(i + ONE):
+            out[row + k] += (
+                v * data[first + k] + w * data[second + k]
+                + y * data[third + k] + z * data[fourth + k]
+            )  # fmt: skip
+
+
+@compiled
 def extreme_eigenvalues(K: Vector, n: int) -> tuple[float, float]:
     """Compute the smallest and the largest eigenvalue of K (n n,), which is overwritten.
 
@@ -162,15 +221,26 @@ def is_convex(data: Vector, n: int, K: Vector) -> bool:
         n: Number of variables.
         K: Scratch, (n n,).
     """
-    scale = 0.0
-    for i in range(n * n):
-        scale = larger(scale, abs(data[i]))
-    for i in range(n):
+    size, scale, asymmetry = np.uint64(n), 0.0, 0.0
+    for i in range(size):  # of a matrix that is positive semidefinite, the largest are here
+        scale = larger(scale, data[i * size + i])
+    for i in range(size):
+        row = i * size
         for k in range(i):
-            if not abs(data[i * n + k] - data[k * n + i]) <= ROUNDING * scale:
-                return False
-    for i in range(n * n):
-        K[i] = data[i]
-    for i in range(n):
-        K[i * n + i] += ROUNDING * scale
-    return scale == 0.0 or cholesky_factor(K, n)
+            asymmetry = larger(asymmetry, abs(data[row + k] - data[k * size + i]))
+            K[row + k] = data[row + k]
+        K[row + i] = data[row + i] + ROUNDING * scale
+    if scale == 0.0:  # no cost matrix at all, or none that is semidefinite
+        for k in range(size * size):
+            asymmetry = larger(asymmetry, abs(data[k]))
+        return asymmetry == 0.0
+    return asymmetry <= ROUNDING * scale and cholesky_factor(K, n)
+
+
+@njit(cache=True, error_model="numpy", fastmath=SUMS)
+def all_finite(data: Vector, start: int, end: int) -> bool:
+    """Tell whether data[start:end] holds neither NaN nor infinity: either times zero is NaN."""
+    total = 0.0
+    for k in range(np.uint64(start), np.uint64(end)):
+        total += data[k] * 0.0
+    return total == 0.0

@@ -23,8 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.compiling import Exactly
-from iiwa_dnn.qp.dense import ROUNDING, is_convex
+from iiwa_dnn.qp.dense import ROUNDING, all_finite, is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, offsets
 from iiwa_dnn.qp.residuals import point_residuals
 from iiwa_dnn.qp.solution import Residuals
@@ -35,25 +34,34 @@ if TYPE_CHECKING:
 __all__ = ["FIELDS", "QP", "Matrix", "Vector"]
 
 _FLOAT = np.dtype(np.float64)
-_NO_ROWS, _NOTHING = np.empty((0, 0)), np.empty(0)
-_ABSENT = (_NO_ROWS, _NOTHING) * 3 + (_NOTHING, _NOTHING)
 
 FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 """Names of the eight arrays, in the order of `QP.data` and of qpsolvers."""
 
 
 @lru_cache
+def _shapes(sizes: Sizes) -> list[tuple[int, ...]]:
+    """Shape of each field."""
+    n, m, p = sizes
+    return [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
+
+
+@lru_cache
 def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
     """Place and shape of each field in `QP.data`."""
-    n, m, p = sizes
-    shapes: tuple[tuple[int, ...], ...] = (
-        (n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)
-    )  # fmt: skip
+    shapes = _shapes(sizes)
     ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
     return tuple(
         (slice(start, end), shape)
         for start, end, shape in zip([0, *ends], ends, shapes, strict=False)
     )
+
+
+@lru_cache
+def _absent(n: int) -> list[NDArray[np.float64]]:
+    """Return what stands for each field that is left out."""
+    no_rows, nothing, free = np.empty((0, n)), np.empty(0), np.full(n, np.inf)
+    return [nothing, nothing, no_rows, nothing, no_rows, nothing, -free, free]
 
 
 class _Field:
@@ -112,23 +120,22 @@ class QP:
         Raises:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
-        given = (P, q, G, h, A, b, lb, ub)
+        n = np.size(q)
         arrays = [
-            empty
+            absent
             if v is None
             else v
-            if type(v) is np.ndarray and v.dtype == _FLOAT and v.flags.carray
-            else np.array(numbers(name, v), order="C")
-            for name, v, empty in zip(FIELDS, given, _ABSENT, strict=True)
+            if type(v) is np.ndarray and v.dtype == _FLOAT
+            else numbers(name, v)
+            for name, v, absent in zip(FIELDS, (P, q, G, h, A, b, lb, ub), _absent(n), strict=True)
         ]
-        P, q, G, h, A, b, _, _ = arrays
-        self.data, self.sizes = _NOTHING, (q.size, h.size, b.size)
-        if P.ndim == G.ndim == A.ndim == 2:
-            with suppress(TypeError):  # a vector of another dimension
-                self.data = _pack.call(*arrays, lb is None, ub is None)
-        if not self.data.size:
-            stated = [None if w is None else v for v, w in zip(arrays, given, strict=True)]
-            self.data, self.sizes = _gather(stated)
+        self.sizes = sizes = n, arrays[3].size, arrays[5].size
+        if [v.shape for v in arrays] != _shapes(sizes):  # rarely
+            self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
+        try:  # a quarter of the time of numpy's own, for arrays stored row by row
+            self.data = np.frombuffer(bytearray().join(arrays))  # type: ignore[arg-type]
+        except TypeError:
+            self.data = np.concatenate(arrays, axis=None)
 
     @classmethod
     def from_data(cls, data: Vector, sizes: Sizes) -> QP:
@@ -242,9 +249,10 @@ def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
     """Tell whether `QP.check_values` would find nothing, in one pass over the numbers."""
     _, at_G, at_A, at_lb = offsets(n, m, p)
     at_h = at_G + m * n
-    for k in range(at_lb):
-        value = data[k]
-        if not (abs(value) < np.inf or (at_h <= k < at_A and value > 0.0)):
+    if not (all_finite(data, 0, at_h) and all_finite(data, at_A, at_lb)):
+        return False
+    for k in range(at_h, at_A):
+        if not data[k] > -np.inf:
             return False
     for i in range(at_lb, at_lb + n):
         if not (data[i] <= data[i + n] and data[i] < np.inf and data[i + n] > -np.inf):
@@ -252,60 +260,17 @@ def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
     return is_convex(data, n, np.empty(n * n))
 
 
-@compiled
-def _packed(
-    P: Matrix, q: Vector, G: Matrix, h: Vector, A: Matrix, b: Vector, lb: Vector, ub: Vector,
-    no_lb: bool, no_ub: bool,
-) -> Vector:  # fmt: skip
-    """Write the arrays into one; returns an empty one unless their shapes agree."""
-    n, m, p = q.size, h.size, b.size
-    _, at_G, at_A, at_lb = offsets(n, m, p)
-    fits = n > 0 and P.shape == (n, n) and len(G) == m and len(A) == p
-    fits = fits and (m == 0 or G.shape[1] == n) and (p == 0 or A.shape[1] == n)
-    fits = fits and (no_lb or lb.size == n) and (no_ub or ub.size == n)
-    data = np.empty(at_lb + 2 * n if fits else 0)
-    if fits:
-        _put(P, data, 0)
-        for i in range(n):
-            data[n * n + i] = q[i]
-            data[at_lb + i] = -np.inf if no_lb else lb[i]
-            data[at_lb + n + i] = np.inf if no_ub else ub[i]
-        _put(G, data, at_G)
-        for j in range(m):
-            data[at_G + m * n + j] = h[j]
-        _put(A, data, at_A)
-        for j in range(p):
-            data[at_A + p * n + j] = b[j]
-    return data
-
-
-@compiled
-def _put(rows: Matrix, data: Vector, at: int) -> None:
-    """Write a matrix into `data`, row by row, from `at` on."""
-    columns = np.uint64(rows.shape[1])
-    for i in range(len(rows)):
-        start = np.uint64(at) + np.uint64(i) * columns
-        for k in range(columns):
-            data[start + k] = rows[i, k]
-
-
-_pack = Exactly(_packed, "V(M, V, M, V, M, V, V, V, b1, b1)")
-
-
-def _gather(arrays: Sequence[NDArray[np.float64] | None]) -> tuple[Vector, Sizes]:
-    """Check the shapes of the arguments of `QP`, a row as a vector too; return data and sizes."""
-    if arrays[1] is None or arrays[1].size == 0:
-        raise InvalidInputError("q", "is empty", arrays[1])
-    require_pairs(arrays)
+def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]) -> Sizes:
+    """Count n, m and p, a vector being one row; raise InvalidInputError where shapes disagree."""
     n = arrays[1].size
+    if n == 0:
+        raise InvalidInputError("q", "is empty", given[1])
+    require_pairs(given)
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
-    free, empty = np.full(n, np.inf), np.empty(0)
-    absent = (empty, empty, empty, empty, empty, empty, -free, free)
-    full = [v if array is None else array for v, array in zip(absent, arrays, strict=True)]
-    for name, array, (_, shape) in zip(FIELDS, full, _places((n, m, p)), strict=True):
+    for name, array, shape in zip(FIELDS, arrays, _shapes((n, m, p)), strict=True):
         if array.size != math.prod(shape):
             raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
-    return np.concatenate(full, axis=None), (n, m, p)
+    return n, m, p
 
 
 def numbers(name: str, value: Any) -> NDArray[np.float64]:
@@ -318,7 +283,7 @@ def numbers(name: str, value: Any) -> NDArray[np.float64]:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
 
 
-def require_pairs(arrays: Sequence[NDArray[np.float64] | None]) -> None:
+def require_pairs(arrays: Sequence[object]) -> None:
     """Raise InvalidInputError where G (m, n) or A (p, n) lacks its h or b, or the reverse."""
     for left in (2, 4):
         if (arrays[left] is None) is not (arrays[left + 1] is None):
@@ -326,10 +291,8 @@ def require_pairs(arrays: Sequence[NDArray[np.float64] | None]) -> None:
             raise InvalidInputError(missing, f"is missing though {other} is given")
 
 
-def _rows(name: str, rows: NDArray[np.float64] | None, columns: int) -> int:
-    """Count the rows, which have so many columns; a vector is one row, nothing is none."""
-    if rows is None:
-        return 0
+def _rows(name: str, rows: NDArray[np.float64], columns: int) -> int:
+    """Count the rows, which have so many columns; a vector is one row."""
     if rows.ndim == 1 and rows.size == columns:
         return 1
     if rows.ndim != 2 or rows.shape[1] != columns:

@@ -14,7 +14,7 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn import DoubleIndicator, Robot, simulate
 from iiwa_dnn.qp import compiling
-from iiwa_dnn.qp.compiling import Apart, Exactly, Watch
+from iiwa_dnn.qp.compiling import Apart, Watch
 from iiwa_dnn.qp.layout import Vector, compiled
 
 
@@ -63,14 +63,6 @@ def test_functions_without_a_module_compile() -> None:
     made: dict[str, Any] = {}
     exec("def double(x):\n    return 2 * x", {"__name__": None}, made)
     assert njit(made["double"])(21) == 42
-
-
-def test_a_function_of_one_signature_refuses_other_arguments() -> None:
-    function = Exactly(_first_and_sum, "Tuple((i8, f8))(V, i8, f8)")
-    for _ in range(2):
-        assert function.call(np.array([3.7, 1.0]), 2, 2.0) == (3, 9.4)
-        with pytest.raises(TypeError):
-            function.call(np.array([3, 1]), 2, 2.0)
 
 
 def test_compiling_is_not_wall_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:

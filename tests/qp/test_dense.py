@@ -33,9 +33,16 @@ def test_products_are_numpys() -> None:
         matrix, vector = rng.standard_normal((n, n)), rng.standard_normal(n)
         flat = matrix.ravel().copy()
         assert dense.dot(flat, n * (n - 1), vector, n) == pytest.approx(matrix[-1] @ vector)
+        out = np.full(n + 3, 9.0)
+        dense.rows_dot(np.concatenate([[9.0], flat]), 1, n, n, vector, out, 2)
+        np.testing.assert_allclose(out[2 : n + 2], matrix @ vector, rtol=1e-12, atol=1e-13)
+        assert out[0] == out[1] == out[-1] == 9.0
         total = vector.copy()
         dense.add_scaled(total, -2.0, flat, n * (n - 1), n)
         np.testing.assert_allclose(total, vector - 2.0 * matrix[-1], rtol=1e-12, atol=1e-13)
+        four, starts, factors = rng.standard_normal((4, n)), [0, n, 2 * n, 3 * n], [1.0, -1, 0, 3]
+        dense.add_outers(flat, four.ravel(), n, *starts, *factors)
+        matrix += np.tril(four.T @ np.diag(factors) @ four)
         dense.add_outer(flat, -2.0, np.concatenate([[9.0], vector]), 1, n)
         expected = np.tril(matrix - 2.0 * np.outer(vector, vector)) + np.triu(matrix, 1)
         np.testing.assert_allclose(flat.reshape(n, n), expected, rtol=1e-12, atol=1e-13)
@@ -49,3 +56,33 @@ def test_extreme_eigenvalues_are_numpys() -> None:
         expected = np.linalg.eigvalsh(matrix)
         smallest, largest = dense.extreme_eigenvalues(matrix.ravel().copy(), n)
         np.testing.assert_allclose([smallest, largest], expected[[0, -1]], rtol=0, atol=1e-12 * n)
+
+
+def test_the_largest_magnitude_is_not_a_number_where_one_is_not_finite() -> None:
+    values = np.random.default_rng(4).standard_normal(37)
+    assert dense.largest_magnitude(values, 37) == np.abs(values).max()
+    assert dense.largest_magnitude(values, 5) == np.abs(values[:5]).max()
+    for bad in (np.nan, np.inf, -np.inf):
+        for place in (0, 20, 36):
+            spoilt = values.copy()
+            spoilt[place] = bad
+            assert np.isnan(dense.largest_magnitude(spoilt, 37))
+            assert not dense.all_finite(spoilt, place, place + 1)
+
+
+def test_a_convex_cost_is_symmetric_and_positive_semidefinite() -> None:
+    root = np.random.default_rng(5).standard_normal((5, 3))
+    for matrix, convex in (
+        (root @ root.T, True),
+        (1e-9 * root @ root.T, True),
+        (np.zeros((3, 3)), True),
+        (np.array([[0.0, 1.0], [1.0, 0.0]]), False),
+        (np.array([[1.0, 1e-7], [0.0, 1.0]]), True),
+        (np.array([[1.0, 1e-3], [0.0, 1.0]]), False),
+        (np.array([[1.0, np.nan], [0.0, 1.0]]), False),
+        (np.diag([1.0, -1e-6]), True),
+        (np.diag([1.0, -1e-4]), False),
+        (-np.eye(2), False),
+    ):
+        n = len(matrix)
+        assert dense.is_convex(matrix.ravel(), n, np.empty(n * n)) is convex

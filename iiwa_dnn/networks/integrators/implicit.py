@@ -120,6 +120,15 @@ def advance_implicit(
     return total
 
 
+@compiled
+def _any(values: Vector) -> bool:
+    """Tell whether a value is not zero, with less to compile than numpy's own."""
+    k = 0
+    while k < values.size and values[k] == 0.0:
+        k += 1
+    return k < values.size
+
+
 @released
 def settle_implicit(
     data: Vector, n: int, m: int, p: int, s: Vector, point: Vector, tol: float,
@@ -144,6 +153,8 @@ def settle_implicit(
     step, systems, time, factored = FIRST_STEP, 0, 0.0, project
     trial, stalled, travelling = 0, 0, 0
     rate = field(data, n, m, p, project, s, rates, active)
+    # A cold start that breaks limits: the long step would hold them all, and be refused.
+    far = not _any(s) and _any(active)
     while systems < max_systems and travelling < pseudo_transient.TRAVELLING:
         if not rate > tol:
             primal, dual, gap = kkt_point(data, n, m, p, s, point)
@@ -152,8 +163,8 @@ def settle_implicit(
             stalled += 1
             if stalled > pseudo_transient.STALLED or rate != rate:
                 break
-        systems, length = systems + 1, long_step * pseudo_transient.TRIALS[trial]
-        if linear_step(
+        systems, length = systems + (not far), long_step * pseudo_transient.TRIALS[trial]
+        if not far and linear_step(
             data, n, m, p, s, rates, active, length, factored, counted, gram, K, rhs, new
         ):
             new_rate = field(data, n, m, p, project, new, new_rates, new_active)
@@ -172,7 +183,7 @@ def settle_implicit(
                 active, new_active = new_active, active
                 rate, time = new_rate, time + length
                 continue
-        factored = False
+        factored = far = False
         if near(rate, tol) and trial + 1 < pseudo_transient.TRIALS.size:
             trial += 1
             continue

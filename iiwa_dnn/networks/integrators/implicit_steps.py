@@ -20,9 +20,9 @@ C being the active rows of :math:`\Omega = [G; I; -I]`.
 
 and both are increasing in :math:`x^+`. The line that is left, :math:`(x^+ - x)/h + P x^+ + q +
 A^T y^+ + \Omega^T \mu^+ = 0`, is therefore the stationarity of a strongly convex, piecewise
-quadratic function, for every h. It has one minimiser, and a semismooth Newton iteration with an
-exact line search reaches it, whose matrix is K again. A bare Newton iteration on the KKT conditions
-can cycle when many bounds are active; this one cannot.
+quadratic function, for every h. It has one minimiser, and a semismooth Newton iteration whose line
+search becomes exact in the end reaches it; its matrix is K again. A bare Newton iteration on the
+KKT conditions can cycle when many bounds are active; this one cannot.
 
 Source: R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point algorithm
 in convex programming", Math. Oper. Res. 1 (1976), for the same step of the plain saddle-point flow,
@@ -32,9 +32,23 @@ which is his method of multipliers.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from iiwa_dnn.qp.dense import add_outer, add_scaled, cholesky_factor, dot, factor_solve
+from iiwa_dnn.qp.dense import (
+    SUMS,
+    add_outer,
+    add_outers,
+    add_scaled,
+    cholesky_factor,
+    dot,
+    factor_solve,
+    rows_dot,
+)
 from iiwa_dnn.qp.layout import ONE, Vector, compiled, larger, offsets
+
+LOOSE, EXACT, LOOSE_NEWTON = 0.3, 1e-3, 20
+"""Slope at which a line search may end, relative to that at its start; in the first iterations,
+which need no more, and after so many of them."""
 
 
 @compiled
@@ -98,10 +112,26 @@ def condensed_matrix(
     call: between two steps few rows become active or cease to be.
     """
     _, at_G, _, _ = offsets(n, m, p)
+    a, b, c, count = at_G, at_G, at_G, 0
+    first, second, third = 0.0, 0.0, 0.0
     for j in range(m):
-        if active[j] != counted[j]:
-            add_outer(gram, active[j] - counted[j], data, at_G + j * n, n)
-            counted[j] = active[j]
+        change, row = active[j] - counted[j], at_G + j * n
+        if change == 0.0:
+            continue
+        counted[j] = active[j]
+        if count == 0:
+            a, first = row, change
+        elif count == 1:
+            b, second = row, change
+        elif count == 2:
+            c, third = row, change
+        else:
+            add_outers(gram, data, n, a, b, c, row, first, second, third, change)
+        count = count + 1 if count < 3 else 0
+    if count == 1:
+        add_outer(gram, first, data, a, n)
+    elif count > 1:
+        add_outers(gram, data, n, a, b, c, c, first, second, third if count > 2 else 0.0, 0.0)
     size = np.uint64(n)
     for i in range(size):
         for k in range(i + ONE):
@@ -116,8 +146,8 @@ def rows_times(data: Vector, n: int, m: int, p: int, x: Vector, values: Vector) 
     _, at_G, at_A, _ = offsets(n, m, p)
     for j in range(p):
         values[j] = dot(data, at_A + j * n, x, n)
-    for j in range(m):
-        values[p + j] = dot(data, at_G + j * n, x, n)
+    if m > 0:
+        rows_dot(data, at_G, m, n, x, values, p)
     for i in range(n):
         values[p + m + i] = x[i]
         values[p + m + n + i] = -x[i]
@@ -175,7 +205,10 @@ def backward_euler(
         for i in range(n):
             direction[i] = -direction[i]
         rows_times(data, n, m, p, direction, change)
-        length = _line_search(data, n, m, p, s, step, slacks, change, direction, gradient, active)
+        length = _line_search(
+            data, n, m, p, s, step, slacks, change, direction, gradient,
+            LOOSE if iteration < LOOSE_NEWTON else EXACT,
+        )  # fmt: skip
         for i in range(n):
             new[i] += length * direction[i]
         for k in range(rows):
@@ -209,12 +242,13 @@ def _multipliers(
     keep = 1.0 / (1.0 + step)
     for j in range(p):
         new[n + j] = s[n + j] + step * slacks[j]
-    for k in range(p, p + m + 2 * n):
-        old = s[n + k]
-        moving = old + step * slacks[k]
-        is_active = moving > old * keep
-        active[k - p] = is_active
-        new[n + k] = moving if is_active else old * keep
+    shift, rows = np.uint64(n + p), np.uint64(p)
+    for k in range(np.uint64(m + 2 * n)):  # no branch: several at once
+        old = s[shift + k]
+        moving, kept = old + step * slacks[rows + k], old * keep
+        is_active = moving > kept
+        active[k] = 1.0 if is_active else 0.0
+        new[shift + k] = moving if is_active else kept
 
 
 @compiled
@@ -222,10 +256,9 @@ def _gradient(
     data: Vector, n: int, m: int, p: int, s: Vector, step: float, new: Vector, gradient: Vector
 ) -> float:
     """Write the gradient of the step's convex function; returns its largest entry."""
+    rows_dot(data, 0, n, n, new, gradient, 0)
     for i in range(n):
-        gradient[i] = data[n * n + i] + (new[i] - s[i]) / step
-    for k in range(n):  # P is symmetric
-        add_scaled(gradient, new[k], data, k * n, n)
+        gradient[i] += data[n * n + i] + (new[i] - s[i]) / step
     add_transposed(data, n, m, p, 1.0, new, gradient)
     size = 0.0
     for i in range(n):
@@ -236,38 +269,25 @@ def _gradient(
 @compiled
 def _line_search(
     data: Vector, n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector,
-    direction: Vector, gradient: Vector, active: Vector,
+    direction: Vector, gradient: Vector, accuracy: float,
 ) -> float:  # fmt: skip
-    """Minimise the step's convex function along the Newton `direction` of an active set (m + 2n,).
+    """Minimise the step's convex function along the Newton `direction`, to a part of its slope.
 
     Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
     inside a bracket ends at the root. `change` is [A; G; I; -I] direction.
     """
-    keep = 1.0 / (1.0 + step)
     start, shortest = 0.0, 0.0
     for i in range(n):
         start += gradient[i] * direction[i]
         shortest += direction[i] * direction[i]
     # direction^T K direction is -start: that is the curvature where the active rows stay active.
-    constant, curvature = start, -start
-    for k in range(p, p + m + 2 * n):
-        old = s[n + k]
-        constant -= max(old * keep, old + step * slacks[k]) * change[k]
-        curvature -= step * active[k - p] * change[k] * change[k]
-    curvature = max(curvature, shortest / step)
+    slope, second = _slope(n, m, p, s, step, slacks, change, 0.0)
+    constant, curvature = start - slope, max(-start - second, shortest / step)
     low, high, length = 0.0, np.inf, 1.0
     for _ in range(50):
-        slope = constant + length * curvature
-        second = curvature
-        for k in range(p, p + m + 2 * n):
-            old = s[n + k]
-            moving = old + step * (slacks[k] + length * change[k])
-            if moving > old * keep:
-                slope += moving * change[k]
-                second += step * change[k] * change[k]
-            else:
-                slope += old * keep * change[k]
-        if abs(slope) <= 1e-3 * abs(start):
+        slope, second = _slope(n, m, p, s, step, slacks, change, length)
+        slope, second = slope + constant + length * curvature, second + curvature
+        if abs(slope) <= accuracy * abs(start):
             break
         if slope > 0.0:
             high = length
@@ -277,3 +297,19 @@ def _line_search(
         if not low < length < high:
             length = 0.5 * (low + high) if high < np.inf else 2.0 * low
     return length
+
+
+@njit(cache=True, error_model="numpy", fastmath=SUMS)
+def _slope(
+    n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
+) -> tuple[float, float]:
+    """Sum slope and curvature of the inequalities' part of the step's function at a length."""
+    keep, slope, second = 1.0 / (1.0 + step), 0.0, 0.0
+    shift = np.uint64(n)
+    for k in range(np.uint64(p), np.uint64(p + m + 2 * n)):
+        old, rate = s[shift + k], change[k]
+        moving, kept = old + step * (slacks[k] + length * rate), old * keep
+        is_active = moving > kept  # no branch: several rows at once
+        slope += (moving if is_active else kept) * rate
+        second += step * rate * rate if is_active else 0.0
+    return slope, second
