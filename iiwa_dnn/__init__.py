@@ -2,7 +2,7 @@
 
 from importlib.metadata import version
 
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.answers import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import (
     FileError,

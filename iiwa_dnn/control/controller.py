@@ -11,12 +11,10 @@ from numpy.typing import ArrayLike
 from pinocchio import computeJointJacobians, updateFramePlacement, updateFramePlacements
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.answers import Answers
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.answers import Answers, Command
 from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far, warn_if_outside
 from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.recourse import answer
 from iiwa_dnn.control.room import SIZE, Room
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
@@ -312,7 +310,7 @@ class Controller:
             self.solver.reset()  # compiled code has tried from the last state already
         # The clock of an arm that is in motion cannot be slowed down at once.
         policy = "relax" if plan.accelerates and self.policy == "slow" else self.policy
-        solution, resolution = answer(plan, qp, self.solver, policy, duration)
+        solution, resolution = plan.answer(qp, self.solver, policy, duration)
         if resolution is not None:
             qp, answers.resolved[index] = resolution.qp, resolution
             if plan.accelerates and resolution.action is Action.STOP:

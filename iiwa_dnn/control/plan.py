@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade
-from iiwa_dnn.control.policies import Resolution
+from iiwa_dnn.control.policies import Policy, Resolution, gave_way, resolve, stopped
 from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step
 from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.implicit import SETTLE
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -233,6 +233,50 @@ class Plan:
             lower_limits(QP.from_data(data, self.sizes), self.last, self._dt)
         if self.cascade.levels:
             self.cascade.resolve(QP.from_data(data, self.sizes))
+
+    def answer(
+        self, qp: QP, solver: DNNSolver, policy: Policy, duration: float
+    ) -> tuple[Solution, Resolution | None]:
+        """Answer a program by the network or, where it has no answer, by the policy.
+
+        Args:
+            qp: The step's program.
+            solver: The network.
+            policy: One of ``POLICIES``.
+            duration: Time that the network advances [s]; 0: it settles.
+
+        Returns:
+            The answer, and the policy's decision if there was one.
+
+        Raises:
+            NoSolutionError: There is no solution and the policy is ``raise``.
+        """
+        decision = self._decided(qp, policy)
+        if decision is None:
+            found = solver.solve(qp) if duration == 0.0 else solver.advance(qp, duration)
+            if found.status is self.expected:
+                return found, None
+            if duration > 0.0:  # it is no longer a number
+                decision = stopped(qp, found, yielding=self.yielding)
+            else:
+                decision = resolve(qp, found, policy, solver, self.row_weights, self.yielding)
+                self.stick(True)
+        return decision.solution, decision
+
+    def _decided(self, qp: QP, policy: Policy) -> Resolution | None:
+        """Decide without the network: while the arm brakes, and while the task still yields."""
+        yielding, halted = self.yielding, self.halted
+        if halted is not None:
+            braking = stopped(qp, halted.solution, yielding=yielding)
+            return braking._replace(sides=halted.sides, rows=halted.rows)
+        if yielding is None or not self.stuck or policy not in ("slow", "relax"):
+            return None
+        if not np.isfinite(qp.b).all():
+            return None
+        reach, fits = yielding.answer(qp)
+        # Where the program may have a solution again, the network is asked.
+        self.stick(not fits)
+        return None if fits else gave_way(qp, policy, reach)
 
 
 def _sizes_of(scheme: Scheme, conf: Configuration) -> tuple[int, int, int]:

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.answers import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ImplicitEuler
