@@ -75,7 +75,7 @@ def _largest(values: Vector, n: int) -> float:
 
 @compiled
 def largest_magnitude(values: Vector, n: int) -> float:
-    """Return the largest of the first n magnitudes, NaN where one is NaN or infinite."""
+    """Return the largest of the first n magnitudes of (k,), NaN where one is NaN or infinite."""
     # Without regard to NaN, a maximum is taken in several lanes.
     return _largest(values, n) if all_finite(values, 0, n) else np.nan
 
@@ -157,7 +157,7 @@ def add_outers(
     out: Vector, data: Vector, n: int, a: int, b: int, c: int, d: int,
     one: float, two: float, three: float, four: float,
 ) -> None:  # fmt: skip
-    """Do what `add_outer` does for four rows of `data` at once, which begin at a, b, c and d."""
+    """Do for four rows of `data` (k,), from a, b, c and d, what `add_outer` does to out (n, n)."""
     size = np.uint64(n)
     first, second, third, fourth = np.uint64(a), np.uint64(b), np.uint64(c), np.uint64(d)
     for i in range(size):
@@ -239,7 +239,7 @@ def is_convex(data: Vector, n: int, K: Vector) -> bool:
 
 @njit(cache=True, error_model="numpy", fastmath=SUMS)
 def all_finite(data: Vector, start: int, end: int) -> bool:
-    """Tell whether data[start:end] holds neither NaN nor infinity: either times zero is NaN."""
+    """Tell whether data[start:end] of (k,) is finite: NaN and infinity times zero are NaN."""
     total = 0.0
     for k in range(np.uint64(start), np.uint64(end)):
         total += data[k] * 0.0
