@@ -12,12 +12,17 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
 from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler
+from iiwa_dnn.networks.integrators.side_by_side import LANES, ROUNDS, free_steps
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, released
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, compiled, released
 from iiwa_dnn.qp.program import FIELDS, QP, numbers, require_pairs
+from iiwa_dnn.qp.residuals import point_residuals, within
 
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""
+
+SMALL = 32
+"""Variables up to which first steps are taken side by side."""
 
 BARRIER = 50
 """Budget of linear systems, on top, of a program that starts again through the barrier."""
@@ -193,27 +198,63 @@ def _settle_rows(
     """Settle the programs from `first` up to `last`, each from a cold start.
 
     A part has one row, which all programs share, or one for each program. The residuals are
-    infinite where the cost is not convex.
+    infinite where the cost is not convex. First steps of small programs are taken side by side.
     """
     n, m, p = sizes
-    data, K = np.empty((n + m + p) * (n + 1) + 2 * n), np.empty(n * n)
-    state, convex = np.empty(3 * n + m + p), False
-    for row in range(first, last):
-        at = 0
-        for part in parts:
-            source = row if part.shape[0] > 1 else 0
-            for i in range(part.shape[1]):
-                data[at + i] = part[source, i]
-            at += part.shape[1]
-        for i in range(3):
-            residuals[row, i] = np.inf
-        if row == first or parts[0].shape[0] > 1:
-            convex = is_convex(data, n, K)
-        if convex:
-            for i in range(state.size):
-                state[i] = 0.0
-            systems, _, primal, dual, gap = _enter(
-                address, data, n, m, p, state, points[row], tol, max_systems, long_step
-            )
+    size, beside, convex = (n + m + p) * (n + 1) + 2 * n, n <= SMALL, False
+    block, lanes, K = np.empty((LANES, size)), np.empty(size * LANES), np.empty(n * n)
+    state, point = np.empty(3 * n + m + p), np.empty(2 * n + m + p)
+    steps: Vector = np.empty(0)
+    for start in range(first, last, LANES):
+        count = min(LANES, last - start)
+        for k in range(count):
+            _gather(parts, start + k, block[k])
+        if beside:
+            steps = _free_points(block, count, n, m, p, long_step, lanes)
+        for k in range(count):
+            row, data = start + k, block[k]
+            for i in range(3):
+                residuals[row, i] = np.inf
+            if row == first or parts[0].shape[0] > 1:
+                convex = is_convex(data, n, K)
+            if not convex:
+                continue
+            systems, primal, dual, gap = ROUNDS, np.inf, np.inf, np.inf
+            for i in range(point.size):
+                point[i] = steps[i * LANES + k] if beside and i < n + p else 0.0
+            if beside:
+                primal, dual, gap = point_residuals(data, n, m, p, point)
+            if not within(primal, dual, gap, tol):
+                for i in range(state.size):
+                    state[i] = 0.0
+                systems, _, primal, dual, gap = _enter(
+                    address, data, n, m, p, state, point, tol, max_systems, long_step
+                )
+            for i in range(point.size):
+                points[row, i] = point[i]
             iterations[row] = systems
             residuals[row, 0], residuals[row, 1], residuals[row, 2] = primal, dual, gap
+
+
+@compiled
+def _gather(parts: tuple[Matrix, ...], row: int, data: Vector) -> None:
+    """Write the parts of a program one after another into `data`."""
+    at = 0
+    for part in parts:
+        source = row if part.shape[0] > 1 else 0
+        for i in range(part.shape[1]):
+            data[at + i] = part[source, i]
+        at += part.shape[1]
+
+
+@compiled
+def _free_points(
+    block: Matrix, count: int, n: int, m: int, p: int, step: float, lanes: Vector
+) -> Vector:
+    """Return x and y, ((n + p) LANES,), of the programs of a block after steps without limits."""
+    for i in range(block.shape[1]):
+        for k in range(LANES):
+            lanes[i * LANES + k] = block[min(k, count - 1), i]
+    result = np.empty((n + p) * LANES)
+    free_steps(lanes, n, m, p, step, result[: n * LANES], result[n * LANES :])
+    return result

@@ -150,3 +150,25 @@ def test_what_is_absent_or_singular_is_sound() -> None:
     )
     assert batch.found.all()
     np.testing.assert_allclose(batch.x, [[0.0, -1.0], [0.0, 2.0]], atol=1e-8)
+
+
+@pytest.mark.parametrize("limited", [False, True])
+def test_company_does_not_change_an_answer(limited: bool) -> None:
+    rng, count, n, p = np.random.default_rng(9), 21, 5, 2
+    roots = rng.standard_normal((count, n, n))
+    P, q = roots @ np.swapaxes(roots, 1, 2) + np.eye(n), rng.standard_normal((count, n))
+    A, b = rng.standard_normal((count, p, n)), rng.standard_normal((count, p))
+    ub = np.where(rng.uniform(size=(count, n)) < 0.2 * limited, 0.1, 50.0)
+    P[7, 1, 1] = np.nan  # a program beside it that is none
+    together = solve_batch(P, q, A=A, b=b, ub=ub)
+    assert list(together.faults) == [7]
+    for k in set(range(count)) - {7}:
+        alone = solve_batch(P[k], q[k], A=A[k], b=b[k], ub=ub[k])
+        np.testing.assert_array_equal(together.x[k], alone.x[0])
+        np.testing.assert_array_equal(together.residuals[k], alone.residuals[0])
+        kkt = np.block([[P[k], A[k].T], [A[k], np.zeros((p, p))]])
+        free = np.linalg.solve(kkt, np.concatenate([-q[k], b[k]]))
+        if (free[:n] <= ub[k]).all():
+            np.testing.assert_allclose(together.x[k], free[:n], rtol=0, atol=1e-9)
+            np.testing.assert_allclose(together.y[k], free[n:], rtol=0, atol=1e-9)
+    assert together.found.sum() == count - 1
