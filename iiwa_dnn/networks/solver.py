@@ -20,7 +20,7 @@ from iiwa_dnn.networks.integrators import (
     closing,
 )
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.implicit import settle_implicit
+from iiwa_dnn.networks.integrators.implicit import settle_implicit, sharpen_implicit
 from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
 from iiwa_dnn.qp.backend import provide
@@ -37,6 +37,8 @@ LARGE, HUGE = 150, 400
 a cold start goes through it at once."""
 SPARSE = 0.1
 """Share of numbers that are not zero below which a large program goes through the barrier first."""
+SHARPENING = 5
+"""Linear systems of `DNNSolver.sharpen`."""
 WORK = 20_000
 """Linear systems times variables of a first try: the rest of the budget is for the second."""
 
@@ -196,6 +198,30 @@ class DNNSolver:
         self._kept.append((network, sizes, state))
         return Solution(point, sizes, Status.SOLVED, *settled)
 
+    def sharpen(self, qp: QP, solution: Solution) -> Solution:
+        """Go on for a few long steps from the state that the last call left, as far as it helps.
+
+        Where the cost has small eigenvalues, x is known to the residuals over these only.
+
+        Args:
+            qp: The program of the last call.
+            solution: Its solution.
+
+        Returns:
+            A solution with smaller residuals, or the same where no step had any.
+        """
+        warm, settler = self._warm(), self.settler
+        if not solution.found or warm is None:
+            return solution
+        if type(settler) is not ImplicitEuler or self.network.compiled is None:
+            return solution
+        point, count, step = solution.point.copy(), SHARPENING, settler.long_step
+        residuals = sharpen_implicit(qp.data, *qp.sizes, warm[2], point, step, count)
+        if not max(residuals) < solution.residuals.largest:
+            return solution
+        systems, time = solution.iterations + count, solution.network_time + count * step
+        return Solution(point, qp.sizes, solution.status, systems, time, *residuals)
+
     def _settle(self, network: Network, qp: QP, state: Vector, point: Vector) -> Settled:
         """Settle with the settler; a large program from a cold start, through the barrier."""
         settler = self.settler
@@ -286,6 +312,7 @@ def solve_problem(
     problem: qpsolvers.Problem | QP,
     tol: float = 1e-9,
     solver: DNNSolver | None = None,
+    sharpen: bool = False,
 ) -> qpsolvers.Solution:
     """Solve one convex quadratic program with a dynamic neural network, from a cold start.
 
@@ -294,6 +321,8 @@ def solve_problem(
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         solver: Network and integrator to use; the default integrates the paper's network
             implicitly. Its state is reset first and its own tolerance replaces `tol`.
+        sharpen: Take a few more steps down to rounding, for about a third more time
+            (`DNNSolver.sharpen`).
 
     Returns:
         The solution with x (n,), y (p,), z (m,), z_box (n,), obj, and in `extras` the status,
@@ -312,7 +341,8 @@ def solve_problem(
         solver = DNNSolver(tol=tol)
     else:
         checks.instance("solver", solver, DNNSolver).reset()
-    return solver.solve(qp).to_qpsolvers(problem)
+    solution = solver.solve(qp)
+    return (solver.sharpen(qp, solution) if sharpen else solution).to_qpsolvers(problem)
 
 
 provide(solve_problem)

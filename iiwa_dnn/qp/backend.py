@@ -24,10 +24,10 @@ def register() -> None:
     """Register the network as the dense solver "iiwa_dnn" of qpsolvers; twice is as good as once.
 
     From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
-    `iiwa_dnn.solve_problem`, and ``qpsolvers.available_solvers`` lists it. Keyword arguments:
-    ``eps_abs``, the absolute tolerance on primal residual, dual residual and gap (1e-9). The start
-    is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex problem
-    raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
+    `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
+    Keyword arguments: ``eps_abs``, the absolute tolerance on primal residual, dual residual and gap
+    (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or
+    nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """
     from qpsolvers import solvers
 
@@ -47,7 +47,7 @@ def _solve_problem(
     from qpsolvers import ProblemError
 
     try:
-        solution: qpsolvers.Solution = _solve[0](problem, tol=eps_abs)
+        solution: qpsolvers.Solution = _solve[0](problem, tol=eps_abs, sharpen=True)
         return solution
     except InvalidInputError as error:
         raise ProblemError(str(error)) from error

@@ -300,3 +300,35 @@ print("wrong", len(wrong))
     assert done.returncode == 0, done.stderr
     assert done.stdout == "wrong 0\n"
     assert not done.stderr
+
+
+def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:
+    # The programs of an arm that follows its tip and hardly wishes for a posture.
+    rng, plain, sharp = np.random.default_rng(17), 0.0, 0.0
+    for _ in range(200):
+        J, wish = rng.standard_normal((6, 7)), rng.standard_normal(7)
+        P = J.T @ J + 1e-6 * np.eye(7)
+        q = -J.T @ rng.standard_normal(6) - 1e-6 * wish
+        bound = rng.uniform(0.05, 3.0, 7)
+        problem = qpsolvers.Problem(P, q, lb=-bound, ub=bound)
+        expected = qpsolvers.solve_problem(problem, "daqp", primal_tol=1e-12, dual_tol=1e-12).x
+        first, second = (iiwa_dnn.solve_problem(problem, sharpen=s) for s in (False, True))
+        assert second.is_optimal(1e-9)
+        plain = max(plain, np.abs(first.x - expected).max())
+        sharp = max(sharp, np.abs(second.x - expected).max())
+    assert sharp < 1e-8 < plain
+
+
+def test_a_sharpened_answer_is_never_worse() -> None:
+    qp, _ = known_qp(np.random.default_rng(18), 8, 3, 2, inequalities=5)
+    solver = DNNSolver(tol=1e-4)
+    first = solver.solve(qp)
+    second = solver.sharpen(qp, first)
+    assert second.residuals.largest <= first.residuals.largest
+    assert second.iterations >= first.iterations
+    third = solver.sharpen(qp, second)
+    assert third.residuals.largest <= second.residuals.largest
+    other = DNNSolver(DualNetwork())
+    answer = other.solve(qp)
+    assert other.sharpen(qp, answer) is answer
+    assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet

@@ -203,4 +203,39 @@ def settle_implicit(
     return systems, time, primal, dual, gap
 
 
+@released
+def sharpen_implicit(
+    data: Vector, n: int, m: int, p: int, s: Vector, point: Vector, step: float, count: int
+) -> tuple[float, float, float]:
+    """Take `count` linearly implicit steps from an equilibrium; keep the state that is nearest one.
+
+    Unlike in `settle_implicit`, the rates may grow on the way: a step in a direction that costs
+    next to nothing can reach a limit that the next step then holds.
+
+    Returns:
+        ``(primal, dual, gap)`` of `point`, that of the state which `s` holds in the end.
+    """
+    size, flags = s.size, m + 2 * n
+    rates, active, rhs = np.empty(size), np.empty(flags), np.empty(flags + p)
+    counted, gram, K = np.empty(m), np.empty(n * n), np.empty(n * n)
+    new, other = s.copy(), np.empty(point.size)
+    begin_gram(data, n, m, p, counted, gram)
+    primal, dual, gap = kkt_point(data, n, m, p, s, point)
+    for _ in range(count):
+        old = new.copy()
+        field(data, n, m, p, step < 0.0, old, rates, active)
+        if not linear_step(
+            data, n, m, p, old, rates, active, step, step < 0.0, counted, gram, K, rhs, new
+        ):
+            break
+        first, second, third = kkt_point(data, n, m, p, new, other)
+        if max(first, second, third) < max(primal, dual, gap):
+            primal, dual, gap = first, second, third
+            for k in range(size):
+                s[k] = new[k]
+            for k in range(point.size):
+                point[k] = other[k]
+    return primal, dual, gap
+
+
 SETTLE = Apart(settle_implicit, "Tuple((i8, f8, f8, f8, f8))(V, i8, i8, i8, V, V, f8, i8, f8)")
