@@ -81,10 +81,8 @@ class DNNSolver:
             InvalidInputError: `tol` is not a positive number, or `network` is not a network.
         """
         checks.positive("tol", tol)
-        given: object = network
-        if not (given is None or isinstance(given, Network)):
-            problem = f"must be an object of a Network's class, not {network!r}"
-            raise InvalidInputError("network", problem, network)
+        if network is not None:
+            checks.instance("network", network, Network)
         self._kept: deque[tuple[Network, Sizes, Vector]]
         self.__dict__.update(  # not through __setattr__, which counts
             _kept=deque(maxlen=1),

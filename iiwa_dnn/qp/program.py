@@ -155,9 +155,15 @@ class QP:
         """Convert a qpsolvers problem, dense or sparse.
 
         Raises:
-            InvalidInputError: An array has the wrong shape; the message names it.
+            InvalidInputError: An array has the wrong shape; the message names it. Or `problem` is
+                not a problem of qpsolvers.
         """
-        return cls(*problem.unpack())
+        try:
+            arrays = problem.unpack()
+        except AttributeError:
+            given = f"must be a qpsolvers.Problem or an iiwa_dnn.QP, not {problem!r:.80}"
+            raise InvalidInputError("problem", given, problem) from None
+        return cls(*arrays)
 
     def to_qpsolvers(self) -> qpsolvers.Problem:
         """Convert to a problem of qpsolvers; parts without rows are left out, as it expects."""

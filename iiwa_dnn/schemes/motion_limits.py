@@ -49,6 +49,9 @@ MOTION_LIMITS = 21
 MARGIN = 0.2
 """Room that is kept free at a position limit, in units of J dt^3."""
 
+ROUNDING = 2e-14
+"""Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
+
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
@@ -214,6 +217,8 @@ def joint_bounds(
         lower = -_ceiling(-ub, -lb, below - margin, -last, dt, jerk, limit)
     elif accel < np.inf:
         unit = accel * dt
+        above -= min(max(above, 0.0), ROUNDING)
+        below -= min(max(below, 0.0), ROUNDING)
         upper = min(fastest, unit * approach(above / (unit * dt)))
         lower = max(-fastest, -unit * approach(below / (unit * dt)))
         upper, lower = min(max(upper, first), final), min(max(lower, first), final)

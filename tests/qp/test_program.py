@@ -1,6 +1,7 @@
 """The program's container, its checks and its judgement of a solution."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import qpsolvers
 import scipy.sparse as spa
 
 from helpers_qp import known_qp
-from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status
+from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, solve_problem
 from iiwa_dnn.qp.residuals import kkt_point
 
 
@@ -59,6 +60,12 @@ def test_arrays_of_every_kind_make_the_same_program(kind: Callable[[np.ndarray],
     qp = QP(*[kind(array.copy()) for array in arrays])
     assert qp.sizes == (3, 4, 2)
     np.testing.assert_array_equal(qp.data, expected)
+
+
+@pytest.mark.parametrize("given", [None, np.eye(3), "problem"])
+def test_what_is_no_problem_is_refused(given: Any) -> None:
+    with pytest.raises(InvalidInputError, match="problem: must be a qpsolvers.Problem"):
+        solve_problem(given)
 
 
 def test_fields_are_views_of_one_array_and_copies_of_what_was_given() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
@@ -54,6 +54,7 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     dt=st.sampled_from([1e-3, 4e-3, 1e-2]),
     seed=st.integers(0, 1000),
 )
+@example(speed=1.0, acceleration=1.5, jerk=INF, dt=1e-3, seed=0)
 def test_hostile_choices_break_no_limit(
     speed: float, acceleration: float, jerk: float, dt: float, seed: int
 ) -> None:
