@@ -25,7 +25,8 @@ from iiwa_dnn.networks import (
 )
 from iiwa_dnn.networks.batch import BatchSolution, solve_batch
 from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
-from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.networks.problems import solve_problem
+from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import TrackingSolver
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck

@@ -14,7 +14,7 @@ from iiwa_dnn.app.options import SolveOptions
 from iiwa_dnn.app.track import CHECKS
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.files import one_line, write_atomically
-from iiwa_dnn.networks.solver import solve_problem
+from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
 

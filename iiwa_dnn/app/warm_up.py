@@ -9,7 +9,7 @@ from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import WarmUpOptions
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.networks.batch import solve_batch
-from iiwa_dnn.networks.solver import solve_problem
+from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.qp import QP
 from iiwa_dnn.qp.compiling import WATCH
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Waypoints

@@ -23,14 +23,13 @@ from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.networks.integrators.implicit import settle_implicit, sharpen_implicit
 from iiwa_dnn.networks.projection import ProjectionNetwork
 from iiwa_dnn.networks.refutation import find_certificate
-from iiwa_dnn.qp.backend import provide
 from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
 if TYPE_CHECKING:
-    import qpsolvers
+    pass
 
 LARGE, HUGE = 150, 400
 """Variables from which on the barrier comes before the search for a certificate, and from which on
@@ -83,14 +82,18 @@ class DNNSolver:
         checks.positive("tol", tol)
         if network is not None:
             checks.instance("network", network, Network)
+        network = _NETWORK if network is None else network
+        settler = _SETTLER if settler is None else settler
         self._kept: deque[tuple[Network, Sizes, Vector]]
+        self._quick: tuple[int, float] | None
         self.__dict__.update(  # not through __setattr__, which counts
             _kept=deque(maxlen=1),
             version=0,
-            network=_NETWORK if network is None else network,
+            network=network,
             tol=tol,
-            settler=_SETTLER if settler is None else settler,
+            settler=settler,
             follower=_FOLLOWER if follower is None else follower,
+            _quick=_budget(network, settler),
         )
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -98,6 +101,7 @@ class DNNSolver:
             checks.positive("tol", value)
         super().__setattr__(name, value)
         if name in _PARTS:
+            self.__dict__["_quick"] = _budget(self.network, self.settler)
             self.version += 1
 
     @property
@@ -168,8 +172,18 @@ class DNNSolver:
         network, tol, sizes = self.network, self.tol, qp.sizes
         n, m, p = sizes
         state, point = self._take(network, qp), np.empty(2 * n + m + p)
-        settled = self._settle(network, qp, state, point)
-        primal, dual, gap = settled[2:]
+        if self._quick and n < LARGE:
+            half, long_step = self._quick
+            budget = half if half * n <= WORK else WORK // n + 1
+            settled = settle_implicit(qp.data, n, m, p, state, point, tol, budget, long_step)
+        else:
+            settled = self._settle(network, qp, state, point)
+        systems, time, primal, dual, gap = settled
+        if primal + dual + gap <= 0.1 * tol:  # nothing is in doubt
+            self._kept.append((network, sizes, state))
+            # A named tuple's own way costs as much as a fifth of the call.
+            found = (point, sizes, Status.SOLVED, systems, time, primal, dual, gap, None)
+            return tuple.__new__(Solution, found)
         doubtful = 0.1 * tol < primal + dual + gap <= 3.0 * tol
         if doubtful and point.dot(point) > (1e13 * tol) ** 2:  # rounding may decide: try for better
             worse = closing.worse(qp, point, (primal, dual, gap))
@@ -186,9 +200,9 @@ class DNNSolver:
                 settled = self._second_try(network, qp, state, point, settled)
             # Almost there: rounding is in the way, not the lack of a solution.
             far = n < LARGE or max(settled[2:]) > 1e-3
-            found = find_certificate(qp, point) if far else None
-            if found is not None:
-                return Solution(point, sizes, found[0], *settled, found[1])
+            proof = find_certificate(qp, point) if far else None
+            if proof is not None:
+                return Solution(point, sizes, proof[0], *settled, proof[1])
             if n < LARGE:
                 settled = self._second_try(network, qp, state, point, settled)
             if not within(*settled[2:], tol):
@@ -223,7 +237,7 @@ class DNNSolver:
     def _settle(self, network: Network, qp: QP, state: Vector, point: Vector) -> Settled:
         """Settle with the settler; a large program from a cold start, through the barrier."""
         settler = self.settler
-        if type(settler) is not ImplicitEuler or network.compiled is None:
+        if type(settler) is not ImplicitEuler or self._quick is None:
             return settler.settle(network, qp, state, point, self.tol)
         if self._through_barrier(qp) and not state.any():
             return barrier.settle(qp, state, point, self.tol, settler.max_steps)
@@ -243,7 +257,7 @@ class DNNSolver:
     ) -> Settled:
         """Start again the other way, with the rest of the budget; take the better point."""
         settler, n = self.settler, qp.sizes[0]
-        if type(settler) is not ImplicitEuler or network.compiled is None or n >= HUGE:
+        if type(settler) is not ImplicitEuler or self._quick is None or n >= HUGE:
             return settled
         left = settler.max_steps - settled[0]
         if left <= 0:
@@ -306,41 +320,8 @@ class DNNSolver:
         return state
 
 
-def solve_problem(
-    problem: qpsolvers.Problem | QP,
-    tol: float = 1e-9,
-    solver: DNNSolver | None = None,
-    sharpen: bool = False,
-) -> qpsolvers.Solution:
-    """Solve one convex quadratic program with a dynamic neural network, from a cold start.
-
-    Args:
-        problem: Dense or sparse; n variables, p equalities, m inequalities, bounds.
-        tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
-        solver: Network and integrator to use; the default integrates the paper's network
-            implicitly. Its state is reset first and its own tolerance replaces `tol`.
-        sharpen: Take a few more steps down to rounding, for about a third more time
-            (`DNNSolver.sharpen`).
-
-    Returns:
-        The solution with x (n,), y (p,), z (m,), z_box (n,), obj, and in `extras` the status,
-        the iterations, the residuals and the network time in units of rho. `found` is False
-        where there is none within the tolerance.
-
-    Raises:
-        InvalidInputError: The problem is malformed or not convex; the message names the argument.
-    """
-    if isinstance(problem, QP):
-        qp, problem = problem, problem.to_qpsolvers()
-    else:
-        qp = QP.from_qpsolvers(problem)
-    qp.check_values()
-    if solver is None:
-        solver = DNNSolver(tol=tol)
-    else:
-        checks.instance("solver", solver, DNNSolver).reset()
-    solution = solver.solve(qp)
-    return (solver.sharpen(qp, solution) if sharpen else solution).to_qpsolvers(problem)
-
-
-provide(solve_problem)
+def _budget(network: Network, settler: Integrator) -> tuple[int, float] | None:
+    """Return the linear systems of a first try and the long step; None without compiled loops."""
+    if type(settler) is ImplicitEuler and network.compiled is not None:
+        return (settler.max_steps + 1) // 2, settler.long_step
+    return None

@@ -120,12 +120,12 @@ class QP:
         Raises:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
-        n = np.size(q)
+        n = q.size if type(q) is np.ndarray else np.size(q)
         arrays = [
             absent
             if v is None
             else v
-            if type(v) is np.ndarray and v.dtype == _FLOAT
+            if type(v) is np.ndarray and v.dtype is _FLOAT  # the rest is converted
             else numbers(name, v)
             for name, v, absent in zip(FIELDS, (P, q, G, h, A, b, lb, ub), _absent(n), strict=True)
         ]

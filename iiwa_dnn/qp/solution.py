@@ -7,6 +7,7 @@ for the bounds (positive at ``ub``, negative at ``lb``).
 from __future__ import annotations
 
 from enum import Enum
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,14 @@ from iiwa_dnn.qp.layout import Sizes, Vector
 
 if TYPE_CHECKING:
     import qpsolvers
+
+
+@lru_cache
+def _qpsolvers_solution() -> type[qpsolvers.Solution]:
+    """Import qpsolvers' class; even to look a module up costs much of a small program's time."""
+    import qpsolvers
+
+    return qpsolvers.Solution
 
 
 class Status(str, Enum):
@@ -123,23 +132,22 @@ class Solution(NamedTuple):
         qpsolvers' own solvers. A solution that was not found carries no ``x``; the point that the
         network reached is in ``extras["last_x"]``, so that nobody takes it for an answer.
         """
-        import qpsolvers
-
+        make = _qpsolvers_solution()
+        point, (n, m, p), status, iterations, time, primal, dual, gap, certificate = self
         extras: dict[str, Any] = {
-            "status": self.status.value,
-            "iterations": self.iterations,
-            "network_time": self.network_time,
-            "primal_residual": self.primal,
-            "dual_residual": self.dual,
-            "duality_gap": self.gap,
+            "status": status.value,
+            "iterations": iterations,
+            "network_time": time,
+            "primal_residual": primal,
+            "dual_residual": dual,
+            "duality_gap": gap,
         }
-        if not self.found:
-            if self.certificate is not None:
-                extras["certificate"] = self.certificate
-            return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
-        (n, m, p), point = self.sizes, self.point
+        if status is not Status.SOLVED:
+            if certificate is not None:
+                extras["certificate"] = certificate
+            return make(problem, {**extras, "last_x": self.x}, found=False)
         x, bounded = point[:n], problem.lb is not None or problem.ub is not None
-        return qpsolvers.Solution(
+        return make(
             problem,
             extras,
             True,

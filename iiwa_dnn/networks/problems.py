@@ -1,0 +1,53 @@
+"""One problem, solved from a cold start."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from iiwa_dnn import checks
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.backend import provide
+from iiwa_dnn.qp.program import QP
+
+if TYPE_CHECKING:
+    import qpsolvers
+
+
+def solve_problem(
+    problem: qpsolvers.Problem | QP,
+    tol: float = 1e-9,
+    solver: DNNSolver | None = None,
+    sharpen: bool = False,
+) -> qpsolvers.Solution:
+    """Solve one convex quadratic program with a dynamic neural network, from a cold start.
+
+    Args:
+        problem: Dense or sparse; n variables, p equalities, m inequalities, bounds.
+        tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
+        solver: Network and integrator to use; the default integrates the paper's network
+            implicitly. Its state is reset first and its own tolerance replaces `tol`.
+        sharpen: Take a few more steps down to rounding, for about a third more time
+            (`DNNSolver.sharpen`).
+
+    Returns:
+        The solution with x (n,), y (p,), z (m,), z_box (n,), obj, and in `extras` the status,
+        the iterations, the residuals and the network time in units of rho. `found` is False
+        where there is none within the tolerance.
+
+    Raises:
+        InvalidInputError: The problem is malformed or not convex; the message names the argument.
+    """
+    if isinstance(problem, QP):
+        qp, problem = problem, problem.to_qpsolvers()
+    else:
+        qp = QP.from_qpsolvers(problem)
+    qp.check_values()
+    if solver is None:
+        solver = DNNSolver(tol=tol)
+    else:
+        checks.instance("solver", solver, DNNSolver).reset()
+    solution = solver.solve(qp)
+    return (solver.sharpen(qp, solution) if sharpen else solution).to_qpsolvers(problem)
+
+
+provide(solve_problem)
