@@ -26,13 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.networks.base import CompiledForm, Flow, Network, read_point
-from iiwa_dnn.qp.dense import (
-    add_scaled,
-    dot,
-    extreme_eigenvalues,
-    largest_magnitude,
-)
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size, compiled, offsets
+from iiwa_dnn.qp.dense import add_scaled, dot, extreme_eigenvalues
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size, compiled, larger, offsets
 from iiwa_dnn.qp.program import QP
 
 _PROJECTED, _FREE = CompiledForm(project=True), CompiledForm(project=False)
@@ -145,40 +140,45 @@ def field(
     `active` (m + 2n,) becomes 1 for the multipliers with mu + Omega x - chi > 0, else 0.
 
     Returns:
-        The largest absolute rate: zero exactly at a KKT point, NaN if one is not finite.
+        The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
     """
-    _, at_G, at_A, at_lb = offsets(n, m, p)
-    at_h, at_b, at_z, at_u = at_G + m * n, at_lb - p, n + p, n + p + m
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
+    at_z, at_u = n + p, n + p + m
+    largest = 0.0
     for i in range(n):  # the gradient, for now
-        rates[i] = dot(data, i * n, s, n)
+        rates[i] = data[at_q + i] + s[at_u + i] - s[at_u + n + i] + dot(data, i * n, s, n)
     for j in range(p):
-        add_scaled(rates, s[n + j], data, at_A + j * n, n)
-        rates[n + j] = dot(data, at_A + j * n, s, n) - data[at_b + j]
+        row = at_A + j * n
+        add_scaled(rates, s[n + j], data, row, n)
+        rate = dot(data, row, s, n) - data[at_b + j]
+        rates[n + j] = rate
+        largest = larger(largest, abs(rate))
     for j in range(m):
-        if s[at_z + j] != 0.0:
-            add_scaled(rates, s[at_z + j], data, at_G + j * n, n)
-        rates[at_z + j] = dot(data, at_G + j * n, s, n)
-    # No branches, and indices without a sign: several at once.
-    z, h, u, lb = np.uint64(at_z), np.uint64(at_h), np.uint64(at_u), np.uint64(at_lb)
-    rows, size = np.uint64(m), np.uint64(n)
-    for j in range(rows):
-        multiplier, slack = s[z + j], rates[z + j] - data[h + j]
-        is_active = multiplier + slack > 0.0
-        active[j] = 1.0 if is_active else 0.0
-        rates[z + j] = slack if is_active else -multiplier
-    for i in range(size):
-        rates[i] = -(rates[i] + data[size * size + i] + s[u + i] - s[u + size + i])
-        over, under = s[i] - data[lb + size + i], data[lb + i] - s[i]
-        above, below = s[u + i] + over > 0.0, s[u + size + i] + under > 0.0
-        active[rows + i] = 1.0 if above else 0.0
-        active[rows + size + i] = 1.0 if below else 0.0
-        rates[u + i] = over if above else -s[u + i]
-        rates[u + size + i] = under if below else -s[u + size + i]
-    if project:
-        for i in range(n):
-            aim = min(max(s[i] + rates[i], data[at_lb + i]), data[at_lb + n + i])
-            rates[i] = aim - s[i]
-    return largest_magnitude(rates, 3 * n + m + p)
+        row, z = at_G + j * n, s[at_z + j]
+        if z != 0.0:
+            add_scaled(rates, z, data, row, n)
+        slack = dot(data, row, s, n) - data[at_h + j]
+        is_active = z + slack > 0.0
+        rate = slack if is_active else -z
+        active[j] = is_active
+        rates[at_z + j] = rate
+        largest = larger(largest, abs(rate))
+    for i in range(n):
+        rate = -rates[i]
+        if project:
+            rate = min(max(s[i] + rate, data[at_lb + i]), data[at_ub + i]) - s[i]
+        rates[i] = rate
+        largest = larger(largest, abs(rate))
+        for side in range(2):
+            slack = s[i] - data[at_ub + i] if side == 0 else data[at_lb + i] - s[i]
+            multiplier = s[at_u + side * n + i]
+            is_active = multiplier + slack > 0.0
+            rate = slack if is_active else -multiplier
+            active[m + side * n + i] = is_active
+            rates[at_u + side * n + i] = rate
+            largest = larger(largest, abs(rate))
+    return largest
 
 
 @compiled

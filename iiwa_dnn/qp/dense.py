@@ -64,22 +64,6 @@ def rows_dot(data: Vector, at: int, rows: int, n: int, x: Vector, out: Vector, a
         a, j = a + size, j + ONE
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS | {"nnan", "nsz"})
-def _largest(values: Vector, n: int) -> float:
-    largest = 0.0
-    for k in range(np.uint64(n)):
-        value = abs(values[k])
-        largest = value if value > largest else largest
-    return largest
-
-
-@compiled
-def largest_magnitude(values: Vector, n: int) -> float:
-    """Return the largest of the first n magnitudes of (k,), NaN where one is NaN or infinite."""
-    # Without regard to NaN, a maximum is taken in several lanes.
-    return _largest(values, n) if all_finite(values, 0, n) else np.nan
-
-
 @compiled
 def add_outer(out: Vector, factor: float, a: Vector, at_a: int, n: int) -> None:
     """Add factor v v^T to the lower half of `out` (n n,), v being a[at_a : at_a + n]."""
@@ -150,25 +134,6 @@ def factor_solve(K: Vector, n: int, rhs: Vector, out: Vector) -> None:
         out[at] = value
         for k in range(at):
             out[k] -= value * K[row + k]
-
-
-@compiled
-def add_outers(
-    out: Vector, data: Vector, n: int, a: int, b: int, c: int, d: int,
-    one: float, two: float, three: float, four: float,
-) -> None:  # fmt: skip
-    """Do for four rows of `data` (k,), from a, b, c and d, what `add_outer` does to out (n, n)."""
-    size = np.uint64(n)
-    first, second, third, fourth = np.uint64(a), np.uint64(b), np.uint64(c), np.uint64(d)
-    for i in range(size):
-        row = i * size
-        v, w = one * data[first + i], two * data[second + i]
-        y, z = three * data[third + i], four * data[fourth + i]
-        for k in range(i + ONE):
-            out[row + k] += (
-                v * data[first + k] + w * data[second + k]
-                + y * data[third + k] + z * data[fourth + k]
-            )  # fmt: skip
 
 
 @compiled

@@ -37,7 +37,6 @@ from numba import njit
 from iiwa_dnn.qp.dense import (
     SUMS,
     add_outer,
-    add_outers,
     add_scaled,
     cholesky_factor,
     dot,
@@ -112,26 +111,10 @@ def condensed_matrix(
     call: between two steps few rows become active or cease to be.
     """
     _, at_G, _, _ = offsets(n, m, p)
-    a, b, c, count = at_G, at_G, at_G, 0
-    first, second, third = 0.0, 0.0, 0.0
     for j in range(m):
-        change, row = active[j] - counted[j], at_G + j * n
-        if change == 0.0:
-            continue
-        counted[j] = active[j]
-        if count == 0:
-            a, first = row, change
-        elif count == 1:
-            b, second = row, change
-        elif count == 2:
-            c, third = row, change
-        else:
-            add_outers(gram, data, n, a, b, c, row, first, second, third, change)
-        count = count + 1 if count < 3 else 0
-    if count == 1:
-        add_outer(gram, first, data, a, n)
-    elif count > 1:
-        add_outers(gram, data, n, a, b, c, c, first, second, third if count > 2 else 0.0, 0.0)
+        if active[j] != counted[j]:
+            add_outer(gram, active[j] - counted[j], data, at_G + j * n, n)
+            counted[j] = active[j]
     size = np.uint64(n)
     for i in range(size):
         for k in range(i + ONE):
