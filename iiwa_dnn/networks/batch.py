@@ -126,6 +126,8 @@ def _stacked(arrays: dict[str, NDArray[np.float64]]) -> tuple[list[Matrix], Size
     n = arrays["q"].shape[-1] if "q" in arrays and arrays["q"].ndim else 0
     if n == 0:
         raise InvalidInputError("q", "is empty")
+    if "P" not in arrays:
+        raise InvalidInputError("P", "is missing")
     # Rows decide on m and p, so that a right-hand side that does not fit is the one named.
     m, p = (arrays[k].shape[-2] if k in arrays and arrays[k].ndim > 1 else 0 for k in "GA")
     shapes = ((n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,))

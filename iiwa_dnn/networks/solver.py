@@ -222,17 +222,27 @@ class DNNSolver:
         Returns:
             A solution with smaller residuals, or the same where no step had any.
         """
-        warm, settler = self._warm(), self.settler
-        if not solution.found or warm is None:
+        settler = self.settler
+        if type(settler) is not ImplicitEuler or not (self._quick and solution.found):
             return solution
-        if type(settler) is not ImplicitEuler or self.network.compiled is None:
+        if solution.sizes != qp.sizes:
             return solution
-        point, count, step = solution.point.copy(), SHARPENING, settler.long_step
-        residuals = sharpen_implicit(qp.data, *qp.sizes, warm[2], point, step, count)
-        if not max(residuals) < solution.residuals.largest:
+        x = solution.x
+        size = np.abs(qp.q).dot(np.abs(x)) + np.abs(x.dot(qp.P.dot(x)))
+        if not 1e-14 * size < self.tol:  # rounding of the cost is near the tolerance already
             return solution
-        systems, time = solution.iterations + count, solution.network_time + count * step
-        return Solution(point, qp.sizes, solution.status, systems, time, *residuals)
+        try:
+            owner, sizes, state = self._kept.pop()  # nobody else has it now
+        except IndexError:
+            return solution
+        if owner is self.network and sizes == qp.sizes:
+            point, count, step = solution.point.copy(), SHARPENING, settler.long_step
+            residuals = sharpen_implicit(qp.data, *sizes, state, point, step, count)
+            if max(residuals) < solution.residuals.largest:
+                systems, time = solution.iterations + count, solution.network_time + count * step
+                solution = Solution(point, sizes, solution.status, systems, time, *residuals)
+        self._kept.append((owner, sizes, state))
+        return solution
 
     def _settle(self, network: Network, qp: QP, state: Vector, point: Vector) -> Settled:
         """Settle with the settler; a large program from a cold start, through the barrier."""

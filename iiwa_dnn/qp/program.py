@@ -130,7 +130,7 @@ class QP:
             for name, v, absent in zip(FIELDS, (P, q, G, h, A, b, lb, ub), _absent(n), strict=True)
         ]
         self.sizes = sizes = n, arrays[3].size, arrays[5].size
-        if [v.shape for v in arrays] != _shapes(sizes):  # rarely
+        if n == 0 or [v.shape for v in arrays] != _shapes(sizes):  # rarely
             self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
         try:  # a quarter of the time of numpy's own, for arrays stored row by row
             self.data = np.frombuffer(bytearray().join(arrays))  # type: ignore[arg-type]
@@ -283,6 +283,8 @@ def numbers(name: str, value: Any) -> NDArray[np.float64]:
     """Convert an argument, dense or sparse, to a dense array of floats of its own shape."""
     if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
+    if np.iscomplexobj(value):
+        raise InvalidInputError(name, "is not an array of real numbers", value)
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -172,3 +172,11 @@ def test_company_does_not_change_an_answer(limited: bool) -> None:
             np.testing.assert_allclose(together.x[k], free[:n], rtol=0, atol=1e-9)
             np.testing.assert_allclose(together.y[k], free[n:], rtol=0, atol=1e-9)
     assert together.found.sum() == count - 1
+
+
+def test_members_without_a_choice_spoil_no_other() -> None:
+    eye, one = np.eye(2), np.ones(2)
+    batch = solve_batch(
+        eye, np.ones((3, 2)), A=[[1.0, 1.0]], b=[[2.0], [2.0], [5.0]], lb=one, ub=one
+    )
+    assert batch.found.tolist() == [True, True, False]

@@ -332,3 +332,49 @@ def test_a_sharpened_answer_is_never_worse() -> None:
     answer = other.solve(qp)
     assert other.sharpen(qp, answer) is answer
     assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
+
+
+def test_sharpening_takes_no_state_of_another_program() -> None:
+    big, small = QP(np.eye(300), np.ones(300)), QP(np.eye(2), np.ones(2))
+    solver = DNNSolver()
+    first = solver.solve(big)
+    second = solver.solve(small)
+    for qp, solution in ((big, first), (big, second), (small, first)):
+        assert solver.sharpen(qp, solution) is solution
+    solver.solve(big)
+    assert solver.sharpen(big, second) is second
+    # In a process of its own: a state of the wrong size would end it.
+    script = """
+import sys, numpy as np, iiwa_dnn
+from concurrent.futures import ThreadPoolExecutor
+sys.setswitchinterval(1e-6)
+solver = iiwa_dnn.DNNSolver()
+rng = np.random.default_rng(0)
+qps = [
+    iiwa_dnn.QP(np.eye(n), rng.standard_normal(n), rng.standard_normal((n, n)), np.ones(n))
+    for n in (2, 3, 120, 130)
+]
+solve = lambda k: iiwa_dnn.solve_problem(qps[k % 4], solver=solver, sharpen=True).found
+with ThreadPoolExecutor(4) as pool:
+    print(all(pool.map(solve, range(1500))))
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.strip()) == (0, "True"), done.stderr
+
+
+@pytest.mark.parametrize("n", [2, 150, 400])
+def test_programs_without_a_choice_are_judged(n: int) -> None:
+    one = np.ones(n)
+    qp = QP(np.eye(n), -2.0 * one, A=one[np.newaxis], b=[float(n)], lb=one, ub=one)
+    solution = DNNSolver().solve(qp)
+    assert solution.found
+    np.testing.assert_array_equal(solution.x, one)
+    qp.b[0] += 1e-7
+    assert not DNNSolver().solve(qp).found
+
+
+def test_rounding_of_the_cost_is_not_sharpened() -> None:
+    qp = QP(1e6 * np.eye(3), -1e9 * np.array([1.0, 2.0, 3.0]))
+    solver = DNNSolver(tol=1e-6)
+    solution = solver.solve(qp)
+    assert solver.sharpen(qp, solution) is solution

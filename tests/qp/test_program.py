@@ -62,6 +62,15 @@ def test_arrays_of_every_kind_make_the_same_program(kind: Callable[[np.ndarray],
     np.testing.assert_array_equal(qp.data, expected)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [((np.zeros((0, 0)), []), "q: is empty"), ((np.eye(2), np.array([1j, 2.0])), "q: is not an")],
+)
+def test_what_is_no_program_is_refused(arguments: tuple[Any, Any], name: str) -> None:
+    with pytest.raises(InvalidInputError, match=name):
+        QP(*arguments)
+
+
 @pytest.mark.parametrize("given", [None, np.eye(3), "problem"])
 def test_what_is_no_problem_is_refused(given: Any) -> None:
     with pytest.raises(InvalidInputError, match="problem: must be a qpsolvers"):

@@ -68,6 +68,9 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
     Works in numpy, LAPACK and SuperLU: it is meant for large programs and for those left over.
     From n = 64 on the residuals are the larger of those of two orders of the sums.
     """
+    if (qp.lb == qp.ub).all():  # nothing is left to choose
+        state[:], state[: qp.q.size] = 0.0, qp.lb
+        return 0, 0.0, *kkt_point(qp.data, *qp.sizes, state, point)
     run = _Run(qp, state, point, tol)
     run.limit = max_systems
     # Overflows end an attempt: they show in its residuals.
