@@ -80,8 +80,10 @@ class DNNSolver:
             InvalidInputError: `tol` is not a positive number, or `network` is not a network.
         """
         checks.positive("tol", tol)
-        if network is not None:
-            checks.instance("network", network, Network)
+        given: object = network
+        if not (given is None or isinstance(given, Network)):
+            problem = f"must be an object of a Network's class, not {network!r}"
+            raise InvalidInputError("network", problem, network)
         network = _NETWORK if network is None else network
         settler = _SETTLER if settler is None else settler
         self._kept: deque[tuple[Network, Sizes, Vector]]

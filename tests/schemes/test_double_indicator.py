@@ -9,7 +9,8 @@ import pytest
 from helpers_kinematics import PAPER_Q0, Array
 from helpers_simulation import heart, near_target, paper_robot, paper_start, solve_by
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.solver import DNNSolver, solve_problem
+from iiwa_dnn.networks.problems import solve_problem
+from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
