@@ -283,11 +283,8 @@ def assemble(
                 out, A, b = data, at_A + start * n, at_b + start
             else:
                 out, A, b = np.zeros(count * (n + 1)), 0, count * n
-            place, support, target = (
-                placements[codes[block + 3]],
-                codes[block + 4],
-                codes[block + 5],
-            )
+            place, support = placements[codes[block + 3]], codes[block + 4]
+            target = codes[block + 5]
             gain, period = numbers[at], 0.0
             if numbers[at + 1] != 0.0:
                 gain, period = min(gain, rate), rate

@@ -141,8 +141,7 @@ def settle_implicit(
         [rho], and the residuals of `point`.
     """
     size, flags, project = s.size, m + 2 * n, tol < 0.0  # False; a literal is compiled apart
-    # One allocation: each takes as long as a hundred products.
-    work = np.empty(3 * (size + flags) + 2 * n * n + p + m)
+    work = np.empty(3 * (size + flags) + 2 * n * n + p + m)  # several would take as long as a step
     rates, new_rates, new = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
     rest = work[3 * size :]
     active, new_active = rest[:flags], rest[flags : 2 * flags]
