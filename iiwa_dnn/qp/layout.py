@@ -11,7 +11,7 @@ view of an array, since numba counts its references.
 """
 
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numba import njit
@@ -56,6 +56,48 @@ def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
     at_G = at_q + n
     at_A = at_G + m * n + m
     return at_q, at_G, at_A, at_A + p * n + p
+
+
+class QPViews(NamedTuple):
+    """The eight parts of a program of n variables, m inequality and p equality rows, as views.
+
+    Attributes:
+        P: Cost matrix, (n, n).
+        q: Cost vector, (n,).
+        G: Inequality rows, (m, n).
+        h: Inequality right-hand side, (m,).
+        A: Equality rows, (p, n).
+        b: Equality right-hand side, (p,).
+        lb: Lower bounds, (n,).
+        ub: Upper bounds, (n,).
+    """
+
+    P: Matrix
+    q: Vector
+    G: Matrix
+    h: Vector
+    A: Matrix
+    b: Vector
+    lb: Vector
+    ub: Vector
+
+
+@compiled
+def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
+    """Make the views of a program's flat array, `QP.data` (size,)."""
+    at_q, at_G, at_A, at_lb = offsets(n, m, p)
+    at_h = at_G + m * n
+    at_b = at_A + p * n
+    return QPViews(
+        data[:at_q].reshape(n, n),
+        data[at_q:at_G],
+        data[at_G:at_h].reshape(m, n),
+        data[at_h:at_A],
+        data[at_A:at_b].reshape(p, n),
+        data[at_b:at_lb],
+        data[at_lb : at_lb + n],
+        data[at_lb + n : at_lb + 2 * n],
+    )
 
 
 @compiled
