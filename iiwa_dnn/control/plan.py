@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.control.policies import Policy, Resolution, gave_way, resolve, stopped
-from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step
+from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step, follow
 from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators.implicit import SETTLE
+from iiwa_dnn.networks.integrators.implicit import SETTLE, settle_implicit
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
@@ -127,7 +127,8 @@ class Plan:
         self.pinocchio = self.kinematics.pinocchio
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
-        codes[7:9] = ASSEMBLE.address, (SETTLE if converged else FOLLOW).address
+        codes[7] = ASSEMBLE.address(assemble)
+        codes[8] = SETTLE.address(settle_implicit) if converged else FOLLOW.address(follow)
         self.step = self._entrance()
 
     def _restrain(self, dt: float) -> None:

@@ -5,14 +5,14 @@ enters it once a step.
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from iiwa_dnn.control.answers import FIGURES, PLACE
 from iiwa_dnn.networks.integrators.explicit import explicit_euler
-from iiwa_dnn.networks.integrators.implicit import SETTLE
+from iiwa_dnn.networks.integrators.implicit import SETTLE, SETTLED
 from iiwa_dnn.networks.projection import field, stable_step
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import Apart
+from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.qp.residuals import kkt_point, within
 from iiwa_dnn.schemes.assembly import ASSEMBLE
@@ -44,7 +44,7 @@ def follow(
     return count, network[3], primal, dual, gap
 
 
-FOLLOW = Apart(follow, "Tuple((i8, f8, f8, f8, f8))(V, i8, i8, i8, V, V, V)")
+FOLLOW = Signature(SETTLED, VECTOR, *3 * [types.int64], VECTOR, VECTOR, VECTOR)
 _enter_assemble, _enter_settle, _enter_follow = ASSEMBLE.enter, SETTLE.enter, FOLLOW.enter
 
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
-from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler
+from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler, settle_implicit
 from iiwa_dnn.networks.integrators.side_by_side import LANES, ROUNDS, free_steps
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, compiled, released
@@ -177,7 +177,7 @@ def _settle_all(
     residuals: Matrix, iterations: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Settle one program for each row of `points`, over all cores."""
-    settler, count, address = ImplicitEuler(), len(points), SETTLE.address
+    settler, count, address = ImplicitEuler(), len(points), SETTLE.address(settle_implicit)
 
     def settle(first: int) -> None:
         _settle_rows(

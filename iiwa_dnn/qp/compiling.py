@@ -7,10 +7,9 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from numba import types
+from numba import config, types
 from numba.core import cgutils, event
 from numba.core.dispatcher import Dispatcher
-from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 
 NOTICE = "iiwa_dnn: compiling at first use, up to 20 s, once; `iiwa-dnn warm-up` does it ahead"
@@ -26,8 +25,10 @@ class Watch(event.Listener):
 
     def __init__(self) -> None:
         """Begin to listen."""
-        self.seconds, self.quiet = 0.0, False
-        self._depth, self._began = 0, 0.0
+        self.seconds = 0.0
+        self.quiet = False
+        self._depth = 0
+        self._began = 0.0
         event.register("numba:compile", self)
 
     def on_start(self, event: Any) -> None:
@@ -52,47 +53,66 @@ class Watch(event.Listener):
 WATCH = Watch()
 
 
-class Apart:
-    """A compiled function that compiled code enters by its address.
+VECTOR = types.Array(types.float64, 1, "C")
+MATRIX = types.Array(types.float64, 2, "C")
 
-    numba optimises all that a function calls once more with it. A function that stands apart is
-    compiled once, and only where it is used.
+
+_INTERPRETED: bool = config.DISABLE_JIT  # type: ignore[attr-defined]
+
+
+class Signature:
+    """The types with which compiled code enters one of several functions by its address.
+
+    numba optimizes all that a function calls once more with it. A function that is entered by its
+    address is compiled once, only where it is used, and it may be a user's own.
 
     Attributes:
-        enter: Calls it from compiled code, given `address` before its own arguments.
+        enter: ``enter(address, *arguments)`` calls the function from compiled code.
     """
 
-    def __init__(self, function: Callable[..., Any], signature: str) -> None:
-        """Take a function, and numba's signature: ``"result(arguments)"``, V a flat array."""
-        self._function: Any = function
-        self._arguments, result = normalize_signature(signature.replace("V", "float64[::1]"))
-        self.enter: Any = _entrance(self._arguments, result)
-        if not isinstance(function, Dispatcher):  # NUMBA_DISABLE_JIT
-            self.enter = lambda address, *arguments: function(*arguments)
+    def __init__(self, result: Any, *arguments: Any) -> None:
+        """Take numba's types of the result (`types.void` for none) and of the arguments."""
+        self._result = result
+        self._arguments = arguments
+        self._interpreted: dict[int, Any] = {}
+        self.enter: Any = _call_at_address(result, arguments)
+        if _INTERPRETED:
+            self.enter = lambda address, *values: self._interpreted[address](*values)
 
-    @property
-    def address(self) -> int:
-        """The address; the function is compiled, or read from disk, where it was not yet."""
-        if not isinstance(self._function, Dispatcher):
-            return 0
-        self._function.compile(self._arguments)
-        made: Any = self._function.overloads[self._arguments]
+    def address(self, function: Callable[..., Any]) -> int:
+        """Return the address of a compiled function, which is compiled if it has not been yet.
+
+        Raises:
+            TypeError: The function is not compiled by numba or returns another type.
+        """
+        if _INTERPRETED:
+            self._interpreted[id(function)] = function
+            return id(function)
+        if not isinstance(function, Dispatcher):
+            raise TypeError(f"{function!r} is not compiled by numba")
+        function.compile(self._arguments)
+        made: Any = function.overloads[self._arguments]
+        returned = made.signature.return_type
+        if returned != self._result:
+            raise TypeError(f"{made.fndesc.qualname} returns {returned}, not {self._result}")
         address: int = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
         return address
 
 
-def _entrance(expected: Any, result: Any) -> Any:
-    """Make the call that enters a function of these types at an address."""
+def _call_at_address(result: Any, expected: tuple[Any, ...]) -> Any:
+    """Make the function that calls a function of these types at an address."""
 
     @intrinsic
     def enter(typing: Any, address: Any, *arguments: Any) -> Any:
         def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            given = cgutils.unpack_tuple(builder, values[1])
-            pairs = zip(given, arguments, expected, strict=True)
-            cast = [context.cast(builder, *each) for each in pairs]
+            passed = cgutils.unpack_tuple(builder, values[1])
+            pairs = zip(passed, arguments, expected, strict=True)
+            cast = [context.cast(builder, *pair) for pair in pairs]
             kind = context.call_conv.get_function_type(result, expected)
-            place = builder.inttoptr(values[0], kind.as_pointer())
-            status, value = context.call_conv.call_function(builder, place, result, expected, cast)
+            function = builder.inttoptr(values[0], kind.as_pointer())
+            status, value = context.call_conv.call_function(
+                builder, function, result, expected, cast
+            )
             with builder.if_then(status.is_error, likely=False):
                 context.call_conv.return_status_propagate(builder, status)
             return value

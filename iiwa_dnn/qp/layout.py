@@ -14,10 +14,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -80,6 +81,12 @@ class QPViews(NamedTuple):
     b: Vector
     lb: Vector
     ub: Vector
+
+
+QP_VIEWS = types.BaseTuple.from_types(
+    (MATRIX, VECTOR, MATRIX, VECTOR, MATRIX, VECTOR, VECTOR, VECTOR), QPViews
+)
+"""numba's type of `QPViews`, for a `Signature`."""
 
 
 @compiled

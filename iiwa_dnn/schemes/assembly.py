@@ -5,15 +5,16 @@ writes a whole program into one `QP.data` array; parts without a compiled form a
 (`iiwa_dnn.schemes.filling`) and write into the same array.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import Apart
+from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.acceleration import check_parts, damping_of
@@ -41,15 +42,22 @@ HEADER, BLOCK = 9, 8
 """Entries of the codes' head (n, m, p, joints, blocks, frame, inertia; two addresses that
 `control.plan` fills in) and of each block (the last is the address of its function, or 0)."""
 
-_M = "float64[:, ::1]"
-_APART = {
-    COLLISION: Apart(collision_rows, f"void(V, i8, i8, i8, i8, i8, V, i8, {_M}, {_M}, f8)"),
-    MOTION_LIMITS: Apart(motion_limits, "void(V, i8, i8, i8, V, i8, V, V, f8)"),
-    ORIENTATION_BLOCK: Apart(block_rows, f"void(V, i8, i8, i8, i8[::1], i8, f8, {_M}, V, V, i8)"),
+_COLLISION = Signature(
+    types.void, VECTOR, *5 * [types.int64], VECTOR, types.int64, MATRIX, MATRIX, types.float64
+)
+_MOTION = Signature(
+    types.void, VECTOR, *3 * [types.int64], VECTOR, types.int64, VECTOR, VECTOR, types.float64
+)
+_BLOCK = Signature(
+    types.void, VECTOR, *3 * [types.int64], types.int64[::1], types.int64, types.float64,
+    MATRIX, VECTOR, VECTOR, types.int64,
+)  # fmt: skip
+_enter_collision, _enter_motion, _enter_block = _COLLISION.enter, _MOTION.enter, _BLOCK.enter
+_APART: dict[int, tuple[Signature, Callable[..., None]]] = {
+    COLLISION: (_COLLISION, collision_rows),
+    MOTION_LIMITS: (_MOTION, motion_limits),
+    ORIENTATION_BLOCK: (_BLOCK, block_rows),
 }
-_enter_collision = _APART[COLLISION].enter
-_enter_motion = _APART[MOTION_LIMITS].enter
-_enter_block = _APART[ORIENTATION_BLOCK].enter
 
 
 class Block(NamedTuple):
@@ -182,7 +190,7 @@ class Layout:
             place = kinematics.frame_ids[frame]
             blocks += [block.part.kind, block.start, -block.rows if soft else block.rows]
             apart = _APART.get(block.part.kind)
-            address = 0 if apart is None else apart.address
+            address = 0 if apart is None else apart[0].address(apart[1])
             blocks += [place, support, TARGET_SIZE * target, at, address]
         moves = [kinematics.support(index) for index in kinematics.frame_ids]
         self.codes: Codes = np.concatenate([np.array(head + blocks, dtype=np.int64), *moves])
@@ -302,7 +310,10 @@ def assemble(
                 _add_soft(data, n, out, count, numbers[numbers.size - blocks + k])
 
 
-ASSEMBLE = Apart(assemble, f"void(V, i8[::1], V, V, {_M}, {_M}, V, V, f8, V)")
+ASSEMBLE = Signature(
+    types.void, VECTOR, types.int64[::1], VECTOR, VECTOR, MATRIX, MATRIX, VECTOR, VECTOR,
+    types.float64, VECTOR,
+)  # fmt: skip
 
 
 @compiled

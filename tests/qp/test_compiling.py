@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import config, njit, types
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn import DoubleIndicator, Robot, simulate
 from iiwa_dnn.qp import compiling
-from iiwa_dnn.qp.compiling import Apart, Watch
-from iiwa_dnn.qp.layout import Vector, compiled
+from iiwa_dnn.qp.compiling import VECTOR, Signature, Watch
+from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, Vector, compiled, qp_views
 
 
 @compiled
@@ -27,7 +27,7 @@ def _first_and_sum(values: Vector, count: int, factor: float) -> tuple[int, floa
     return int(values[0]), factor * total
 
 
-_SUM = Apart(_first_and_sum, "Tuple((i8, f8))(V, i8, f8)")
+_SUM = Signature(types.Tuple([types.int64, types.float64]), VECTOR, types.int64, types.float64)
 _enter = _SUM.enter
 
 
@@ -41,7 +41,52 @@ def _twice(address: int, values: Vector) -> float:
 def test_a_function_entered_by_its_address_answers_as_if_it_were_called() -> None:
     values = np.array([3.7, 1.0, -2.5])
     for _ in range(2):
-        assert _twice(_SUM.address, values) == 3 + 2.0 * 2.2
+        assert _twice(_SUM.address(_first_and_sum), values) == 3 + 2.0 * 2.2
+
+
+_COST = Signature(types.float64, QP_VIEWS, VECTOR)
+
+
+@compiled
+def _linear_cost(qp: QPViews, x: Vector) -> float:
+    """Return q x."""
+    total = 0.0
+    for i in range(x.size):
+        total += qp.q[i] * x[i]
+    return total
+
+
+@compiled
+def _bound_cost(qp: QPViews, x: Vector) -> float:
+    """Return ub x."""
+    total = 0.0
+    for i in range(x.size):
+        total += qp.ub[i] * x[i]
+    return total
+
+
+_enter_cost = _COST.enter
+
+
+@compiled
+def _cost_at(address: int, data: Vector, x: Vector) -> float:
+    """Enter one of several functions of one signature."""
+    return _enter_cost(address, qp_views(data, 2, 0, 0), x)
+
+
+def test_functions_of_one_signature_take_the_views_of_a_program() -> None:
+    data = np.array([1.0, 0.0, 0.0, 1.0, 3.0, 4.0, -1.0, -1.0, 5.0, 6.0])
+    x = np.array([1.0, 2.0])
+    assert _cost_at(_COST.address(_linear_cost), data, x) == 11.0
+    assert _cost_at(_COST.address(_bound_cost), data, x) == 17.0
+
+
+@pytest.mark.skipif(config.DISABLE_JIT, reason="nothing has a type then")
+def test_a_function_of_another_type_is_refused() -> None:
+    with pytest.raises(TypeError, match="float64"):
+        _SUM.address(compiled(lambda values, count, factor: values[0]))
+    with pytest.raises(TypeError, match="not compiled"):
+        _SUM.address(len)
 
 
 def test_compiling_is_said_once_and_timed(

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numba import types
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
@@ -30,7 +31,7 @@ from iiwa_dnn.networks.integrators.base import Integrator, Settled
 from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_gram, linear_step
 from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
 from iiwa_dnn.networks.projection import field
-from iiwa_dnn.qp.compiling import Apart
+from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.layout import Vector, check_size, compiled, released
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
@@ -237,4 +238,7 @@ def sharpen_implicit(
     return primal, dual, gap
 
 
-SETTLE = Apart(settle_implicit, "Tuple((i8, f8, f8, f8, f8))(V, i8, i8, i8, V, V, f8, i8, f8)")
+SETTLED = types.Tuple([types.int64, *4 * [types.float64]])
+SETTLE = Signature(
+    SETTLED, VECTOR, *3 * [types.int64], VECTOR, VECTOR, types.float64, types.int64, types.float64
+)
