@@ -1,6 +1,8 @@
 """Dynamic neural networks that resolve the redundancy of robot arms, checked at every step."""
 
 from importlib.metadata import version
+from typing import Any
+from warnings import warn
 
 from iiwa_dnn.control.answers import Command
 from iiwa_dnn.control.controller import Controller
@@ -53,7 +55,7 @@ from iiwa_dnn.schemes import (
     AxisTask,
     Box,
     Capsule,
-    CentreOfMassTask,
+    CenterOfMassTask,
     CollisionAvoidance,
     ConvexMesh,
     Cost,
@@ -75,7 +77,7 @@ from iiwa_dnn.schemes import (
     PostureTask,
     PseudoInverse,
     RelativePoseTask,
-    RemoteCentreTask,
+    RemoteCenterTask,
     Scheme,
     Sphere,
     Step,
@@ -87,7 +89,7 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP", "AccelerationLimits", "ActivatedNetwork", "AdaptiveRungeKutta", "Agreement", "AxisTask",
-    "BatchSolution", "Box", "Capsule", "CentreOfMassTask", "Circle", "CollisionAvoidance",
+    "BatchSolution", "Box", "Capsule", "CenterOfMassTask", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork", "ElbowAngleTask",
     "ExplicitEuler", "FileError", "GradientNetwork", "HalfSpace", "Heart", "IiwaDnnError",
@@ -96,9 +98,20 @@ __all__ = [
     "MissingDependencyError", "MovingTarget", "MujocoPlant", "Network", "NoSolutionError",
     "NotFoundError", "OnSurface", "OneLayerNetwork", "OrientationTask", "PoseTask", "PositionTask",
     "PostureTask", "PrimalDualNetwork", "ProjectionNetwork", "PseudoInverse", "Record", "Reference",
-    "RelativePoseTask", "RemoteCentreTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
+    "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
     "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
     "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots",
     "compute_metrics", "failures", "load_robot", "retime", "robot_from_dh", "simulate",
     "solve_batch", "solve_problem",
 ]  # fmt: skip
+
+_RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}
+"""Old public names and the new ones."""
+
+
+def __getattr__(name: str) -> Any:
+    """Return the object of a public name that has changed, with a DeprecationWarning."""
+    if name not in _RENAMED:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    warn(f"iiwa_dnn.{name} is now iiwa_dnn.{_RENAMED[name]}", DeprecationWarning, stacklevel=2)
+    return globals()[_RENAMED[name]]

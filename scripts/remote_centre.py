@@ -23,7 +23,7 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
         costs=[iiwa_dnn.KineticEnergy(weight=0.2), iiwa_dnn.CyclicMotion(weight=0.8)],
         tasks=[
             iiwa_dnn.PositionTask(tracking="next"),
-            iiwa_dnn.RemoteCentreTask(point, tracking="next"),
+            iiwa_dnn.RemoteCenterTask(point, tracking="next"),
         ],
         limits=[iiwa_dnn.JointLimits()],
     )

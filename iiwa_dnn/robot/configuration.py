@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from warnings import warn
+
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
@@ -107,12 +109,18 @@ class Configuration(FrameState):
         return read_only(self._inertia)
 
     @property
-    def centre_of_mass(self) -> tuple[Array, Array]:
-        """Position of the centre of mass [m], (3,), and its Jacobian, (3, n), along world axes."""
+    def center_of_mass(self) -> tuple[Array, Array]:
+        """Position of the center of mass [m], (3,), and its Jacobian, (3, n), along world axes."""
         model = self._robot.model
         data = model.createData()
         jacobian = pin.jacobianCenterOfMass(model, data, self._q)
         return data.com[0].copy(), jacobian.reshape(3, -1)
+
+    @property
+    def centre_of_mass(self) -> tuple[Array, Array]:
+        """Old name of `center_of_mass`, deprecated."""
+        warn("centre_of_mass is now center_of_mass", DeprecationWarning, stacklevel=2)
+        return self.center_of_mass
 
     def frame(self, name: str) -> FrameState:
         """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.

@@ -27,6 +27,7 @@ class Kinematics:
         placements: Frame placements by frame index, (frames, 12): the rotation's columns, then the
             position [m]. A loop may keep only the rows of `frame_ids` current.
         inertia: Joint-space inertia matrix [kg m^2], (n, n), current where `dynamics` is set.
+        moves: `Robot.moves`, (frames, n): by frame index, 1 for each joint that moves the frame.
     """
 
     def __init__(self, robot: Robot, frames: Iterable[str] = (), dynamics: bool = False) -> None:
@@ -45,6 +46,7 @@ class Kinematics:
         self.jacobian: Array = self._data.J.T.reshape(robot.dof, 6)
         self.inertia: Array = self._data.M.reshape(robot.dof, robot.dof)
         self.placements = _placements(self._data)
+        self.moves: Array = robot.moves
 
     @property
     def pinocchio(self) -> tuple[pin.Model, pin.Data, int, tuple[int, ...]]:
@@ -77,11 +79,8 @@ class Kinematics:
 
     def support(self, index: int) -> NDArray[np.int64]:
         """Return 1 for each joint that moves a frame and 0 for the others, (n,)."""
-        moves = np.zeros(self._model.nv, dtype=np.int64)
-        for joint in list(self._model.supports[self._model.frames[index].parentJoint])[1:]:
-            start = self._model.idx_vs[joint]
-            moves[start : start + self._model.nvs[joint]] = 1
-        return moves
+        support: NDArray[np.int64] = self.moves[index].astype(np.int64)
+        return support
 
 
 def _placements(data: pin.Data) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -106,6 +107,17 @@ class Robot:
         frames = list(self.model.frames)[1:]
         links = [frame.name for frame in frames if frame.type == pin.FrameType.BODY]
         return tuple(dict.fromkeys(links + [frame.name for frame in frames]))
+
+    @cached_property
+    def moves(self) -> Array:
+        """Joints that move each frame, (frames, n), by Pinocchio's index of the frame: 1 or 0.
+
+        For compiled code, so not protected.
+        """
+        joints = np.zeros((self.model.njoints, self.dof))
+        for joint, support in enumerate(self.model.supports):
+            joints[joint, [self.model.idx_vs[each] for each in list(support)[1:]]] = 1.0
+        return joints[[frame.parentJoint for frame in self.model.frames]]
 
     def frame_id(self, name: str) -> int:
         """Return Pinocchio's index of a frame: the link's, where a joint has the same name.

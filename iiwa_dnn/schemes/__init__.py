@@ -18,8 +18,8 @@ from iiwa_dnn.schemes.double_indicator import PseudoInverse as PseudoInverse
 from iiwa_dnn.schemes.frame_tasks import AxisTask as AxisTask
 from iiwa_dnn.schemes.frame_tasks import PoseTask as PoseTask
 from iiwa_dnn.schemes.frame_tasks import RelativePoseTask as RelativePoseTask
-from iiwa_dnn.schemes.frame_tasks import RemoteCentreTask as RemoteCentreTask
-from iiwa_dnn.schemes.joint_tasks import CentreOfMassTask as CentreOfMassTask
+from iiwa_dnn.schemes.frame_tasks import RemoteCenterTask as RemoteCenterTask
+from iiwa_dnn.schemes.joint_tasks import CenterOfMassTask as CenterOfMassTask
 from iiwa_dnn.schemes.joint_tasks import ElbowAngleTask as ElbowAngleTask
 from iiwa_dnn.schemes.joint_tasks import JointCouplingTask as JointCouplingTask
 from iiwa_dnn.schemes.joint_tasks import PostureTask as PostureTask

@@ -172,7 +172,7 @@ class RelativePoseTask(FeedbackTask):
 
 
 @dataclass(frozen=True)
-class RemoteCentreTask(FeedbackTask):
+class RemoteCenterTask(FeedbackTask):
     r"""Remote centre of motion: a shaft along an axis of a frame goes through a point; two rows.
 
     With the point seen from the frame, :math:`s = R^T (c - p)`, and a basis U of the directions

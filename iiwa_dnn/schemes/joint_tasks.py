@@ -154,7 +154,7 @@ class ElbowAngleTask(FeedbackTask):
 
 
 @dataclass(frozen=True)
-class CentreOfMassTask(FeedbackTask):
+class CenterOfMassTask(FeedbackTask):
     r"""Position of the arm's centre of mass along some axes of the world.
 
     .. math::  J_c \dot q = \delta\,(c_d - c)
@@ -176,17 +176,17 @@ class CentreOfMassTask(FeedbackTask):
             self._set(position=checks.vector3("position", self.position))
         self._set(rows=len(self.axes))
 
-    def anchored(self, conf: Configuration) -> CentreOfMassTask:
+    def anchored(self, conf: Configuration) -> CenterOfMassTask:
         """Return the task with the centre of mass of `conf`, unless it has one already."""
         if self.position is not None:
             return self
-        place: Vector3 = checks.vector3("position", conf.centre_of_mass[0])
+        place: Vector3 = checks.vector3("position", conf.center_of_mass[0])
         return replace(self, position=place)
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
         conf = Configuration(step.robot, step.q)
-        place, jacobian = conf.centre_of_mass
+        place, jacobian = conf.center_of_mass
         at = ["xyz".index(axis) for axis in self.axes]
         wanted = place if self.position is None else np.array(self.position)
         return jacobian[at], self.feedback(step) * (wanted - place)[at]

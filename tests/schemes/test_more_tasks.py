@@ -16,7 +16,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import (
     AxisTask,
-    CentreOfMassTask,
+    CenterOfMassTask,
     CyclicMotion,
     ElbowAngleTask,
     JointCouplingTask,
@@ -27,7 +27,7 @@ from iiwa_dnn.schemes import (
     PositionTask,
     PostureTask,
     RelativePoseTask,
-    RemoteCentreTask,
+    RemoteCenterTask,
     Scheme,
 )
 from iiwa_dnn.schemes.costs import manipulability_gradient
@@ -44,13 +44,13 @@ TASKS: dict[str, Any] = {
     "axis": AxisTask(AXIS, gain=1.0),
     "axis in the world": AxisTask(AXIS, START.rotation @ AXIS, gain=1.0),
     "relative pose": RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
-    "remote centre": RemoteCentreTask(SHAFT, gain=1.0),
-    "looking at a frame": RemoteCentreTask("iiwa7_link_2", RAY, gain=1.0),
+    "remote center": RemoteCenterTask(SHAFT, gain=1.0),
+    "looking at a frame": RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
     "posture": PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
     "coupling": JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
     "elbow": ElbowAngleTask(gain=1.0).anchored(START),
     "elbow, other reference": ElbowAngleTask(reference=(1.0, 0.2, 0.0), gain=1.0).anchored(START),
-    "centre of mass": CentreOfMassTask(axes="xz", gain=1.0).anchored(START),
+    "center of mass": CenterOfMassTask(axes="xz", gain=1.0).anchored(START),
 }
 
 
@@ -121,8 +121,8 @@ def test_the_elbow_swings_while_the_tool_stays() -> None:
     np.testing.assert_allclose(end.position, START.position, atol=1e-4)
 
 
-def test_centre_of_mass_is_the_mean_over_the_links() -> None:
-    place, _ = START.centre_of_mass
+def test_center_of_mass_is_the_mean_over_the_links() -> None:
+    place, _ = START.center_of_mass
     model, data = ROBOT.model, ROBOT.model.createData()
     pin.forwardKinematics(model, data, START.q)
     moved = [
@@ -174,9 +174,9 @@ def test_parts_leave_slack_variables_out() -> None:
         (lambda: AxisTask((0.0, 0.0, 0.0)), "axis"),
         (lambda: PoseTask(gain=-1.0), "gain"),
         (lambda: PoseTask(weight=-1.0), "weight"),
-        (lambda: CentreOfMassTask(axes="xw"), "axes"),
+        (lambda: CenterOfMassTask(axes="xw"), "axes"),
         (lambda: RelativePoseTask("a", "b", ((1.0,),)), "pose"),
-        (lambda: RemoteCentreTask((0.0, 1.0)), "point"),
+        (lambda: RemoteCenterTask((0.0, 1.0)), "point"),
         (lambda: PostureTask({"a": np.nan}), "joints"),
         (lambda: Manipulability(weight=-1.0), "weight"),
         (
