@@ -78,6 +78,12 @@ def described_elsewhere() -> set[str]:
 DESCRIBED = described_elsewhere()
 
 
+def column_words(annotation: ast.expr) -> str:
+    """Meaning and shape in ``Annotated[..., Column(meaning, shape)]``, of which docs are made."""
+    calls = [node for node in ast.walk(annotation) if isinstance(node, ast.Call)]
+    return " ".join(ast.unparse(argument) for call in calls for argument in call.args)
+
+
 def is_public(name: str) -> bool:
     return not name.startswith("_")
 
@@ -112,7 +118,7 @@ def arrays(path: Path) -> Iterator[Item]:
                 name = item.target.id
                 if is_public(name) and _ARRAY.search(ast.unparse(item.annotation)):
                     where = f"{module}:{item.lineno} {node.name}"
-                    yield Item(where, name, said.get(name, ""))
+                    yield Item(where, name, said.get(name, column_words(item.annotation)))
             elif isinstance(item, ast.FunctionDef) and (
                 is_public(item.name) or item.name in ("__init__", "__call__")
             ):

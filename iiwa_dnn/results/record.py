@@ -16,13 +16,15 @@ from pathlib import Path
 from typing import Annotated, Any, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, percent, plain, write_atomically
+from iiwa_dnn.results.column import Column
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+CodeArray = NDArray[np.int8]
 
 MODES = ("converged", "continuous")
 LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
@@ -39,109 +41,151 @@ class Record:
     """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
 
     The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
-    sample i to sample i + 1. The fields state shape and kind of the arrays, with m for the number
-    of inequality rows. In the gaps and in ``reference_residual`` NaN means that the reference was
-    not asked at that step and inf that it gave no answer. Optional arrays are None in a run without
-    them; files of older versions lack some and are read all the same.
+    sample i to sample i + 1. There are m inequality rows, l priority levels and f tracked frames
+    beside the first. In the gaps and in ``reference_residual`` NaN means that the reference was not
+    asked at that step and inf that it gave no answer. Optional arrays, from ``ddq`` on, are None in
+    a run without them; files of older versions lack some and are read all the same.
 
     Attributes:
-        t: Time [s], (N+1,), increasing.
-        q: Joint positions [rad], (N+1, n).
-        dq: Joint velocities that moved the robot [rad/s], (N, n).
-        dq_solver: Joint velocities that the network answered [rad/s], (N, n).
-        position: Tip position [m], (N+1, 3).
-        rotation: Tip orientation, tip axes to world axes, (N+1, 3, 3).
-        position_desired: Desired tip position [m], (N+1, 3).
-        rotation_desired: Desired tip orientation, (N+1, 3, 3).
-        kinetic_index: dqᵀ G(q) dq of each step, (N,): [rad²/s²] with G = I, [J] with inertia.
-        kkt_residual: Largest KKT residual of the network's answer, (N,).
-        iterations: Network iterations (sub-steps) spent on each step, (N,), integers.
-        solution_gap: Largest joint velocity difference to each reference [rad/s], (N, k).
-        objective_gap: Difference in the objective to each reference, (N, k).
-        reference_residual: Largest KKT residual of each reference's own answer, (N, k).
         settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
-        ddq: Joint accelerations that the network answered [rad/s^2], (N, n), of a scheme of the
-            acceleration level; `dq` is then the mean velocity of each step, and `dq_solver` the
-            velocity after it.
-        torque: Joint torques of a run in physics [N m], (N, n), the largest of each step.
-        bound_multiplier: Multipliers of the joint velocity bounds, (N, n): positive at an upper
-            one, negative at a lower one, 0 at an inactive one; the decrease of the objective per
-            rad/s by which the bound is relaxed. None where none was ever active.
-        clipped: 1 where a joint's command was clipped to its bounds on leaving the controller,
-            else 0, (N, n).
-        action: Action of the policy at each step, (N,): codes of
-            `iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken.
-        fraction: Share of a control period by which the reference's clock advanced, (N,).
-        blocking: Bounds in the way of a solution, (N, n): positive upper ones, negative lower ones;
-            1 for a position limit, 2 for a velocity limit, 0 where none is in the way.
-        row_multiplier: Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names
-            (``{"part": ..., "row": ...}``, row from 1), (N, m). None where none was ever active.
-        blocking_rows: 1 where an inequality row was in the way of a solution, else 0, (N, m).
-        level_residual: Largest residual of the task rows of each of l priority levels, (N, l).
-        frame_position: Positions [m] of the f tracked frames ``settings["frames"]``, (N+1, f, 3).
-        frame_rotation: Their orientations, (N+1, f, 3, 3).
-        frame_position_desired: Their desired positions [m], (N+1, f, 3).
-        frame_rotation_desired: Their desired orientations, (N+1, f, 3, 3).
-        distance: Distance of the nearest pair of bodies [m], (N+1,).
-        nearest: Index of that pair in ``settings["collisions"]["pairs"]``, (N+1,).
         wall_time_s: Wall time of the run [s]. Not saved: the same seed gives the same file.
         crosscheck_gap: Largest `solution_gap` over the references [rad/s], (N,); NaN where none
             was asked.
     """
 
-    t: Annotated[FloatArray, ("N+1",), np.float64]
-    q: Annotated[FloatArray, ("N+1", "n"), np.float64]
-    dq: Annotated[FloatArray, ("N", "n"), np.float64]
-    dq_solver: Annotated[FloatArray, ("N", "n"), np.float64]
-    position: Annotated[FloatArray, ("N+1", 3), np.float64]
-    rotation: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
-    position_desired: Annotated[FloatArray, ("N+1", 3), np.float64]
-    rotation_desired: Annotated[FloatArray, ("N+1", 3, 3), np.float64]
-    kinetic_index: Annotated[FloatArray, ("N",), np.float64]
-    kkt_residual: Annotated[FloatArray, ("N",), np.float64]
-    iterations: Annotated[IntArray, ("N",), np.int64]
-    solution_gap: Annotated[FloatArray, ("N", "k"), np.float64]
-    objective_gap: Annotated[FloatArray, ("N", "k"), np.float64]
-    reference_residual: Annotated[FloatArray, ("N", "k"), np.float64]
+    t: Annotated[FloatArray, Column("Time [s], increasing", ("N+1",))]
+    q: Annotated[FloatArray, Column("Joint positions [rad]", ("N+1", "n"))]
+    dq: Annotated[FloatArray, Column("Joint velocities that moved the robot [rad/s]", ("N", "n"))]
+    dq_solver: Annotated[
+        FloatArray, Column("Joint velocities that the network answered [rad/s]", ("N", "n"))
+    ]
+    position: Annotated[FloatArray, Column("Tip position [m]", ("N+1", 3))]
+    rotation: Annotated[
+        FloatArray, Column("Tip orientation, tip axes to world axes", ("N+1", 3, 3))
+    ]
+    position_desired: Annotated[FloatArray, Column("Desired tip position [m]", ("N+1", 3))]
+    rotation_desired: Annotated[FloatArray, Column("Desired tip orientation", ("N+1", 3, 3))]
+    kinetic_index: Annotated[
+        FloatArray, Column("dqᵀ G(q) dq: [rad²/s²] with G = I, [J] with inertia", ("N",))
+    ]
+    kkt_residual: Annotated[
+        FloatArray, Column("Largest KKT residual of the network's answer", ("N",))
+    ]
+    iterations: Annotated[
+        IntArray, Column("Network iterations (sub-steps) spent on each step", ("N",), np.int64)
+    ]
+    solution_gap: Annotated[
+        FloatArray,
+        Column("Largest joint velocity difference to each reference [rad/s]", ("N", "k")),
+    ]
+    objective_gap: Annotated[
+        FloatArray, Column("Difference in the objective to each reference", ("N", "k"))
+    ]
+    reference_residual: Annotated[
+        FloatArray, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
+    ]
     settings: dict[str, Any]
-    ddq: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
-    torque: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
-    bound_multiplier: Annotated[FloatArray | None, ("N", "n"), np.float64] = None
-    clipped: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
-    action: Annotated[NDArray[np.int8] | None, ("N",), np.int8] = None
-    fraction: Annotated[FloatArray | None, ("N",), np.float64] = None
-    blocking: Annotated[NDArray[np.int8] | None, ("N", "n"), np.int8] = None
-    row_multiplier: Annotated[FloatArray | None, ("N", "m"), np.float64] = None
-    blocking_rows: Annotated[NDArray[np.int8] | None, ("N", "m"), np.int8] = None
-    level_residual: Annotated[FloatArray | None, ("N", "l"), np.float64] = None
-    frame_position: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
-    frame_rotation: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
-    frame_position_desired: Annotated[FloatArray | None, ("N+1", "f", 3), np.float64] = None
-    frame_rotation_desired: Annotated[FloatArray | None, ("N+1", "f", 3, 3), np.float64] = None
-    distance: Annotated[FloatArray | None, ("N+1",), np.float64] = None
-    nearest: Annotated[IntArray | None, ("N+1",), np.int64] = None
+    ddq: Annotated[
+        FloatArray | None,
+        Column(
+            "Joint accelerations that the network answered [rad/s^2], of a scheme of the "
+            "acceleration level; `dq` is then the mean velocity of each step, and `dq_solver` the "
+            "velocity after it",
+            ("N", "n"),
+        ),
+    ] = None
+    torque: Annotated[
+        FloatArray | None,
+        Column("Joint torques of a run in physics [N m], the largest of each step", ("N", "n")),
+    ] = None
+    bound_multiplier: Annotated[
+        FloatArray | None,
+        Column(
+            "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
+            "lower one, 0 at an inactive one; the decrease of the objective per rad/s by which the "
+            "bound is relaxed. None if no bound was ever active",
+            ("N", "n"),
+        ),
+    ] = None
+    clipped: Annotated[
+        CodeArray | None,
+        Column(
+            "1 where a joint's command was clipped to its bounds on leaving the controller, else 0",
+            ("N", "n"),
+            np.int8,
+        ),
+    ] = None
+    action: Annotated[
+        CodeArray | None,
+        Column(
+            "Action of the policy at each step: codes of "
+            "`iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken",
+            ("N",),
+            np.int8,
+        ),
+    ] = None
+    fraction: Annotated[
+        FloatArray | None,
+        Column(
+            "Fraction of a control period by which the reference's clock advanced", ("N",), fill=1.0
+        ),
+    ] = None
+    blocking: Annotated[
+        CodeArray | None,
+        Column(
+            "Bounds in the way of a solution: positive upper ones, negative lower ones; 1 for a "
+            "position limit, 2 for a velocity limit, 0 where none is in the way",
+            ("N", "n"),
+            np.int8,
+        ),
+    ] = None
+    row_multiplier: Annotated[
+        FloatArray | None,
+        Column(
+            'Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names '
+            '(``{"part": ..., "row": ...}``, row from 1). None if no row was ever active',
+            ("N", "m"),
+        ),
+    ] = None
+    blocking_rows: Annotated[
+        CodeArray | None,
+        Column(
+            "1 where an inequality row was in the way of a solution, else 0", ("N", "m"), np.int8
+        ),
+    ] = None
+    level_residual: Annotated[
+        FloatArray | None,
+        Column("Largest residual of the task rows of each priority level", ("N", "l")),
+    ] = None
+    frame_position: Annotated[
+        FloatArray | None,
+        Column('Positions of the tracked frames ``settings["frames"]`` [m]', ("N+1", "f", 3)),
+    ] = None
+    frame_rotation: Annotated[
+        FloatArray | None, Column("Orientations of these frames", ("N+1", "f", 3, 3))
+    ] = None
+    frame_position_desired: Annotated[
+        FloatArray | None, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
+    ] = None
+    frame_rotation_desired: Annotated[
+        FloatArray | None, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
+    ] = None
+    distance: Annotated[
+        FloatArray | None, Column("Distance of the nearest pair of bodies [m]", ("N+1",))
+    ] = None
+    nearest: Annotated[
+        IntArray | None,
+        Column('Index of that pair in ``settings["collisions"]["pairs"]``', ("N+1",), np.int64),
+    ] = None
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
-        arrays = self._arrays
-        for name, (shape, kind) in arrays.items():
-            array = _read_only(name, getattr(self, name), len(shape), kind)
-            object.__setattr__(self, name, array)
-        sizes = {"N": self.steps, "N+1": len(self.t), "n": self.dof, "k": self.references}
-        for size, columns in (
-            ("m", self.blocking_rows), ("m", self.row_multiplier), ("f", self.frame_position),
-            ("l", self.level_residual),
-        ):  # fmt: skip
-            sizes |= {} if columns is None else {size: columns.shape[1]}
-        for name, (shape, _) in arrays.items():
-            array = getattr(self, name)
-            expected = tuple(sizes[size] if isinstance(size, str) else size for size in shape)
-            if array.shape != expected:
-                symbols = ", ".join(str(size) for size in shape)
-                problem = f"shape {array.shape}, expected ({symbols}) = {expected}"
-                raise InvalidInputError(name, problem, array)
-        if self.steps < 0 or not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+        samples = np.size(self.t)
+        sizes = {"N": samples - 1, "N+1": samples}
+        for name, column in self._columns.items():
+            object.__setattr__(self, name, column.check(name, getattr(self, name), sizes))
+        if not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
         limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
         object.__setattr__(self, "settings", _checked(self.settings, limits, sizes))
@@ -193,9 +237,9 @@ class Record:
         return float(np.nan_to_num(np.clip(share, 0.0, 1.0)))
 
     @property
-    def _arrays(self) -> dict[str, tuple[Any, ...]]:
-        """Shape and kind of the arrays that this record has, by name."""
-        return {name: about for name, about in _ARRAYS.items() if getattr(self, name) is not None}
+    def _columns(self) -> dict[str, Column]:
+        """The columns that this record has, by name."""
+        return {name: c for name, c in COLUMNS.items() if getattr(self, name) is not None}
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
@@ -208,7 +252,7 @@ class Record:
         Raises:
             FileError: If the file cannot be written.
         """
-        arrays = {name: getattr(self, name) for name in (*self._arrays, "crosscheck_gap")}
+        arrays = {name: getattr(self, name) for name in (*self._columns, "crosscheck_gap")}
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
@@ -233,7 +277,7 @@ class Record:
                 arrays = np.load(file, allow_pickle=False)
                 if not isinstance(arrays, np.lib.npyio.NpzFile):
                     raise FileError(path, "not a record: not an .npz archive")
-                needed = (name for name in _ARRAYS if name in arrays or name not in _OPTIONAL)
+                needed = (name for name in COLUMNS if name in arrays or name not in OPTIONAL)
                 stored: dict[str, Any] = {name: arrays[name] for name in needed}
                 stored_gap, text = arrays["crosscheck_gap"], str(arrays["settings"])
             record = cls(settings=json.loads(text), **stored)
@@ -251,37 +295,33 @@ class Record:
         return record
 
 
-_ARRAYS = {
-    name: hint.__metadata__
+COLUMNS: dict[str, Column] = {
+    name: hint.__metadata__[0]
     for name, hint in get_type_hints(Record, include_extras=True).items()
     if get_origin(hint) is Annotated
 }
-_OPTIONAL = {item.name for item in fields(Record) if item.default is None}
+"""The arrays of a record by name: the one list that checks, files and documentation are made of."""
+
+OPTIONAL = frozenset(item.name for item in fields(Record) if item.default is None)
+"""Columns that a run may lack."""
+
+Record.__doc__ = "\n        ".join(
+    [(Record.__doc__ or "").rstrip(), *(f"{name}: {column}" for name, column in COLUMNS.items())]
+)
 
 
-def _read_only(name: str, value: ArrayLike, dimensions: int, kind: type[Any]) -> NDArray[Any]:
-    """Copy an array, unless it is protected: nothing done to it later can change the record."""
-    array = np.asarray(value)
-    # NumPy takes any empty list for an array of floats.
-    if array.dtype.kind not in ("fiu" if kind is np.float64 else "iu") and array.size:
-        raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
-    if array.ndim != dimensions:
-        raise InvalidInputError(name, f"has {array.ndim} dimensions, expected {dimensions}", value)
-    if array.dtype == kind and array.flags.c_contiguous and _is_protected(array):
-        return array
-    copy = np.array(array, dtype=kind, order="C")
-    copy.flags.writeable = False
-    return copy
+def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any]]:
+    """Protect columns and cut them to the steps that were taken: `Record` need not copy them then.
 
-
-def _is_protected(array: NDArray[Any]) -> bool:
-    """Tell whether neither the array nor any that it is a view of can be written into."""
-    view: Any = array
-    while isinstance(view, np.ndarray):
-        if view.flags.writeable:
-            return False
-        view = view.base
-    return view is None
+    Args:
+        arrays: Columns by name, each as long as `Column.allocate` made it: (N, ...) or (N+1, ...).
+        steps: Steps that were taken, at most N.
+    """
+    ended = {}
+    for name, array in arrays.items():
+        array.setflags(write=False)
+        ended[name] = array[: steps + 1 if COLUMNS[name].per_sample else steps]
+    return ended
 
 
 def _checked(

@@ -14,7 +14,7 @@ import pytest
 from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
-from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.record import COLUMNS, Record, cut
 from iiwa_dnn.results.table import save_csv
 
 ARRAYS = [
@@ -370,3 +370,24 @@ def test_a_protected_array_is_taken_as_it_is_and_an_open_one_is_copied() -> None
     copied = dataclasses.replace(record, q=view)
     whole[:] = 0.0
     np.testing.assert_array_equal(copied.q, record.q)
+
+
+def test_columns_of_a_run_are_allocated_cut_and_taken_without_a_copy(tmp_path) -> None:
+    sizes = {"n": 7, "k": 1, "m": 3, "l": 2, "f": 1}
+    arrays = {name: column.allocate(20, **sizes) for name, column in COLUMNS.items()}
+    assert (arrays["fraction"] == 1.0).all()
+    arrays["t"][:] = 0.1 * np.arange(21)
+    taken = cut(arrays, 10)
+    rows = {"rows": ROWS, "torque_max": [1.0] * 7}
+    near = {"collisions": {"pairs": [["a", "b"]], "distance": 0.1}}
+    record = Record(**taken, settings=make_settings() | rows | near)
+    assert record.steps == 10
+    assert all(getattr(record, name) is array for name, array in taken.items())
+    record.save(tmp_path / "record.npz")
+    with np.load(tmp_path / "record.npz") as stored:
+        assert set(stored.files) == {*COLUMNS, "crosscheck_gap", "settings"}
+
+
+def test_every_column_is_documented() -> None:
+    documentation = Record.__doc__ or ""
+    assert all(f"{name}: {column.meaning}" in documentation for name, column in COLUMNS.items())
