@@ -119,8 +119,8 @@ class Controller:
             self._room, index = (room := room.following()), 0
         if target is not None or not room.paths:
             room.targets[index] = self.targets(t - self.delay, target)
-        elif t - self.delay != room.times[index]:
-            room.look_ahead(t - self.delay, index)
+        else:
+            room.sample(t - self.delay, index)
         if plan.accelerates:
             plan.wanted[:] = self._accelerations(t) if target is None else 0.0
         if dq is not None:
@@ -146,11 +146,7 @@ class Controller:
                 self.warn_if_far(start, t, stacklevel=4)
         plan, given = self.plan, by_frame(self.reference, self.robot.tip)
         seen = [self._ahead(name, given[name]) for name in plan.frames if name in given]
-        paths = [(one.compiled, one.numbers) for one in seen if one.compiled is not None]
-        base: Vector = np.zeros(18 * len(plan.frames))
-        if known := 0 < len(plan.frames) == len(paths):
-            base = np.concatenate([one.base for one in seen])
-        self._room = room = Room(plan, self.dt, paths if known else [], base)
+        self._room = room = Room(plan, seen if len(seen) == len(plan.frames) else [])
         return plan, room
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:

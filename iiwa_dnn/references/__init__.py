@@ -1,5 +1,6 @@
 """References: paths of a frame, with exact linear and angular velocities."""
 
+from iiwa_dnn.references.base import Motion as Motion
 from iiwa_dnn.references.base import Reference as Reference
 from iiwa_dnn.references.moving_target import MovingTarget as MovingTarget
 from iiwa_dnn.references.shapes import Circle as Circle

@@ -1,7 +1,7 @@
 """A target that is set from outside: by a person's hand, a camera, another program."""
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -11,15 +11,39 @@ from iiwa_dnn import checks
 from iiwa_dnn.checks import Array, finite_array, not_negative, offers, positive
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.references.base import Pose, Reference
+from iiwa_dnn.references.rotations import jacobian_rate
 
-_Place = tuple[Array, Array]  # position and rotation
+_ARRIVED = 1e-12
+"""Distance [m] and angle [rad] below which a target is at its goal: rounding has no direction."""
+
+
+class _Goal(NamedTuple):
+    """A pose to go to: position (3,) and rotation (3, 3)."""
+
+    position: Array
+    rotation: Array
+
+
+class _State(NamedTuple):
+    """Pose, velocity and acceleration of the target at a time.
+
+    The last two are linear and angular, (6,), along the world's axes.
+    """
+
+    t: float
+    position: Array
+    rotation: Array
+    velocity: Array
+    acceleration: Array
 
 
 class MovingTarget(Reference):
     """A pose that may jump, approached at a limited speed.
 
-    The target moves to the pose given by `set` in a straight line and about a fixed axis, as time
-    goes on in `at`: a controller never sees a jump, and a policy's slowed clock slows the target.
+    From the pose shown last when `set` was called the target moves to the new one, in a straight
+    line and about a fixed axis, as a function of the time in `at`: a controller never sees a jump,
+    and a policy's slowed clock slows the target. A time before that last one begins the motion
+    anew, from the same pose. `set` may be called in another thread than `at`.
 
     With an acceleration, the target also starts and brakes smoothly: by the time-optimal trajectory
     from its present motion to rest at the pose (L. Berscheid, T. Kroeger, "Jerk-limited real-time
@@ -50,21 +74,25 @@ class MovingTarget(Reference):
                 jerk is given without an acceleration.
             MissingDependencyError: An acceleration is given and ruckig is not installed.
         """
-        self.speed, self.rate = not_negative("speed", speed), not_negative("rate", rate)
-        self.acceleration, self.jerk = acceleration, jerk
-        self._filter = None
+        offers("pose", pose, "position", "rotation")
+        self.speed = not_negative("speed", speed)
+        self.rate = not_negative("rate", rate)
+        self.acceleration = acceleration
+        self.jerk = jerk
+        self._profile: _Profile | None = None
         if acceleration is not None:
-            limits = (positive("speed", speed), positive("rate", rate))
+            positive("speed", speed)
+            positive("rate", rate)
+            positive("acceleration", acceleration)
             hardest = math.inf if jerk is None else positive("jerk", jerk)
-            self._filter = _Filter(limits, positive("acceleration", acceleration), hardest)
+            self._profile = _Profile(np.array([speed, acceleration, hardest]), rate / speed)
         elif jerk is not None:
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
-        self._time: float | None = None
-        self._velocity: Array = np.zeros(6)
-        offers("pose", pose, "position", "rotation")
-        self._wanted = pose.position.copy(), pose.rotation.copy()
-        self.set(pose.position, pose.rotation)
-        self._now = self._wanted
+        position = finite_array("position", pose.position, (3,))
+        self._goal = _Goal(position, checks.rotation("rotation", pose.rotation))
+        self._shown = _State(math.inf, *self._goal, np.zeros(6), np.zeros(6))
+        self._start = self._shown
+        self._end = self._goal
 
     def set(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
         """Set the desired pose of the frame.
@@ -77,37 +105,50 @@ class MovingTarget(Reference):
             InvalidInputError: An array is not finite, has a wrong shape or is no rotation; the
                 target stays as it was.
         """
-        place = finite_array("position", position, (3,))
-        turn = self._wanted[1] if rotation is None else checks.rotation("rotation", rotation)
-        if not (np.array_equal(place, self._wanted[0]) and np.array_equal(turn, self._wanted[1])):
-            self._wanted = place, turn
+        goal = self._goal
+        wanted = finite_array("position", position, (3,))
+        turned = goal.rotation if rotation is None else checks.rotation("rotation", rotation)
+        if not (np.array_equal(wanted, goal.position) and np.array_equal(turned, goal.rotation)):
+            self._goal = _Goal(wanted, turned)
 
     @property
     def period(self) -> float:
         """Infinite: it does not repeat."""
         return math.inf
 
-    def _targets(self, times: Array) -> Array:
-        return np.stack([self._move_to(t) for t in times.tolist()])
+    def move(self, t: float, target: Array) -> None:
+        """Set a target to the pose and the velocity at time t [s]; see `Reference.move`."""
+        goal = self._goal  # one reading: it may be set in another thread meanwhile
+        profile = self._profile
+        if goal is not self._end and (profile is None or profile.fit(self._shown, goal)):
+            self._start = self._shown
+            self._end = goal
+        self._start = self._start._replace(t=min(t, self._start.t))
+        self._shown = state = self._state(t)
+        target[:3] = state.position
+        target[3:12] = state.rotation.ravel()
+        target[12:] = state.velocity
 
-    def _move_to(self, t: float) -> Array:
-        """Let the target move until time t; returns its data (18,)."""
-        elapsed = 0.0 if self._time is None else t - self._time
-        if elapsed > 0.0:
-            move = self._straight if self._filter is None else self._filter.move
-            *now, self._velocity = move(self._now, self._wanted, elapsed)
-            self._now = now[0], now[1]
-        if self._time is None or elapsed > 0.0:
-            self._time = t
-        position, rotation = self._now
-        return np.concatenate([position, rotation.ravel(), self._velocity])
-
-    def _straight(self, now: _Place, goal: _Place, elapsed: float) -> tuple[Array, Array, Array]:
-        """Return position, rotation and velocities (6,) after a time [s] at the largest speeds."""
-        shift, axis = goal[0] - now[0], np.asarray(pin.log3(goal[1] @ now[1].T))
-        shift = shift * _share(float(np.linalg.norm(shift)), self.speed * elapsed)
-        axis = axis * _share(float(np.linalg.norm(axis)), self.rate * elapsed)
-        return now[0] + shift, pin.exp3(axis) @ now[1], np.concatenate([shift, axis]) / elapsed
+    def _state(self, t: float) -> _State:
+        """Compute the state at a time [s], not before the start's."""
+        start = self._start
+        elapsed = t - start.t
+        if self._profile is not None:
+            moved, velocity, acceleration = self._profile.at(elapsed)
+        else:
+            way = _difference(start, self._end)
+            moved = np.zeros(6)
+            velocity = np.zeros(6)
+            acceleration = np.zeros(6)
+            for part, fastest in ((slice(0, 3), self.speed), (slice(3, 6), self.rate)):
+                length = float(np.linalg.norm(way[part]))
+                if length > max(fastest * elapsed, _ARRIVED):
+                    velocity[part] = fastest / length * way[part]
+                    moved[part] = elapsed * velocity[part]
+                else:
+                    moved[part] = way[part]
+        rotation = pin.exp3(moved[3:]) @ start.rotation
+        return _State(t, start.position + moved[:3], rotation, velocity, acceleration)
 
     def accelerations(self, t: float) -> Array:
         """Return zeros, (6,): it is not known how the target will move on."""
@@ -120,55 +161,51 @@ class MovingTarget(Reference):
         return {"name": self.name, "speed": self.speed, "rate": self.rate, **given}
 
 
-class _Filter:
-    """Time-optimal motion of a pose: six axes, the last three a rotation vector from `_anchor`."""
+class _Profile:
+    """Time-optimal motion from a state to rest at a pose.
 
-    def __init__(self, limits: tuple[float, float], acceleration: float, jerk: float) -> None:
-        ruckig = import_extra("ruckig", "pip install ruckig")  # for filters of accelerations only
-        self._ruckig, self._ask = ruckig.Ruckig(6), ruckig.InputParameter(6)
-        self._way = ruckig.Trajectory(6)
+    Six axes: the displacement and, from the first orientation on, the rotation vector.
+    """
+
+    def __init__(self, limits: Array, turning: float) -> None:
+        """Take linear speed, acceleration and jerk, and the angular limits' ratio to them."""
+        ruckig = import_extra("ruckig", "pip install ruckig")  # for limits of acceleration only
+        self._ruckig = ruckig.Ruckig(6)
+        self._input = ruckig.InputParameter(6)
+        self._trajectory = ruckig.Trajectory(6)
         # The limits of ruckig are those of each axis, these are of the whole vector.
-        most = np.repeat(limits, 3) / math.sqrt(3.0)
-        self._ask.max_velocity = most.tolist()
-        self._ask.max_acceleration = (acceleration / limits[0] * most).tolist()
-        self._ask.max_jerk = (jerk / limits[0] * most).tolist()
-        self._goal: _Place | None = None
-        self._spent = 0.0
-        self._motion: Array = np.zeros((2, 6))
-        self._start: Array = np.zeros(3)
-        self._anchor: Array = np.eye(3)
+        axes = np.repeat([1.0, turning], 3) / math.sqrt(3.0)
+        self._input.max_velocity = (limits[0] * axes).tolist()
+        self._input.max_acceleration = (limits[1] * axes).tolist()
+        self._input.max_jerk = (limits[2] * axes).tolist()
+        self._input.current_position = [0.0] * 6
+        self.fit(_State(0.0, np.zeros(3), np.eye(3), np.zeros(6), np.zeros(6)), _ORIGIN)
 
-    def move(self, now: _Place, goal: _Place, elapsed: float) -> tuple[Array, Array, Array]:
-        """Return position (3,), rotation (3, 3) and velocities (6,) after a time [s]."""
-        if self._goal is not goal:
-            axis = np.asarray(pin.log3(goal[1] @ now[1].T))
-            ask = self._ask
-            ask.current_position = [0.0] * 6
-            ask.current_velocity, ask.current_acceleration = self._motion.tolist()
-            ask.target_position = [*(goal[0] - now[0]), *axis]
-            if self._ruckig.calculate(ask, self._way).value >= 0:
-                self._goal, self._spent = goal, 0.0
-                self._start, self._anchor = now
-        self._spent += elapsed
-        shift, velocity = self._at(self._spent)
-        later = self._at(self._spent + _STEP)[1]
-        self._motion = np.stack([velocity, (later - velocity) / _STEP])
-        return self._start + shift[:3], pin.exp3(shift[3:]) @ self._anchor, velocity
+    def fit(self, start: _State, goal: _Goal) -> bool:
+        """Fit the motion from a state to a pose; without success the one before stays."""
+        self._input.current_velocity = start.velocity.tolist()
+        self._input.current_acceleration = start.acceleration.tolist()
+        self._input.target_position = _difference(start, goal).tolist()
+        return bool(self._ruckig.calculate(self._input, self._trajectory).value >= 0)
 
-    def _at(self, t: float) -> tuple[Array, Array]:
-        """Displacement and velocities (6,), the latter's last three of the world's frame."""
-        place, speed, _ = map(np.array, self._way.at_time(min(t, self._way.duration)))
-        if t >= self._way.duration:
-            speed[:] = 0.0
+    def at(self, elapsed: float) -> tuple[Array, Array, Array]:
+        """Return displacement, velocity and acceleration (6,) a time [s] after the start."""
+        end = self._trajectory.duration
+        moved, velocity, acceleration = map(np.array, self._trajectory.at_time(min(elapsed, end)))
+        if elapsed >= end:
+            return moved, np.zeros(6), np.zeros(6)
         # The left Jacobian of the rotation vector gives the angular velocity in the world's axes.
-        speed[3:] = pin.Jexp3(-place[3:]) @ speed[3:]
-        return place, speed
+        jacobian = pin.Jexp3(-moved[3:])
+        bent = jacobian_rate(tuple(moved[3:]), tuple(velocity[3:]))
+        acceleration[3:] = jacobian @ acceleration[3:] + bent
+        velocity[3:] = jacobian @ velocity[3:]
+        return moved, velocity, acceleration
 
 
-_STEP = 1e-6
-"""Difference of time for the acceleration [s]."""
+_ORIGIN = _Goal(np.zeros(3), np.eye(3))
 
 
-def _share(size: float, most: float) -> float:
-    """Return the share of a way that may be gone."""
-    return 1.0 if size <= most else most / size
+def _difference(start: _State, goal: _Goal) -> Array:
+    """Compute displacement and rotation vector (6,) from a state to a pose."""
+    turn = pin.log3(goal.rotation @ start.rotation.T)
+    return np.concatenate([goal.position - start.position, turn])

@@ -17,11 +17,12 @@ whose equations stand here in the fixed frame and with other ends.
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.rotations import jacobian_rate, left_jacobian
+from iiwa_dnn.references.rotations import jacobian_rate
 
 _ITERATIONS = 200
 _CONVERGED = 1e-13  # change of an angular velocity, relative to the largest
@@ -44,61 +45,64 @@ def fit_rotations(times: Array, quaternions: Array, ends: str) -> Array:
     turns = (knots[1:] * knots[:-1].inv()).as_rotvec()
     if np.linalg.norm(turns, axis=1).max() > np.pi - 1e-6:
         raise InvalidInputError("quaternions", "two neighbours are half a turn apart", quaternions)
-    h = np.diff(times)[:, None]
     pieces = len(turns)
-    jacobians = np.array([[left_jacobian(turn, axis) for axis in np.eye(3)] for turn in turns])
-    jacobians = jacobians.swapaxes(1, 2)
-    inverses = np.linalg.inv(jacobians)
     # A closed path has one knot fewer.
     count = pieces if ends == "closed" else pieces + 1
-    matrix, constant, before = _system(turns, h, jacobians, inverses, ends == "clamped", count)
+    after = np.arange(1, pieces + 1) % count
+    free = np.ones(count)
+    if ends == "clamped":
+        free[[0, -1]] = 0.0
+    h = np.diff(times)
+    # The left Jacobian is the right one of the opposite vector.
+    jacobians = np.array([pin.Jexp3(-turn) for turn in turns])
+    inverses = np.linalg.inv(jacobians)
+    matrix = _matrix(h, jacobians, inverses, after, free)
+    constant = np.zeros((count, 3))
+    for knot in (np.arange(pieces), after):
+        np.add.at(constant, knot, 6.0 * turns / h[:, None] ** 2)
     rates = np.zeros((count, 3))
     for _ in range(_ITERATIONS):
         bent = constant.copy()
-        for k in np.flatnonzero(before >= 0):
-            i = before[k]
-            bent[k] -= jacobian_rate(turns[i], inverses[i] @ rates[k])
-        last, rates = rates, spsolve(matrix, bent.ravel()).reshape(count, 3)
-        change, size = np.abs(rates - last).max(), np.abs(rates).max()
+        for turn, inverse, k in zip(turns, inverses, after, strict=True):
+            bent[k] -= jacobian_rate(tuple(turn), tuple(inverse @ rates[k]))
+        last = rates
+        rates = spsolve(matrix, (free[:, None] * bent).ravel()).reshape(count, 3)
+        change = np.abs(rates - last).max()
+        size = np.abs(rates).max()
         if not np.isfinite(size) or change <= _CONVERGED * size:
             break
     if not (np.isfinite(size) and change <= 1e-9 * size + 1e-300):
         problem = "no smooth rotation fits: add poses where the tool turns far"
         raise InvalidInputError("quaternions", problem, quaternions)
-    first = rates[np.arange(pieces)]
-    last = np.einsum("kij,kj->ki", inverses, rates[np.arange(1, pieces + 1) % count])
-    cubic = (first + last) / h**2 - 2.0 * turns / h**3
-    square = 3.0 * turns / h**2 - (2.0 * first + last) / h
+    h = h[:, None]
+    first = rates[:pieces]
+    final = np.einsum("kij,kj->ki", inverses, rates[after])
+    cubic = (first + final) / h**2 - 2.0 * turns / h**3
+    square = 3.0 * turns / h**2 - (2.0 * first + final) / h
     starts = (knots[:-1] * knots[0].inv()).as_rotvec()
     return np.stack([cubic, square, first, starts], axis=1)
 
 
-def _system(
-    turns: Array, h: Array, jacobians: Array, inverses: Array, clamped: bool, count: int
-) -> tuple[Any, Array, NDArray[np.int64]]:
-    """Assemble matrix and constant of the knots' angular velocities, and each knot's piece before.
+def _matrix(
+    h: Array, jacobians: Array, inverses: Array, after: NDArray[np.int64], free: Array
+) -> Any:
+    """Assemble the sparse matrix of the knots' angular velocities, (3 m, 3 m).
 
     Row k: the accelerations of the pieces before and after knot k are the same. At an open path's
-    ends a piece is missing, or the velocity is zero.
+    ends a piece is missing; at a clamped one, where `free` is 0, the velocity is zero.
     """
     from scipy.sparse import coo_array
 
-    eye, pieces = np.eye(3), len(turns)
-    constant, before = np.zeros((count, 3)), np.full(count, -1)
-    blocks = [(0, 0, eye), (pieces, pieces, eye)] if clamped else []
-    for i in range(pieces):
-        start, end, held = i, (i + 1) % count, 6.0 * turns[i] / h[i] ** 2
-        if not clamped or start > 0:
-            blocks += [(start, start, 4.0 * eye / h[i]), (start, end, 2.0 * inverses[i] / h[i])]
-            constant[start] += held
-        if not clamped or i + 1 < pieces:
-            blocks += [(end, start, 2.0 * jacobians[i] / h[i]), (end, end, 4.0 * eye / h[i])]
-            constant[end] += held
-            before[end] = i
-    rows, columns, values = (np.array(part) for part in zip(*blocks, strict=True))
-    three = np.arange(3)
-    at = np.broadcast_arrays(
-        3 * rows[:, None, None] + three[:, None], 3 * columns[:, None, None] + three
-    )
-    entries = values.ravel(), (at[0].ravel(), at[1].ravel())
-    return coo_array(entries, shape=(3 * count, 3 * count)).tocsc(), constant, before
+    before = np.arange(len(h))
+    knots = np.arange(len(free))
+    rows = np.concatenate([before, before, after, after, knots])
+    columns = np.concatenate([before, after, before, after, knots])
+    own = np.multiply.outer(4.0 / h, np.eye(3))
+    h = h[:, None, None]
+    blocks = np.concatenate([own, 2.0 * inverses / h, 2.0 * jacobians / h, own])
+    blocks *= free[rows[: len(blocks)], None, None]
+    held = np.multiply.outer(1.0 - free, np.eye(3))
+    i, j = np.indices((3, 3))
+    at = (3 * rows[:, None, None] + i).ravel(), (3 * columns[:, None, None] + j).ravel()
+    entries = np.concatenate([blocks, held]).ravel()
+    return coo_array((entries, at), shape=(3 * len(free), 3 * len(free))).tocsc()

@@ -16,7 +16,7 @@ Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Pre
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.checks import Array
+from iiwa_dnn.checks import Array, Vector3
 
 Four = tuple[float, float, float, float]
 
@@ -27,7 +27,8 @@ def coefficients(square: float) -> Four:
     """Compute a, b and their derivatives by the angle over the angle, at a squared angle."""
     if square > 1.0:
         angle = np.sqrt(square)
-        sine, versine = np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
+        sine = np.sin(angle)
+        versine = 2.0 * np.sin(0.5 * angle) ** 2
         slope = (angle * sine - 2.0 * versine) / square**2
         return (
             versine / square,
@@ -35,8 +36,13 @@ def coefficients(square: float) -> Four:
             slope,
             (angle * versine - 3.0 * (angle - sine)) / (square**2 * angle),
         )
-    a, b, slope_a, slope_b = 0.5, 1.0 / 6.0, 0.0, 0.0
-    power, term_a, term_b = 1.0, 0.5, 1.0 / 6.0
+    term_a = 0.5
+    term_b = 1.0 / 6.0
+    a = term_a
+    b = term_b
+    slope_a = 0.0
+    slope_b = 0.0
+    power = 1.0
     for k in range(1, 11):  # the series, whose next term is below rounding
         term_a /= -(2.0 * k + 1.0) * (2.0 * k + 2.0)
         term_b /= -(2.0 * k + 2.0) * (2.0 * k + 3.0)
@@ -49,52 +55,79 @@ def coefficients(square: float) -> Four:
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def cross(u: Array, v: Array) -> Array:
-    """Compute the cross product u x v, (3,)."""
-    out = np.empty(3)
-    out[0] = u[1] * v[2] - u[2] * v[1]
-    out[1] = u[2] * v[0] - u[0] * v[2]
-    out[2] = u[0] * v[1] - u[1] * v[0]
-    return out
+def dot(u: Vector3, v: Vector3) -> float:
+    """Compute the scalar product u . v."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def rotated(vector: Array, v: Array) -> Array:
-    """Compute exp[vector] v, (3,)."""
-    square = vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2
+def cross(u: Vector3, v: Vector3) -> Vector3:
+    """Compute the cross product u x v."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def scaled(a: float, u: Vector3) -> Vector3:
+    """Compute a u."""
+    return a * u[0], a * u[1], a * u[2]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def combined(a: float, u: Vector3, b: float, v: Vector3) -> Vector3:
+    """Compute a u + b v."""
+    return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def added(u: Vector3, v: Vector3) -> Vector3:
+    """Compute u + v."""
+    return u[0] + v[0], u[1] + v[1], u[2] + v[2]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def rotated(vector: Vector3, v: Vector3) -> Vector3:
+    """Compute exp[vector] v."""
+    square = dot(vector, vector)
     a, b, _, _ = coefficients(square)
     once = cross(vector, v)
-    out: Array = v + (1.0 - b * square) * once + a * cross(vector, once)
-    return out
+    return added(v, combined(1.0 - b * square, once, a, cross(vector, once)))
 
 
-@njit(cache=True, error_model="numpy")
-def left_jacobian(vector: Array, v: Array) -> Array:
-    """Compute J(vector) v, (3,): the angular velocity of a rotation vector with the rate v."""
-    a, b, _, _ = coefficients(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
+    """Compute J(vector) v: the angular velocity of a rotation vector with the rate v."""
+    a, b, _, _ = coefficients(dot(vector, vector))
     once = cross(vector, v)
-    out: Array = v + a * once + b * cross(vector, once)
-    return out
+    return added(v, combined(a, once, b, cross(vector, once)))
 
 
-@njit(cache=True, error_model="numpy")
-def jacobian_rate(vector: Array, rate: Array) -> Array:
-    """Compute dJ/dt rate, (3,): the part of the angular acceleration without the second rate."""
-    _, b, slope_a, slope_b = coefficients(vector[0] ** 2 + vector[1] ** 2 + vector[2] ** 2)
-    along = vector[0] * rate[0] + vector[1] * rate[1] + vector[2] * rate[2]
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def jacobian_rate(vector: Vector3, rate: Vector3) -> Vector3:
+    """Compute dJ/dt rate: the part of the angular acceleration without the second rate."""
+    _, b, slope_a, slope_b = coefficients(dot(vector, vector))
+    along = dot(vector, rate)
     once = cross(vector, rate)
-    out: Array = along * (slope_a * once + slope_b * cross(vector, once)) + b * cross(rate, once)
-    return out
+    turned = combined(along * slope_a, once, along * slope_b, cross(vector, once))
+    return combined(1.0, turned, b, cross(rate, once))
 
 
-@njit(cache=True, error_model="numpy")
-def turn_target(target: Array, vector: Array, rate: Array) -> None:
-    """Turn a target, `Target.data`, by a rotation vector with a rate; its position stays."""
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def column_of(target: Array, j: int) -> Vector3:
+    """Return the j-th axis of a target's frame, of `Target.data` (18,)."""
+    return target[3 + j], target[6 + j], target[9 + j]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
+    """Turn a target, `Target.data` (18,), by a rotation vector with a rate; its position stays."""
     for j in range(3):
-        column = rotated(vector, target[3 + j : 12 : 3])
+        column = rotated(vector, column_of(target, j))
         for i in range(3):
             target[3 + 3 * i + j] = column[i]
-    target[15:18] = left_jacobian(vector, rate) + rotated(vector, target[15:18])
+    before = rotated(vector, (target[15], target[16], target[17]))
+    after = added(left_jacobian(vector, rate), before)
+    for i in range(3):
+        target[15 + i] = after[i]
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -115,7 +148,8 @@ def rotation_log(R: Array, out: Array) -> None:
             i = 1
         if R[2, 2] > R[i, i]:
             i = 2
-        j, k = (i + 1) % 3, (i + 2) % 3
+        j = (i + 1) % 3
+        k = (i + 2) % 3
         largest = 0.5 * np.sqrt(max(1.0 + R[i, i] - R[j, j] - R[k, k], 0.0))
         w = (R[k, j] - R[j, k]) / (4.0 * largest)
         sign = 1.0 if w >= 0.0 else -1.0
@@ -128,3 +162,20 @@ def rotation_log(R: Array, out: Array) -> None:
     scale = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
     for i in range(3):
         out[i] *= scale
+
+
+@njit(cache=True, error_model="numpy")
+def set_mean_twist(now: Array, then: Array, dt: float) -> None:
+    """Set the twist of a target (18,) to the mean one towards another, a period dt [s] later."""
+    relative = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            value = 0.0
+            for k in range(3):
+                value += then[3 + 3 * i + k] * now[3 + 3 * j + k]
+            relative[i, j] = value
+    turn = np.empty(3)
+    rotation_log(relative, turn)
+    for i in range(3):
+        now[12 + i] = (then[i] - now[i]) / dt
+        now[15 + i] = turn[i] / dt

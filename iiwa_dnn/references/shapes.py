@@ -15,17 +15,18 @@ from iiwa_dnn.references.base import Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _heart(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    scale, rate = numbers[0], numbers[1]
-    for k in range(times.size):
-        p = rate * times[k]
-        s1, c1 = np.sin(p), np.cos(p)
-        out[row + k, column] += scale * 16.0 * s1 * s1 * s1
-        y = 13.0 * c1 - 5.0 * np.cos(2.0 * p) - 2.0 * np.cos(3.0 * p) - np.cos(4.0 * p) - 5.0
-        out[row + k, column + 1] += scale * y
-        out[row + k, column + 12] += rate * scale * 48.0 * s1 * s1 * c1
-        y = -13.0 * s1 + 10.0 * np.sin(2.0 * p) + 6.0 * np.sin(3.0 * p) + 4.0 * np.sin(4.0 * p)
-        out[row + k, column + 13] += rate * scale * y
+def _heart(t: float, constants: Array, target: Array) -> None:
+    scale = constants[0]
+    rate = constants[1]
+    p = rate * t
+    s1 = np.sin(p)
+    c1 = np.cos(p)
+    y = 13.0 * c1 - 5.0 * np.cos(2.0 * p) - 2.0 * np.cos(3.0 * p) - np.cos(4.0 * p) - 5.0
+    slope = -13.0 * s1 + 10.0 * np.sin(2.0 * p) + 6.0 * np.sin(3.0 * p) + 4.0 * np.sin(4.0 * p)
+    target[0] += scale * 16.0 * s1 * s1 * s1
+    target[1] += scale * y
+    target[12] += rate * scale * 48.0 * s1 * s1 * c1
+    target[13] += rate * scale * slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,20 +59,22 @@ class Heart(Reference):
 
     def __post_init__(self) -> None:
         self._set(scale=positive("scale", self.scale), period=positive("period", self.period))
-        self._set(numbers=np.array([self.scale, 2.0 * np.pi / self.period]))
+        self._set(constants=np.array([self.scale, 2.0 * np.pi / self.period]))
 
 
 @njit(cache=True, error_model="numpy")
-def _circle(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    radius, rate = numbers[0], numbers[1]
-    for k in range(times.size):
-        p = rate * times[k]
-        # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-        along_u, along_v = -2.0 * np.sin(0.5 * p) ** 2, np.sin(p)
-        for i in range(3):
-            u, v = numbers[2 + i], numbers[5 + i]
-            out[row + k, column + i] += radius * (along_u * u + along_v * v)
-            out[row + k, column + 12 + i] += rate * radius * (np.cos(p) * v - np.sin(p) * u)
+def _circle(t: float, constants: Array, target: Array) -> None:
+    radius = constants[0]
+    rate = constants[1]
+    p = rate * t
+    # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
+    along_u = -2.0 * np.sin(0.5 * p) ** 2
+    along_v = np.sin(p)
+    for i in range(3):
+        u = constants[2 + i]
+        v = constants[5 + i]
+        target[i] += radius * (along_u * u + along_v * v)
+        target[12 + i] += rate * radius * (np.cos(p) * v - along_v * u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,19 +112,19 @@ class Circle(Reference):
         u = axis - (axis @ normal) * normal
         u /= np.linalg.norm(u)
         head = [self.radius, 2.0 * np.pi / self.period]
-        self._set(numbers=np.concatenate([head, u, np.cross(normal, u)]))
+        self._set(constants=np.concatenate([head, u, np.cross(normal, u)]))
 
 
 @njit(cache=True, error_model="numpy")
-def _line(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    rate = numbers[0]
-    for k in range(times.size):
-        p = rate * times[k]
-        # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
-        share, speed = np.sin(0.5 * p) ** 2, 0.5 * rate * np.sin(p)
-        for i in range(3):
-            out[row + k, column + i] += share * numbers[1 + i]
-            out[row + k, column + 12 + i] += speed * numbers[1 + i]
+def _line(t: float, constants: Array, target: Array) -> None:
+    rate = constants[0]
+    p = rate * t
+    # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
+    fraction = np.sin(0.5 * p) ** 2
+    speed = 0.5 * rate * np.sin(p)
+    for i in range(3):
+        target[i] += fraction * constants[1 + i]
+        target[12 + i] += speed * constants[1 + i]
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,17 +153,18 @@ class Line(Reference):
         self._set(offset=vector3("offset", self.offset), period=positive("period", self.period))
         if not any(self.offset):
             raise InvalidInputError("offset", "must not be zero", self.offset)
-        self._set(numbers=np.array([2.0 * np.pi / self.period, *self.offset]))
+        self._set(constants=np.array([2.0 * np.pi / self.period, *self.offset]))
 
 
 @njit(cache=True, error_model="numpy")
-def _lissajous(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    for k in range(times.size):
-        for i in range(3):
-            amplitude, rate, shift = numbers[i], numbers[3 + i], numbers[6 + i]
-            angle = rate * times[k] + shift
-            out[row + k, column + i] += amplitude * (np.sin(angle) - np.sin(shift))
-            out[row + k, column + 12 + i] += amplitude * rate * np.cos(angle)
+def _lissajous(t: float, constants: Array, target: Array) -> None:
+    for i in range(3):
+        amplitude = constants[i]
+        rate = constants[3 + i]
+        phase = constants[6 + i]
+        angle = rate * t + phase
+        target[i] += amplitude * (np.sin(angle) - np.sin(phase))
+        target[12 + i] += amplitude * rate * np.cos(angle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,7 +204,12 @@ class Lissajous(Reference):
         if not any(a * k for a, k in zip(self.amplitudes, self.turns, strict=True)):
             raise InvalidInputError("amplitudes", "nothing moves", self.amplitudes)
         rates = (2.0 * np.pi / self.period) * np.array(self.turns)
-        self._set(numbers=np.concatenate([self.amplitudes, rates, self.phases]))
+        self._set(constants=np.concatenate([self.amplitudes, rates, self.phases]))
+
+
+@njit(cache=True, error_model="numpy")
+def _still(t: float, constants: Array, target: Array) -> None:
+    """Leave the target as it is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,11 +217,11 @@ class Still(Reference):
     """A pose to go to and to hold: ``Still().anchored(pose)``.
 
     Attributes:
-        period: Length of a run that is given none [s], above 0.
+        period: Length of a run without a duration [s], above 0.
     """
 
     name: ClassVar[str] = "still"
-    path: ClassVar[Any] = staticmethod(lambda *_: None)
+    path: ClassVar[Any] = staticmethod(_still)
     period: float = 10.0
 
     def __post_init__(self) -> None:

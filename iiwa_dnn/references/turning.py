@@ -1,7 +1,6 @@
 """Paths on which the tool turns: a cone, a path with a tilting tool, a path on a surface."""
 
 import math
-from abc import abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
@@ -11,24 +10,34 @@ from numba import njit
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotations import cross, left_jacobian, rotated, turn_target
+from iiwa_dnn.references.base import AT_REST, Reference
+from iiwa_dnn.references.rotations import (
+    column_of,
+    combined,
+    cross,
+    dot,
+    left_jacobian,
+    rotated,
+    scaled,
+    turn_target,
+)
 from iiwa_dnn.references.shapes import Circle, Heart
 
 TILT = math.radians(20.0)
 
 
 @njit(cache=True, error_model="numpy")
-def _cone(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    """Turn targets (k, 18) in `out`; see `Reference.path`."""
-    angle, rate = numbers[0], numbers[1]
-    for k in range(times.size):
-        target, p = out[row + k, column : column + 18], rate * times[k]
-        turn_target(target, -angle * target[3:12:3], np.zeros(3))
-        # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
-        u, v = target[3:12:3].copy(), target[4:12:3].copy()
-        around = angle * (np.cos(p) * u + np.sin(p) * v)
-        turn_target(target, around, angle * rate * (np.cos(p) * v - np.sin(p) * u))
+def _cone(t: float, constants: Array, target: Array) -> None:
+    angle = constants[0]
+    rate = constants[1]
+    p = rate * t
+    turn_target(target, scaled(-angle, column_of(target, 0)), (0.0, 0.0, 0.0))
+    # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
+    u = column_of(target, 0)
+    v = column_of(target, 1)
+    tilt = combined(angle * np.cos(p), u, angle * np.sin(p), v)
+    speed = angle * rate
+    turn_target(target, tilt, combined(speed * np.cos(p), v, -speed * np.sin(p), u))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,17 +65,13 @@ class Cone(Reference):
 
     def __post_init__(self) -> None:
         self._set(angle=_acute(self.angle), period=positive("period", self.period))
-        self._set(numbers=np.array([self.angle, 2.0 * np.pi / self.period]))
+        self._set(constants=np.array([self.angle, 2.0 * np.pi / self.period]))
 
 
 class _OnPath(Reference):
-    """A path made of another one, `along`: compiled code of both, called one after the other."""
+    """A path made of another one, `along`."""
 
     along: Reference
-
-    @property
-    def compiled(self) -> Any:
-        return self._write
 
     @property
     def period(self) -> float:
@@ -76,23 +81,24 @@ class _OnPath(Reference):
     def duration(self) -> float:
         return self.along.duration
 
-    @abstractmethod
-    def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-        """Move and turn targets; see `Reference.path`."""
-
 
 @njit(cache=True, error_model="numpy")
-def _tilt(times: Array, numbers: Array, inner: Array, out: Array, row: int, column: int) -> None:
-    """Move targets as the path's own targets, `inner`, say, and tilt them about an axis."""
-    angle, rate, axis = numbers[0], numbers[1], numbers[2:5]
-    for k in range(times.size):
-        target, p = out[row + k, column : column + 18], rate * times[k]
-        target[:3] += inner[k, :3]
-        target[12:15] += inner[k, 12:15]
-        turned = inner[k, 3:12].copy().reshape(3, 3) @ target[3:12].copy().reshape(3, 3)
-        target[3:12] = turned.ravel()
-        target[15:18] = inner[k, 15:18]
-        turn_target(target, angle * np.sin(p) * axis, angle * rate * np.cos(p) * axis)
+def _tilt(t: float, constants: Array, inner: Array, target: Array) -> None:
+    """Move a target as the path's own target, `inner` (18,), and tilt it about an axis."""
+    angle = constants[0]
+    rate = constants[1]
+    axis = (constants[2], constants[3], constants[4])
+    for i in range(3):
+        target[i] += inner[i]
+        target[12 + i] = inner[12 + i]
+        target[15 + i] = inner[15 + i]
+    for j in range(3):
+        x, y, z = column_of(target, j)
+        for i in range(3):
+            row = 3 + 3 * i
+            target[row + j] = inner[row] * x + inner[row + 1] * y + inner[row + 2] * z
+    p = rate * t
+    turn_target(target, scaled(angle * np.sin(p), axis), scaled(angle * rate * np.cos(p), axis))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,54 +132,63 @@ class Tilting(_OnPath):
         rate = 2.0 * np.pi * checks.integer("turns", self.turns, 1) / self.along.duration
         self._set(along=self.along.at_rest(), angle=_acute(self.angle))
         self._set(axis=vector3("axis", self.axis))
-        self._set(numbers=np.array([self.angle, rate, *direction("axis", self.axis)]))
+        self._set(constants=np.array([self.angle, rate, *direction("axis", self.axis)]))
 
-    def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-        _tilt(times, numbers, self.along._targets(times), out, row, column)
-
-
-@njit(cache=True, error_model="numpy")
-def _surface(times: Array, numbers: Array, inner: Array, out: Array, row: int, column: int) -> None:
-    """Lay displacements and velocities of `inner` on a surface, after the turn to its normal."""
-    curvature, lead, normal = numbers[0], numbers[1], numbers[2:5].copy()
-    still = np.zeros(3)
-    for k in range(times.size):
-        target = out[row + k, column : column + 18]
-        tool = -target[5:12:3]
-        if lead > 0.0:
-            share = min(max(times[k] / lead, 0.0), 1.0)
-            # Quintic, at rest and without acceleration at both ends.
-            part = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-            rate = 30.0 * share**2 * (1.0 - share) ** 2 / lead
-            towards = _least_turn(tool, normal)
-            turn_target(target, part * towards, rate * towards)
-        else:
-            normal = tool
-        laid = _least_turn(np.array([0.0, 0.0, 1.0]), normal)
-        # Height above the surface counts from the first point's.
-        across = cross(normal, rotated(laid, inner[k, :3]))
-        angles = curvature * across
-        speed = cross(normal, rotated(laid, inner[k, 12:15])) if times[k] >= lead else still
-        target[:3] += cross(across, left_jacobian(angles, normal))
-        target[12:15] += cross(left_jacobian(angles, speed), rotated(angles, normal))
-        turn_target(target, angles, curvature * speed)
+    def move(self, t: float, target: Array) -> None:
+        """Take a target to time t [s]; see `Reference.move`."""
+        inner = AT_REST.copy()
+        self.along.move(t, inner)
+        _tilt(t, self.constants, inner, target)
 
 
 @njit(cache=True, error_model="numpy")
-def _least_turn(u: Array, v: Array) -> Array:
-    """Compute the least rotation vector that takes unit vector u to v, (3,)."""
+def _lay(t: float, constants: Array, inner: Array, target: Array) -> None:
+    """Lay the displacement of `inner` (18,) on a surface, after the turn to its normal."""
+    curvature = constants[0]
+    lead = constants[1]
+    normal = scaled(-1.0, column_of(target, 2))
+    if lead > 0.0:
+        tool = normal
+        normal = (constants[2], constants[3], constants[4])
+        # Quintic, at rest and without acceleration at both ends.
+        x = min(max(t / lead, 0.0), 1.0)
+        fraction = x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
+        rate = 30.0 * x**2 * (1.0 - x) ** 2 / lead
+        turn = _least_turn(tool, normal)
+        turn_target(target, scaled(fraction, turn), scaled(rate, turn))
+    # Height above the surface counts from the first point's.
+    flat = _least_turn((0.0, 0.0, 1.0), normal)
+    across = cross(normal, rotated(flat, (inner[0], inner[1], inner[2])))
+    speed = (0.0, 0.0, 0.0)
+    if t >= lead:
+        speed = cross(normal, rotated(flat, (inner[12], inner[13], inner[14])))
+    angles = scaled(curvature, across)
+    moved = cross(across, left_jacobian(angles, normal))
+    velocity = cross(left_jacobian(angles, speed), rotated(angles, normal))
+    for i in range(3):
+        target[i] += moved[i]
+        target[12 + i] += velocity[i]
+    turn_target(target, angles, scaled(curvature, speed))
+
+
+@njit(cache=True, error_model="numpy")
+def _least_turn(u: Vector3, v: Vector3) -> Vector3:
+    """Compute the least rotation vector that takes unit vector u to v."""
     axis = cross(u, v)
-    sine, cosine = np.sqrt(np.sum(axis * axis)), np.sum(u * v)
-    scale = 1.0
+    sine = np.sqrt(dot(axis, axis))
+    cosine = dot(u, v)
     if sine > 1e-12:
-        scale = np.arctan2(sine, cosine) / sine
-    elif cosine < 0.0:
-        other = np.zeros(3)
-        other[np.argmin(np.abs(u))] = 1.0
-        axis = cross(u, other)
-        scale = np.pi / np.sqrt(np.sum(axis * axis))
-    out: Array = scale * axis
-    return out
+        return scaled(np.arctan2(sine, cosine) / sine, axis)
+    if cosine >= 0.0:
+        return axis
+    # Opposite vectors: half a turn about any axis across them.
+    other = (0.0, 0.0, 1.0)
+    if abs(u[0]) <= abs(u[1]) and abs(u[0]) <= abs(u[2]):
+        other = (1.0, 0.0, 0.0)
+    elif abs(u[1]) <= abs(u[2]):
+        other = (0.0, 1.0, 0.0)
+    axis = cross(u, other)
+    return scaled(np.pi / np.sqrt(dot(axis, axis)), axis)
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,17 +222,15 @@ class OnSurface(_OnPath):
 
     def __post_init__(self) -> None:
         checks.instance("along", self.along, Reference)
-        curvature = 0.0 if self.radius is None else 1.0 / positive("radius", self.radius)
         self._set(along=self.along.at_rest(), lead=positive("lead", self.lead))
-        normal: Array = np.zeros(3)
+        curvature = 0.0 if self.radius is None else 1.0 / positive("radius", self.radius)
+        lead = 0.0
+        normal: Vector3 = (0.0, 0.0, 0.0)
         if self.normal is not None:
             self._set(normal=vector3("normal", self.normal))
-            normal = np.array(direction("normal", self.normal))
-        self._set(numbers=np.array([curvature, self._lead, *normal]))
-
-    @property
-    def _lead(self) -> float:
-        return 0.0 if self.normal is None else self.lead
+            lead = self.lead
+            normal = direction("normal", self.normal)
+        self._set(constants=np.array([curvature, lead, *normal]))
 
     @property
     def period(self) -> float:
@@ -227,11 +240,13 @@ class OnSurface(_OnPath):
     @property
     def duration(self) -> float:
         """Time to turn the tool and to take the path once [s]."""
-        return self._lead + self.along.duration
+        return self.along.duration + (0.0 if self.normal is None else self.lead)
 
-    def _write(self, times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-        inner = self.along._targets(np.maximum(times - self._lead, 0.0) if self._lead else times)
-        _surface(times, numbers, inner, out, row, column)
+    def move(self, t: float, target: Array) -> None:
+        """Take a target to time t [s]; see `Reference.move`."""
+        inner = AT_REST.copy()
+        self.along.move(t if self.normal is None else max(t - self.lead, 0.0), inner)
+        _lay(t, self.constants, inner, target)
 
 
 def _acute(angle: float) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 import os
-from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,11 +14,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, finite_array, positive, read_only
+from iiwa_dnn.checks import Array, Vector3, finite_array, positive, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotation_spline import fit_rotations
-from iiwa_dnn.references.rotations import jacobian_rate, left_jacobian, turn_target
+from iiwa_dnn.references.rotations import (
+    added,
+    combined,
+    jacobian_rate,
+    left_jacobian,
+    scaled,
+    turn_target,
+)
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -28,6 +34,7 @@ Ends = Literal["clamped", "natural", "closed"]
 
 _SCIPY_ENDS = {"clamped": "clamped", "natural": "natural", "closed": "periodic"}
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
+_HEADERS = (_COLUMNS[:4], _COLUMNS, _COLUMNS[1:])
 _CLOSED_WITHIN = 1e-9  # [m], and of a quaternion's components
 _UNIT_WITHIN = 1e-3  # error of a quaternion's length that is taken for rounding
 
@@ -35,48 +42,82 @@ SPEED, RATE = 0.05, 0.5
 """Speed [m/s] and angular speed [rad/s] along points of a file without times."""
 
 
-@njit(cache=True, error_model="numpy")
-def _path(times: Array, numbers: Array, out: Array, row: int, column: int) -> None:
-    """Add displacement and velocity to targets (k, 18) in `out`; see `Reference.path`."""
-    closed, pieces = numbers[0] != 0.0, int(numbers[1])
-    knots, end = numbers[2 : 3 + pieces], numbers[2 + pieces]
-    turns = 3 + 13 * pieces
-    for k in range(times.size):
-        t = times[k] % end if closed else min(max(times[k], 0.0), end)
-        piece = min(max(np.searchsorted(knots, t, "right") - 1, 0), pieces - 1)
-        x = t - knots[piece]
-        moves = 1.0 if closed or t == times[k] else 0.0
-        for i in range(3):
-            at = 3 + pieces + 12 * piece + i
-            a, b, c, d = numbers[at], numbers[at + 3], numbers[at + 6], numbers[at + 9]
-            out[row + k, column + i] += ((a * x + b) * x + c) * x + d
-            out[row + k, column + 12 + i] += moves * ((3.0 * a * x + 2.0 * b) * x + c)
-        if turns < numbers.size:
-            target, at = out[row + k, column : column + 18], turns + 12 * piece
-            start = numbers[at + 9 : at + 12]
-            a, b, c = numbers[at : at + 3], numbers[at + 3 : at + 6], numbers[at + 6 : at + 9]
-            turn_target(target, start, np.zeros(3))
-            rate = moves * ((3.0 * x * a + 2.0 * b) * x + c)
-            turn_target(target, ((a * x + b) * x + c) * x, rate)
+# Constants: 1 if closed, else 0; number of pieces p; knots [s], (p + 1,); of each piece the
+# displacement's coefficients of x^3, x^2, x and 1, (p, 4, 3); and of poses those of
+# `iiwa_dnn.references.rotation_spline`, (p, 4, 3).
 
 
 @njit(cache=True, error_model="numpy")
-def _acceleration(times: Array, numbers: Array, out: Array) -> None:
-    """Write linear and angular accelerations (k, 6) into `out`; 0 where an open path rests."""
-    closed, pieces = numbers[0] != 0.0, int(numbers[1])
-    knots, end = numbers[2 : 3 + pieces], numbers[2 + pieces]
-    for k in range(times.size):
-        t = times[k] % end if closed else times[k]
-        if not 0.0 <= t <= end:
-            continue
-        piece = min(max(np.searchsorted(knots, t, "right") - 1, 0), pieces - 1)
-        x, at = t - knots[piece], 3 + pieces + 12 * piece
-        out[k, :3] = 6.0 * x * numbers[at : at + 3] + 2.0 * numbers[at + 3 : at + 6]
-        at = 3 + 13 * pieces + 12 * piece
-        if at < numbers.size:
-            a, b, c = numbers[at : at + 3], numbers[at + 3 : at + 6], numbers[at + 6 : at + 9]
-            vector, rate = ((a * x + b) * x + c) * x, (3.0 * x * a + 2.0 * b) * x + c
-            out[k, 3:] = left_jacobian(vector, 6.0 * x * a + 2.0 * b) + jacobian_rate(vector, rate)
+def _piece(t: float, constants: Array) -> tuple[int, float, float]:
+    """Find the piece at a time, the time since it began, and 0.0 where the path is at rest."""
+    closed = constants[0] != 0.0
+    pieces = int(constants[1])
+    end = constants[2 + pieces]
+    inside = t % end if closed else min(max(t, 0.0), end)
+    low = 0
+    high = pieces - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if constants[2 + middle] <= inside:
+            low = middle
+        else:
+            high = middle - 1
+    moves = 1.0 if closed or inside == t else 0.0
+    return low, inside - constants[2 + low], moves
+
+
+@njit(cache=True, error_model="numpy")
+def _triple(constants: Array, at: int) -> Vector3:
+    return constants[at], constants[at + 1], constants[at + 2]
+
+
+@njit(cache=True, error_model="numpy")
+def _cubic(constants: Array, at: int, x: float) -> Vector3:
+    """Compute a x^3 + b x^2 + c x of coefficients (3, 3)."""
+    first = combined(x, _triple(constants, at), 1.0, _triple(constants, at + 3))
+    return scaled(x, combined(x, first, 1.0, _triple(constants, at + 6)))
+
+
+@njit(cache=True, error_model="numpy")
+def _slope(constants: Array, at: int, x: float) -> Vector3:
+    """Compute the derivative of `_cubic` by x."""
+    first = combined(3.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
+    return combined(x, first, 1.0, _triple(constants, at + 6))
+
+
+@njit(cache=True, error_model="numpy")
+def _path(t: float, constants: Array, target: Array) -> None:
+    pieces = int(constants[1])
+    piece, x, moves = _piece(t, constants)
+    at = 3 + pieces + 12 * piece
+    moved = added(_cubic(constants, at, x), _triple(constants, at + 9))
+    velocity = _slope(constants, at, x)
+    for i in range(3):
+        target[i] += moved[i]
+        target[12 + i] += moves * velocity[i]
+    at += 12 * pieces
+    if at < constants.size:
+        turn_target(target, _triple(constants, at + 9), (0.0, 0.0, 0.0))
+        turn_target(target, _cubic(constants, at, x), scaled(moves, _slope(constants, at, x)))
+
+
+@njit(cache=True, error_model="numpy")
+def _accelerate(t: float, constants: Array, out: Array) -> None:
+    """Write linear and angular acceleration (6,) into `out`."""
+    pieces = int(constants[1])
+    piece, x, moves = _piece(t, constants)
+    at = 3 + pieces + 12 * piece
+    linear = combined(6.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
+    angular = (0.0, 0.0, 0.0)
+    at += 12 * pieces
+    if at < constants.size:
+        vector = _cubic(constants, at, x)
+        second = combined(6.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
+        bent = jacobian_rate(vector, _slope(constants, at, x))
+        angular = added(left_jacobian(vector, second), bent)
+    for i in range(3):
+        out[i] = moves * linear[i]
+        out[3 + i] = moves * angular[i]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,11 +165,10 @@ class Waypoints(Reference):
             raise InvalidInputError("times", "must increase from point to point", times)
         self._set(times=times, points=points)
         spline = self._fit()
-        head = [float(self.ends == "closed"), len(spline.x) - 1]
-        # Of each piece the coefficients of every power, of each power x, y and z.
-        pieces = spline.c.transpose(1, 0, 2).ravel()
+        head = [float(self.ends == "closed"), float(len(times) - 1)]
+        moves = spline.c.transpose(1, 0, 2).ravel()
         turns = np.zeros(0) if self.quaternions is None else self._fit_turns(self.quaternions)
-        self._set(numbers=np.concatenate([head, spline.x, pieces, turns.ravel()]))
+        self._set(constants=np.concatenate([head, spline.x, moves, turns.ravel()]))
 
     def _fit_turns(self, quaternions: Array) -> Array:
         """Check the quaternions, begin at the first pose, and fit the rotation spline."""
@@ -160,7 +200,8 @@ class Waypoints(Reference):
         """
         times = np.asarray(t, dtype=np.float64)
         out = np.zeros((times.size, 6))
-        _acceleration(np.ascontiguousarray(times.ravel()), self.numbers, out)
+        for time, row in zip(times.ravel().tolist(), out, strict=True):
+            _accelerate(time, self.constants, row)
         return out.reshape(*times.shape, 6)
 
     def _fit(self) -> CubicSpline:
@@ -208,27 +249,16 @@ class Waypoints(Reference):
         positive("speed", speed)
         positive("rate", rate)
         path = Path(path)
-        try:
-            with path.open(encoding="utf-8-sig", newline="") as file:
-                rows = np.array(list(_rows(path, file)))
-        except OSError as error:
-            if isinstance(error, FileError):
-                raise
-            raise FileError(path, error.strerror or str(error)) from error
-        except UnicodeDecodeError as error:
-            raise FileError(path, "not UTF-8 text") from error
-        except ValueError as error:  # a NUL in the path
-            raise FileError(path, str(error)) from error
-        if len(rows) < 2:
-            raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
-        times, points = rows[:, 0], rows[:, 1:4]
-        quaternions = rows[:, 4:] if rows.shape[1] > 4 else None
-        untimed = quaternions is not None and np.isnan(times[0])
-        for name, value, usual in (("speed", speed, SPEED), ("rate", rate, RATE)):
-            if value != usual and not untimed:
-                raise InvalidInputError(name, f"is for a file without times, not {path}", value)
-        if quaternions is not None and untimed:
-            times = _times_at(points, quaternions, speed, rate)
+        columns, table = _read(path)
+        timed = columns[0] == "t"
+        points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
+        quaternions = table[:, -4:] if "qw" in columns else None
+        if timed:
+            for name, value, usual in (("speed", speed, SPEED), ("rate", rate, RATE)):
+                if value != usual:
+                    problem = f"is for a file without times, not {path}"
+                    raise InvalidInputError(name, problem, value)
+        times = table[:, 0] if timed else _times_at(table, speed, rate)
         try:
             return cls(times, points, ends, quaternions)
         except InvalidInputError as error:
@@ -250,46 +280,70 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _times_at(points: Array, quaternions: Array, speed: float, rate: float) -> Array:
-    """Compute the times (m,) [s] of poses that are passed at a speed and an angular speed."""
+def _times_at(poses: Array, speed: float, rate: float) -> Array:
+    """Compute the times (m,) [s] of poses (m, 7) passed at a speed and an angular speed."""
+    steps = np.diff(poses, axis=0)
+    lengths = np.linalg.norm(steps[:, :3], axis=1)
     # A quarter of the angle by its chord, accurate near zero, to the nearer of the two signs.
-    chords = (np.linalg.norm(quaternions[1:] - s * quaternions[:-1], axis=1) for s in (1.0, -1.0))
-    angles = 4.0 * np.arcsin(np.minimum(0.5 * np.minimum(*chords), 1.0))
-    took = np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed, angles / rate)
-    return np.concatenate([[0.0], np.cumsum(took)])
+    chord = np.linalg.norm(steps[:, 3:], axis=1)
+    other = np.linalg.norm(poses[1:, 3:] + poses[:-1, 3:], axis=1)
+    angles = 4.0 * np.arcsin(np.minimum(0.5 * np.minimum(chord, other), 1.0))
+    return np.concatenate([[0.0], np.cumsum(np.maximum(lengths / speed, angles / rate))])
 
 
-def _rows(path: Path, file: Iterable[str]) -> Iterator[list[float]]:
-    """Read rows of t, x, y, z and a quaternion, if there is one; each complaint names its line.
+def _read(path: Path) -> tuple[list[str], Array]:
+    """Read a file of points or poses: the names of its columns, and its rows."""
+    lines = _lines(path)
+    number, header = lines[0] if lines else (1, [])
+    columns = [cell.lower() for cell in header]
+    if columns not in _HEADERS:
+        problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
+        raise FileError(path, f"line {number}: {problem}")
+    rows: list[list[float]] = []
+    for number, cells in lines[1:]:
+        try:
+            row = _row(columns, cells)
+            if columns[0] == "t" and rows and row[0] <= rows[-1][0]:
+                raise ValueError("t does not increase")
+        except ValueError as error:
+            raise FileError(path, f"line {number}: {error}") from None
+        rows.append(row)
+    if len(rows) < 2:
+        raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
+    return columns, np.array(rows)
 
-    Without the column t its place holds NaN.
-    """
-    reader, last = csv.reader(file), -math.inf
-    stripped = ([cell.strip() for cell in row] for row in reader)
-    filled = ((f"line {reader.line_num}", cells) for cells in stripped if any(cells))
+
+def _lines(path: Path) -> list[tuple[int, list[str]]]:
+    """Read a CSV file: number and cells of each line that is not empty."""
+    lines = []
     try:
-        line, header = next(filled, ("line 1", []))
-        columns = [cell.lower() for cell in header]
-        timed = columns[:1] == ["t"]
-        if columns not in (_COLUMNS[:4], _COLUMNS, _COLUMNS[1:]):
-            problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
-            raise FileError(path, f"{line}: {problem}")
-        for line, cells in filled:
-            if len(cells) != len(columns):
-                raise FileError(
-                    path, f"{line}: {len(columns)} columns are needed, it has {len(cells)}"
-                )
-            values = []
-            for column, cell in zip(columns, cells, strict=True):
-                try:
-                    values.append(float(cell))
-                except ValueError:
-                    raise FileError(path, f"{line}: {column} is {cell!r}, not a number") from None
-                if not math.isfinite(values[-1]):
-                    raise FileError(path, f"{line}: {column} is {cell}, not finite")
-            if timed and values[0] <= last:
-                raise FileError(path, f"{line}: t does not increase")
-            last = values[0]
-            yield values if timed else [math.nan, *values]
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file)
+            for row in reader:
+                cells = [cell.strip() for cell in row]
+                if any(cells):
+                    lines.append((reader.line_num, cells))
+    except OSError as error:
+        raise FileError(path, error.strerror or str(error)) from error
+    except UnicodeDecodeError as error:
+        raise FileError(path, "not UTF-8 text") from error
+    except ValueError as error:  # a NUL in the path
+        raise FileError(path, str(error)) from error
     except csv.Error as error:
         raise FileError(path, f"line {reader.line_num}: {error}") from error
+    return lines
+
+
+def _row(columns: list[str], cells: list[str]) -> list[float]:
+    """Read the numbers of a line; raise ValueError with the problem."""
+    if len(cells) != len(columns):
+        raise ValueError(f"{len(columns)} columns are needed, it has {len(cells)}")
+    row = []
+    for column, cell in zip(columns, cells, strict=True):
+        try:
+            row.append(float(cell))
+        except ValueError:
+            raise ValueError(f"{column} is {cell!r}, not a number") from None
+        if not math.isfinite(row[-1]):
+            raise ValueError(f"{column} is {cell}, not finite")
+    return row

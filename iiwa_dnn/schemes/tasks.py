@@ -192,9 +192,13 @@ def so3_rows(
                 out[rows + i * n + j] = jacobian[j, 3 + i]
     if rate > 0.0:
         # The logarithm of a product: the mean twist and the error do not just add up.
-        turn = targets[target + 15 : target + 18] / rate
+        turn = (
+            targets[target + 15] / rate,
+            targets[target + 16] / rate,
+            targets[target + 17] / rate,
+        )
         for j in range(3):
-            column = rotated(turn, relative[:, j])
+            column = rotated(turn, (relative[0, j], relative[1, j], relative[2, j]))
             for i in range(3):  # a slice would compile numba's error messages
                 relative[i, j] = column[i]
         ahead = np.empty(3)
