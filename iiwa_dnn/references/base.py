@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
-from iiwa_dnn.references.rotations import set_mean_twist
+from iiwa_dnn.references.rotations import move_target, set_mean_twist
 from iiwa_dnn.references.targets import Target, Targets
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
@@ -166,10 +166,9 @@ class Reference(ABC):
             self.compiled(t, self.constants, target)
             return
         motion = self.motion(t)
-        target[:3] += motion.displacement
-        target[3:12] = (motion.turn @ target[3:12].reshape(3, 3)).ravel()
-        target[12:15] = motion.velocity
-        target[15:] = motion.angular_velocity
+        turn = np.ravel(motion.turn)
+        twist = (motion.velocity, motion.angular_velocity)
+        move_target(target, np.concatenate([motion.displacement, turn, *twist]))
 
     def at(self, t: float) -> Target:
         """Compute the target at time t [s].

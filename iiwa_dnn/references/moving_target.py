@@ -7,33 +7,27 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from iiwa_dnn import checks
-from iiwa_dnn.checks import Array, finite_array, not_negative, offers, positive
+from iiwa_dnn.checks import Array, not_negative, offers, positive
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.references.base import Pose, Reference
 from iiwa_dnn.references.rotations import jacobian_rate
+from iiwa_dnn.references.targets import Target
 
 _ARRIVED = 1e-12
 """Distance [m] and angle [rad] below which a target is at its goal: rounding has no direction."""
 
 
-class _Goal(NamedTuple):
-    """A pose to go to: position (3,) and rotation (3, 3)."""
-
-    position: Array
-    rotation: Array
-
-
 class _State(NamedTuple):
-    """Pose, velocity and acceleration of the target at a time.
+    """State of the target at a time.
 
-    The last two are linear and angular, (6,), along the world's axes.
+    Attributes:
+        t: Time [s].
+        target: Pose and velocity.
+        acceleration: Linear [m/s^2] and angular [rad/s^2], (6,), along the world's axes.
     """
 
     t: float
-    position: Array
-    rotation: Array
-    velocity: Array
+    target: Target
     acceleration: Array
 
 
@@ -79,20 +73,19 @@ class MovingTarget(Reference):
         self.rate = not_negative("rate", rate)
         self.acceleration = acceleration
         self.jerk = jerk
-        self._profile: _Profile | None = None
+        self._ruckig: Any = None
         if acceleration is not None:
-            positive("speed", speed)
-            positive("rate", rate)
-            positive("acceleration", acceleration)
-            hardest = math.inf if jerk is None else positive("jerk", jerk)
-            self._profile = _Profile(np.array([speed, acceleration, hardest]), rate / speed)
+            for name in ("speed", "rate", "acceleration"):
+                positive(name, getattr(self, name))
+            positive("jerk", 1.0 if jerk is None else jerk)
+            self._ruckig = import_extra("ruckig", "pip install ruckig")
         elif jerk is not None:
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
-        position = finite_array("position", pose.position, (3,))
-        self._goal = _Goal(position, checks.rotation("rotation", pose.rotation))
-        self._shown = _State(math.inf, *self._goal, np.zeros(6), np.zeros(6))
-        self._start = self._shown
+        self._goal = Target(pose.position, pose.rotation)
         self._end = self._goal
+        self._shown = _State(math.inf, self._goal, np.zeros(6))
+        self._start = self._shown
+        self._trajectory: Any = None
 
     def set(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
         """Set the desired pose of the frame.
@@ -105,11 +98,9 @@ class MovingTarget(Reference):
             InvalidInputError: An array is not finite, has a wrong shape or is no rotation; the
                 target stays as it was.
         """
-        goal = self._goal
-        wanted = finite_array("position", position, (3,))
-        turned = goal.rotation if rotation is None else checks.rotation("rotation", rotation)
-        if not (np.array_equal(wanted, goal.position) and np.array_equal(turned, goal.rotation)):
-            self._goal = _Goal(wanted, turned)
+        goal = Target(position, self._goal.rotation if rotation is None else rotation)
+        if not np.array_equal(goal.data, self._goal.data):
+            self._goal = goal
 
     @property
     def period(self) -> float:
@@ -119,77 +110,64 @@ class MovingTarget(Reference):
     def move(self, t: float, target: Array) -> None:
         """Set a target to the pose and the velocity at time t [s]; see `Reference.move`."""
         goal = self._goal  # one reading: it may be set in another thread meanwhile
-        profile = self._profile
-        if goal is not self._end and (profile is None or profile.fit(self._shown, goal)):
-            self._start = self._shown
-            self._end = goal
+        if goal is not self._end:
+            self._turn_to(goal)
         self._start = self._start._replace(t=min(t, self._start.t))
-        self._shown = state = self._state(t)
-        target[:3] = state.position
-        target[3:12] = state.rotation.ravel()
-        target[12:] = state.velocity
-
-    def _state(self, t: float) -> _State:
-        """Compute the state at a time [s], not before the start's."""
-        start = self._start
-        elapsed = t - start.t
-        if self._profile is not None:
-            moved, velocity, acceleration = self._profile.at(elapsed)
+        elapsed = t - self._start.t
+        if self._trajectory is None:
+            moved, velocity, acceleration = self._straight(elapsed)
         else:
-            way = _difference(start, self._end)
-            moved = np.zeros(6)
-            velocity = np.zeros(6)
-            acceleration = np.zeros(6)
-            for part, fastest in ((slice(0, 3), self.speed), (slice(3, 6), self.rate)):
-                length = float(np.linalg.norm(way[part]))
-                if length > max(fastest * elapsed, _ARRIVED):
-                    velocity[part] = fastest / length * way[part]
-                    moved[part] = elapsed * velocity[part]
-                else:
-                    moved[part] = way[part]
-        rotation = pin.exp3(moved[3:]) @ start.rotation
-        return _State(t, start.position + moved[:3], rotation, velocity, acceleration)
+            moved, velocity, acceleration = self._smooth(elapsed)
+        start = self._start.target
+        target[:3] = start.position + moved[:3]
+        target[3:12] = (pin.exp3(moved[3:]) @ start.rotation).ravel()
+        target[12:] = velocity
+        self._shown = _State(t, Target.from_data(target.copy()), acceleration)
 
-    def accelerations(self, t: float) -> Array:
-        """Return zeros, (6,): it is not known how the target will move on."""
-        return np.zeros(6)
+    def _turn_to(self, goal: Target) -> None:
+        """Begin a motion from the state shown last to a pose."""
+        if self.acceleration is not None:
+            trajectory = self._fit(goal, self.acceleration)
+            if trajectory is None:  # the motion goes on as it is
+                return
+            self._trajectory = trajectory
+        self._start = self._shown
+        self._end = goal
 
-    def settings(self) -> dict[str, Any]:
-        """Return name and speeds, in values that JSON knows."""
-        limits = {"acceleration": self.acceleration, "jerk": self.jerk}
-        given = {name: value for name, value in limits.items() if value is not None}
-        return {"name": self.name, "speed": self.speed, "rate": self.rate, **given}
+    def _straight(self, elapsed: float) -> tuple[Array, Array, Array]:
+        """Compute displacement, velocity and acceleration (6,) a time [s] after the start."""
+        way = _difference(self._start, self._end)
+        moved = way.copy()
+        velocity = np.zeros(6)
+        for part, fastest in ((slice(0, 3), self.speed), (slice(3, 6), self.rate)):
+            length = float(np.linalg.norm(way[part]))
+            if length > max(fastest * elapsed, _ARRIVED):
+                velocity[part] = fastest / length * way[part]
+                moved[part] = elapsed * velocity[part]
+        return moved, velocity, np.zeros(6)
 
+    def _fit(self, goal: Target, acceleration: float) -> Any:
+        """Fit ruckig's trajectory from the state shown last to a pose; None without success.
 
-class _Profile:
-    """Time-optimal motion from a state to rest at a pose.
-
-    Six axes: the displacement and, from the first orientation on, the rotation vector.
-    """
-
-    def __init__(self, limits: Array, turning: float) -> None:
-        """Take linear speed, acceleration and jerk, and the angular limits' ratio to them."""
-        ruckig = import_extra("ruckig", "pip install ruckig")  # for limits of acceleration only
-        self._ruckig = ruckig.Ruckig(6)
-        self._input = ruckig.InputParameter(6)
-        self._trajectory = ruckig.Trajectory(6)
+        Six axes: the displacement and, from the first orientation on, the rotation vector.
+        """
+        state = self._shown
+        jerk = math.inf if self.jerk is None else self.jerk
         # The limits of ruckig are those of each axis, these are of the whole vector.
-        axes = np.repeat([1.0, turning], 3) / math.sqrt(3.0)
-        self._input.max_velocity = (limits[0] * axes).tolist()
-        self._input.max_acceleration = (limits[1] * axes).tolist()
-        self._input.max_jerk = (limits[2] * axes).tolist()
-        self._input.current_position = [0.0] * 6
-        self.fit(_State(0.0, np.zeros(3), np.eye(3), np.zeros(6), np.zeros(6)), _ORIGIN)
+        axes = np.repeat([1.0, self.rate / self.speed], 3) / math.sqrt(3.0)
+        asked = self._ruckig.InputParameter(6)
+        asked.max_velocity = (self.speed * axes).tolist()
+        asked.max_acceleration = (acceleration * axes).tolist()
+        asked.max_jerk = (jerk * axes).tolist()
+        asked.current_velocity = state.target.data[12:].tolist()
+        asked.current_acceleration = state.acceleration.tolist()
+        asked.target_position = _difference(state, goal).tolist()
+        trajectory = self._ruckig.Trajectory(6)
+        found = self._ruckig.Ruckig(6).calculate(asked, trajectory)
+        return trajectory if found.value >= 0 else None
 
-    def fit(self, start: _State, goal: _Goal) -> bool:
-        """Fit the motion from a state to a pose; without success the one before stays."""
-        self._input.current_velocity = start.velocity.tolist()
-        self._input.current_acceleration = start.acceleration.tolist()
-        self._input.target_position = _difference(start, goal).tolist()
-        return bool(self._ruckig.calculate(self._input, self._trajectory).value >= 0)
-
-    def at(self, elapsed: float) -> tuple[Array, Array, Array]:
-        """Return displacement, velocity and acceleration (6,) a time [s] after the start."""
+    def _smooth(self, elapsed: float) -> tuple[Array, Array, Array]:
+        """Compute displacement, velocity and acceleration (6,) a time [s] after the start."""
         end = self._trajectory.duration
         moved, velocity, acceleration = map(np.array, self._trajectory.at_time(min(elapsed, end)))
         if elapsed >= end:
@@ -201,11 +179,18 @@ class _Profile:
         velocity[3:] = jacobian @ velocity[3:]
         return moved, velocity, acceleration
 
+    def accelerations(self, t: float) -> Array:
+        """Return zeros, (6,): it is not known how the target will move on."""
+        return np.zeros(6)
 
-_ORIGIN = _Goal(np.zeros(3), np.eye(3))
+    def settings(self) -> dict[str, Any]:
+        """Return name and speeds, in values that JSON knows."""
+        names = ("name", "speed", "rate", "acceleration", "jerk")
+        values = {name: getattr(self, name) for name in names}
+        return {name: value for name, value in values.items() if value is not None}
 
 
-def _difference(start: _State, goal: _Goal) -> Array:
+def _difference(start: _State, goal: Target) -> Array:
     """Compute displacement and rotation vector (6,) from a state to a pose."""
-    turn = pin.log3(goal.rotation @ start.rotation.T)
-    return np.concatenate([goal.position - start.position, turn])
+    turn = pin.log3(goal.rotation @ start.target.rotation.T)
+    return np.concatenate([goal.position - start.target.position, turn])

@@ -118,6 +118,12 @@ def column_of(target: Array, j: int) -> Vector3:
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
+def row_of(target: Array, i: int) -> Vector3:
+    """Return the i-th row of the rotation of `Target.data` (18,)."""
+    return target[3 + 3 * i], target[4 + 3 * i], target[5 + 3 * i]
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
     """Turn a target, `Target.data` (18,), by a rotation vector with a rate; its position stays."""
     for j in range(3):
@@ -128,6 +134,19 @@ def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
     after = added(left_jacobian(vector, rate), before)
     for i in range(3):
         target[15 + i] = after[i]
+
+
+@njit(cache=True, error_model="numpy")
+def move_target(target: Array, motion: Array) -> None:
+    """Move a target (18,) at rest by a motion: the target to which it takes one at identity."""
+    for i in range(3):
+        target[i] += motion[i]
+        target[12 + i] = motion[12 + i]
+        target[15 + i] = motion[15 + i]
+    for j in range(3):
+        x, y, z = column_of(target, j)
+        for row in range(3, 12, 3):
+            target[row + j] = motion[row] * x + motion[row + 1] * y + motion[row + 2] * z
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -170,10 +189,7 @@ def set_mean_twist(now: Array, then: Array, dt: float) -> None:
     relative = np.empty((3, 3))
     for i in range(3):
         for j in range(3):
-            value = 0.0
-            for k in range(3):
-                value += then[3 + 3 * i + k] * now[3 + 3 * j + k]
-            relative[i, j] = value
+            relative[i, j] = dot(row_of(then, i), row_of(now, j))
     turn = np.empty(3)
     rotation_log(relative, turn)
     for i in range(3):

@@ -16,8 +16,7 @@ from iiwa_dnn.references.base import Reference
 
 @njit(cache=True, error_model="numpy")
 def _heart(t: float, constants: Array, target: Array) -> None:
-    scale = constants[0]
-    rate = constants[1]
+    scale, rate = constants
     p = rate * t
     s1 = np.sin(p)
     c1 = np.cos(p)

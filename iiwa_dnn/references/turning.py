@@ -17,6 +17,7 @@ from iiwa_dnn.references.rotations import (
     cross,
     dot,
     left_jacobian,
+    move_target,
     rotated,
     scaled,
     turn_target,
@@ -28,8 +29,7 @@ TILT = math.radians(20.0)
 
 @njit(cache=True, error_model="numpy")
 def _cone(t: float, constants: Array, target: Array) -> None:
-    angle = constants[0]
-    rate = constants[1]
+    angle, rate = constants
     p = rate * t
     turn_target(target, scaled(-angle, column_of(target, 0)), (0.0, 0.0, 0.0))
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
@@ -81,24 +81,20 @@ class _OnPath(Reference):
     def duration(self) -> float:
         return self.along.duration
 
+    def _along(self, t: float) -> Array:
+        """Compute the other path's target (18,) at a time [s]."""
+        target = AT_REST.copy()
+        self.along.move(t, target)
+        return target
+
 
 @njit(cache=True, error_model="numpy")
-def _tilt(t: float, constants: Array, inner: Array, target: Array) -> None:
-    """Move a target as the path's own target, `inner` (18,), and tilt it about an axis."""
-    angle = constants[0]
-    rate = constants[1]
-    axis = (constants[2], constants[3], constants[4])
-    for i in range(3):
-        target[i] += inner[i]
-        target[12 + i] = inner[12 + i]
-        target[15 + i] = inner[15 + i]
-    for j in range(3):
-        x, y, z = column_of(target, j)
-        for i in range(3):
-            row = 3 + 3 * i
-            target[row + j] = inner[row] * x + inner[row + 1] * y + inner[row + 2] * z
+def _tilt(t: float, constants: Array, target: Array) -> None:
+    angle, rate, x, y, z = constants
     p = rate * t
-    turn_target(target, scaled(angle * np.sin(p), axis), scaled(angle * rate * np.cos(p), axis))
+    tilt = angle * np.sin(p)
+    speed = angle * rate * np.cos(p)
+    turn_target(target, scaled(tilt, (x, y, z)), scaled(speed, (x, y, z)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,20 +132,18 @@ class Tilting(_OnPath):
 
     def move(self, t: float, target: Array) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
-        inner = AT_REST.copy()
-        self.along.move(t, inner)
-        _tilt(t, self.constants, inner, target)
+        move_target(target, self._along(t))
+        _tilt(t, self.constants, target)
 
 
 @njit(cache=True, error_model="numpy")
 def _lay(t: float, constants: Array, inner: Array, target: Array) -> None:
     """Lay the displacement of `inner` (18,) on a surface, after the turn to its normal."""
-    curvature = constants[0]
-    lead = constants[1]
+    curvature, lead, n_x, n_y, n_z = constants
     normal = scaled(-1.0, column_of(target, 2))
     if lead > 0.0:
         tool = normal
-        normal = (constants[2], constants[3], constants[4])
+        normal = (n_x, n_y, n_z)
         # Quintic, at rest and without acceleration at both ends.
         x = min(max(t / lead, 0.0), 1.0)
         fraction = x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
@@ -181,11 +175,12 @@ def _least_turn(u: Vector3, v: Vector3) -> Vector3:
         return scaled(np.arctan2(sine, cosine) / sine, axis)
     if cosine >= 0.0:
         return axis
-    # Opposite vectors: half a turn about any axis across them.
+    # Opposite vectors: half a turn about the axis across u and the world axis farthest from it.
+    least = min(abs(u[0]), abs(u[1]), abs(u[2]))
     other = (0.0, 0.0, 1.0)
-    if abs(u[0]) <= abs(u[1]) and abs(u[0]) <= abs(u[2]):
+    if abs(u[0]) == least:
         other = (1.0, 0.0, 0.0)
-    elif abs(u[1]) <= abs(u[2]):
+    elif abs(u[1]) == least:
         other = (0.0, 1.0, 0.0)
     axis = cross(u, other)
     return scaled(np.pi / np.sqrt(dot(axis, axis)), axis)
@@ -244,8 +239,7 @@ class OnSurface(_OnPath):
 
     def move(self, t: float, target: Array) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
-        inner = AT_REST.copy()
-        self.along.move(t if self.normal is None else max(t - self.lead, 0.0), inner)
+        inner = self._along(t if self.normal is None else max(t - self.lead, 0.0))
         _lay(t, self.constants, inner, target)
 
 

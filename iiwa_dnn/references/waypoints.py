@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike
 
-from iiwa_dnn.checks import Array, Vector3, finite_array, positive, read_only
+from iiwa_dnn.checks import Array, Vector3, finite_array, one_of, positive, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotation_spline import fit_rotations
@@ -43,8 +43,7 @@ SPEED, RATE = 0.05, 0.5
 
 
 # Constants: 1 if closed, else 0; number of pieces p; knots [s], (p + 1,); of each piece the
-# displacement's coefficients of x^3, x^2, x and 1, (p, 4, 3); and of poses those of
-# `iiwa_dnn.references.rotation_spline`, (p, 4, 3).
+# displacement's coefficients of x^3, x^2, x and 1, and those of `fit_rotations`, (p, 8, 3).
 
 
 @njit(cache=True, error_model="numpy")
@@ -87,37 +86,16 @@ def _slope(constants: Array, at: int, x: float) -> Vector3:
 
 @njit(cache=True, error_model="numpy")
 def _path(t: float, constants: Array, target: Array) -> None:
-    pieces = int(constants[1])
     piece, x, moves = _piece(t, constants)
-    at = 3 + pieces + 12 * piece
+    at = 3 + int(constants[1]) + 24 * piece
     moved = added(_cubic(constants, at, x), _triple(constants, at + 9))
     velocity = _slope(constants, at, x)
     for i in range(3):
         target[i] += moved[i]
         target[12 + i] += moves * velocity[i]
-    at += 12 * pieces
-    if at < constants.size:
-        turn_target(target, _triple(constants, at + 9), (0.0, 0.0, 0.0))
-        turn_target(target, _cubic(constants, at, x), scaled(moves, _slope(constants, at, x)))
-
-
-@njit(cache=True, error_model="numpy")
-def _accelerate(t: float, constants: Array, out: Array) -> None:
-    """Write linear and angular acceleration (6,) into `out`."""
-    pieces = int(constants[1])
-    piece, x, moves = _piece(t, constants)
-    at = 3 + pieces + 12 * piece
-    linear = combined(6.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
-    angular = (0.0, 0.0, 0.0)
-    at += 12 * pieces
-    if at < constants.size:
-        vector = _cubic(constants, at, x)
-        second = combined(6.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
-        bent = jacobian_rate(vector, _slope(constants, at, x))
-        angular = added(left_jacobian(vector, second), bent)
-    for i in range(3):
-        out[i] = moves * linear[i]
-        out[3 + i] = moves * angular[i]
+    turn_target(target, _triple(constants, at + 21), (0.0, 0.0, 0.0))
+    rate = scaled(moves, _slope(constants, at + 12, x))
+    turn_target(target, _cubic(constants, at + 12, x), rate)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -156,8 +134,7 @@ class Waypoints(Reference):
     def __post_init__(self) -> None:
         times = finite_array("times", self.times, (-1,))
         points = finite_array("points", self.points, (len(times), 3))
-        if self.ends not in _SCIPY_ENDS:
-            raise InvalidInputError("ends", f"must be one of {', '.join(_SCIPY_ENDS)}", self.ends)
+        one_of("ends", self.ends, tuple(_SCIPY_ENDS))
         least = 3 if self.ends == "closed" else 2
         if len(times) < least:
             raise InvalidInputError("times", f"at least {least} points are needed", times)
@@ -165,10 +142,13 @@ class Waypoints(Reference):
             raise InvalidInputError("times", "must increase from point to point", times)
         self._set(times=times, points=points)
         spline = self._fit()
-        head = [float(self.ends == "closed"), float(len(times) - 1)]
-        moves = spline.c.transpose(1, 0, 2).ravel()
-        turns = np.zeros(0) if self.quaternions is None else self._fit_turns(self.quaternions)
-        self._set(constants=np.concatenate([head, spline.x, moves, turns.ravel()]))
+        moves = spline.c.transpose(1, 0, 2)
+        turns = np.zeros_like(moves)
+        if self.quaternions is not None:
+            turns = self._fit_turns(self.quaternions)
+        pieces = np.concatenate([moves, turns], axis=1)
+        head = [float(self.ends == "closed"), float(len(pieces))]
+        self._set(constants=np.concatenate([head, spline.x, pieces.ravel()]))
 
     def _fit_turns(self, quaternions: Array) -> Array:
         """Check the quaternions, begin at the first pose, and fit the rotation spline."""
@@ -198,17 +178,24 @@ class Waypoints(Reference):
         Returns:
             Accelerations along the world's axes, shape (..., 6).
         """
-        times = np.asarray(t, dtype=np.float64)
-        out = np.zeros((times.size, 6))
-        for time, row in zip(times.ravel().tolist(), out, strict=True):
-            _accelerate(time, self.constants, row)
-        return out.reshape(*times.shape, 6)
+        pieces = self.constants[2 + len(self.times) :].reshape(-1, 2, 4, 3)
+        found = []
+        for time in np.ravel(t).tolist():
+            piece, x, moves = _piece(time, self.constants)
+            a, b, c, _ = pieces[piece].swapaxes(0, 1)
+            second = moves * (6.0 * x * a + 2.0 * b)
+            vector = tuple((((a * x + b) * x + c) * x)[1])
+            rate = tuple(moves * ((3.0 * a * x + 2.0 * b) * x + c)[1])
+            angular = added(left_jacobian(vector, tuple(second[1])), jacobian_rate(vector, rate))
+            found.append([*second[0], *angular])
+        return np.reshape(found, (*np.shape(t), 6))
 
     def _fit(self) -> CubicSpline:
         from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
 
         with np.errstate(over="ignore"):  # the result is looked at below
-            times, displacements = self.times - self.times[0], self.points - self.points[0]
+            times = self.times - self.times[0]
+            displacements = self.points - self.points[0]
         if self.ends == "closed":
             if np.abs(displacements[-1]).max() > _CLOSED_WITHIN:
                 problem = "the last one of a closed path must be the first one"
@@ -250,15 +237,16 @@ class Waypoints(Reference):
         positive("rate", rate)
         path = Path(path)
         columns, table = _read(path)
-        timed = columns[0] == "t"
+        if columns[0] == "t":
+            times = table[:, 0]
+            if speed != SPEED:
+                raise InvalidInputError("speed", f"is for a file without times, not {path}", speed)
+            if rate != RATE:
+                raise InvalidInputError("rate", f"is for a file without times, not {path}", rate)
+        else:
+            times = _times_at(table, speed, rate)
         points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
         quaternions = table[:, -4:] if "qw" in columns else None
-        if timed:
-            for name, value, usual in (("speed", speed, SPEED), ("rate", rate, RATE)):
-                if value != usual:
-                    problem = f"is for a file without times, not {path}"
-                    raise InvalidInputError(name, problem, value)
-        times = table[:, 0] if timed else _times_at(table, speed, rate)
         try:
             return cls(times, points, ends, quaternions)
         except InvalidInputError as error:
@@ -293,57 +281,48 @@ def _times_at(poses: Array, speed: float, rate: float) -> Array:
 
 def _read(path: Path) -> tuple[list[str], Array]:
     """Read a file of points or poses: the names of its columns, and its rows."""
-    lines = _lines(path)
-    number, header = lines[0] if lines else (1, [])
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file:
+            reader = csv.reader(file)
+            lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    except UnicodeDecodeError as error:
+        raise FileError(path, "not UTF-8 text") from error
+    except (OSError, ValueError, csv.Error) as error:  # a NUL in the path is a ValueError
+        raise FileError(path, getattr(error, "strerror", None) or str(error)) from error
+    (first, header), *filled = [line for line in lines if any(line[1])] or [(1, [])]
     columns = [cell.lower() for cell in header]
     if columns not in _HEADERS:
         problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
-        raise FileError(path, f"line {number}: {problem}")
+        raise FileError(path, f"line {first}: {problem}")
     rows: list[list[float]] = []
-    for number, cells in lines[1:]:
-        try:
-            row = _row(columns, cells)
-            if columns[0] == "t" and rows and row[0] <= rows[-1][0]:
-                raise ValueError("t does not increase")
-        except ValueError as error:
-            raise FileError(path, f"line {number}: {error}") from None
+    for number, cells in filled:
+        row = [_number(cell) for cell in cells]
+        problem = _problem(columns, cells, row, rows)
+        if problem:
+            raise FileError(path, f"line {number}: {problem}")
         rows.append(row)
     if len(rows) < 2:
         raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
     return columns, np.array(rows)
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Read a CSV file: number and cells of each line that is not empty."""
-    lines = []
+def _number(cell: str) -> float:
+    """Return the number in a cell; NaN if there is none."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file)
-            for row in reader:
-                cells = [cell.strip() for cell in row]
-                if any(cells):
-                    lines.append((reader.line_num, cells))
-    except OSError as error:
-        raise FileError(path, error.strerror or str(error)) from error
-    except UnicodeDecodeError as error:
-        raise FileError(path, "not UTF-8 text") from error
-    except ValueError as error:  # a NUL in the path
-        raise FileError(path, str(error)) from error
-    except csv.Error as error:
-        raise FileError(path, f"line {reader.line_num}: {error}") from error
-    return lines
+        return float(cell)
+    except ValueError:
+        return math.nan
 
 
-def _row(columns: list[str], cells: list[str]) -> list[float]:
-    """Read the numbers of a line; raise ValueError with the problem."""
+def _problem(
+    columns: list[str], cells: list[str], row: list[float], before: list[list[float]]
+) -> str:
+    """Describe the fault of a row after those before it; "" if it has none."""
     if len(cells) != len(columns):
-        raise ValueError(f"{len(columns)} columns are needed, it has {len(cells)}")
-    row = []
-    for column, cell in zip(columns, cells, strict=True):
-        try:
-            row.append(float(cell))
-        except ValueError:
-            raise ValueError(f"{column} is {cell!r}, not a number") from None
-        if not math.isfinite(row[-1]):
-            raise ValueError(f"{column} is {cell}, not finite")
-    return row
+        return f"{len(columns)} columns are needed, it has {len(cells)}"
+    for column, cell, value in zip(columns, cells, row, strict=True):
+        if not math.isfinite(value):
+            return f"{column} is {cell!r}, not a finite number"
+    if columns[0] == "t" and before and row[0] <= before[-1][0]:
+        return "t does not increase"
+    return ""
