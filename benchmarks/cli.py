@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import run_command, tell
+from iiwa_dnn.app.command_line import print_lines, run_command
 from iiwa_dnn.app.folders import claim_folder, save_settings
-from iiwa_dnn.app.options import Count, Folder, RunOptions, Time
+from iiwa_dnn.app.options import RunOptions
 from iiwa_dnn.errors import MissingDependencyError
 
 
@@ -20,10 +20,10 @@ class BenchSettings(RunOptions):
     """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP."""
 
     command: ClassVar[str] = "solvers"
-    out: Folder = Path("runs/bench")  # folder that the results are written to
-    steps: Count = 5000  # number of steps in a stream of programs
-    cold: Count = 1000  # number of random programs of each size
-    batch: Count = 100_000  # number of programs in the batch
+    out: Path = Path("runs/bench")  # folder of the results
+    steps: int = 5000  # number of steps in a stream of programs
+    cold: int = 1000  # number of random programs of each size
+    batch: int = 100_000  # number of programs in the batch
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class BenchLoopSettings(RunOptions):
     """Measure the control loop beside its peers', whole runs, start-up and memory."""
 
     command: ClassVar[str] = "loop"
-    out: Folder = Path("runs/bench_loop")  # folder that the results are written to
-    steps: Count = 10_000  # number of steps beside the peers
-    period: Time = 1e-3  # control period of these steps [s]
+    out: Path = Path("runs/bench_loop")  # folder of the results
+    steps: int = 10_000  # number of steps beside the peers
+    period: float = 1e-3  # control period of these steps [s]
     placo_python: Path | None = None  # Python interpreter of an environment with PlaCo
     mink_python: Path | None = None  # Python interpreter with mink; by default this one
     drake_python: Path | None = None  # Python interpreter of an environment with Drake
-    duration: Time = 10.0  # length of a whole run [s]
-    dt: Time = 1e-4  # control period of a whole run [s]
-    rounds: Count = 3  # number of repetitions of all that is not a step
+    duration: float = 10.0  # length of a whole run [s]
+    dt: float = 1e-4  # control period of a whole run [s]
+    rounds: int = 3  # number of repetitions of all that is not a step
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class BenchTargetsSettings(RunOptions):
     """Measure six kinds of targets beside Pink and mink: error, jerk, frozen steps and times."""
 
     command: ClassVar[str] = "targets"
-    out: Folder = Path("runs/bench_targets")  # folder that the results are written to
-    steps: Count = 10_000  # number of steps of each loop towards each kind of target
-    period: Time = 1e-3  # control period [s]
+    out: Path = Path("runs/bench_targets")  # folder of the results
+    steps: int = 10_000  # number of steps of each loop towards each kind of target
+    period: float = 1e-3  # control period [s]
     mink_python: str | None = None  # Python interpreter with mink; by default this one
 
 
@@ -106,7 +106,7 @@ def _solvers(options: BenchSettings) -> int:
             print(f"{entry['name']:20} {verdict(entry['rows'])}")
     print(written[0])
     save_settings(options, folder)
-    tell(options)
+    print_lines(options)
     return 0
 
 
@@ -147,7 +147,7 @@ def _loop(options: BenchLoopSettings) -> int:
     }
     print(save_loop_report(results, folder)[0])
     save_settings(options, folder)
-    tell(options)
+    print_lines(options)
     return 0
 
 

@@ -1,7 +1,7 @@
 """``atlas``: every network, scheme and disturbance at equal compute, with a figure and verdicts."""
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import tell
+from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import AtlasOptions
 from iiwa_dnn.errors import InvalidInputError
@@ -26,5 +26,5 @@ def run(options: AtlasOptions) -> int:
         f"{options.seeds} seeds with the first scheme, {options.other_seeds} with the others and "
         f"at the other budgets; half a heart in {atlas.DURATION:g} s, errors of its second half."
     )
-    tell(options, write_report(options.out, rows, head, options.plots))
+    print_lines(options, write_report(options.out, rows, head, options.plots))
     return 0

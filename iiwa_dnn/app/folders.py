@@ -22,9 +22,9 @@ from iiwa_dnn.studies.sweeps import Settings, Sweep, Task
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
 
-# They say how a run is shown and kept, not what it is, and stay out of its settings file.
+# Options of the output: they are not kept in the settings file.
 _NOT_KEPT = {"settings", "out", "overwrite", "quiet", "verbose"}
-# They stand in the file, but a run with other values is still the same run.
+# Options that are kept, though a run with other values is the same run.
 _NOT_COMPARED = {"plots", "pictures", "video", "workers", "dask"}
 
 
@@ -39,18 +39,24 @@ def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:
     """
     folder = options.out
     if folder.is_dir() and not options.overwrite:
-        try:
-            held = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
-        except OSError as error:
-            raise FileError(folder, f"cannot be read ({one_line(error)})") from error
-        if options.settings is not None and options.settings.parent.resolve() == folder.resolve():
-            held -= {options.settings.name} - {SETTINGS_FILE}
-        there = _values_in(folder, options)
-        own = there is not None and (bool(resumes) or _same(there, _values(options)))
-        if held - set(resumes) and not own:
+        foreign = _names_in(folder) - set(resumes)
+        file = options.settings
+        if file is not None and file.parent.resolve() == folder.resolve():
+            foreign -= {file.name} - {SETTINGS_FILE}
+        kept = _kept_values(folder, options)
+        is_own = kept is not None and (bool(resumes) or _is_same_run(kept, _values(options)))
+        if foreign and not is_own:
             hint = "choose another --out, or --overwrite"
             raise FileError(folder, f"holds another run or other files: {hint}")
     return prepare_folder(folder)
+
+
+def _names_in(folder: Path) -> set[str]:
+    """Return the names of the files in a folder, without hidden ones."""
+    try:
+        return {path.name for path in folder.iterdir() if not path.name.startswith(".")}
+    except OSError as error:
+        raise FileError(folder, f"cannot be read ({one_line(error)})") from error
 
 
 def save_settings(options: RunOptions, folder: Path) -> Path:
@@ -63,7 +69,7 @@ def save_settings(options: RunOptions, folder: Path) -> Path:
         FileError: If it cannot be written.
     """
     values = _values(options)
-    if not _same(_values_in(folder, options), values):
+    if not _is_same_run(_kept_values(folder, options), values):
         head = f"# iiwa_dnn {version('iiwa-dnn')}; to repeat the run: --settings with this file"
         text = f"{head}\n\n{tomli_w.dumps({'command': options.command, **values})}"
         write_text(folder / SETTINGS_FILE, text)
@@ -85,33 +91,32 @@ def run_sweep(
     return sweep, results
 
 
-def _values_in(folder: Path, options: RunOptions) -> dict[str, Any] | None:
-    """Return the values in a folder's settings file; None if the same command did not write it."""
-    path = folder / SETTINGS_FILE
+def _kept_values(folder: Path, options: RunOptions) -> dict[str, Any] | None:
+    """Return the values in a folder's settings file; None unless the same command wrote it."""
     try:
-        return _values(read_settings(type(options), path)) if path.is_file() else None
+        return _values(read_settings(type(options), folder / SETTINGS_FILE))
     except IiwaDnnError:
         return None
 
 
-def _same(there: dict[str, Any] | None, here: dict[str, Any]) -> bool:
-    """Tell whether two sets of values describe the same run."""
-    if there is None:
+def _is_same_run(kept: dict[str, Any] | None, values: dict[str, Any]) -> bool:
+    """Compare kept values, None for none, with those of a run."""
+    if kept is None:
         return False
-    return all(there.get(key) == here.get(key) for key in {*there, *here} - _NOT_COMPARED)
+    return all(kept.get(key) == values.get(key) for key in {*kept, *values} - _NOT_COMPARED)
 
 
 def _values(options: RunOptions) -> dict[str, Any]:
-    """Values of the options that a settings file keeps; paths are made absolute."""
+    """Return the values of the options that a settings file keeps, with absolute paths."""
     values: dict[str, Any] = {}
     for field in fields(options):
         value = getattr(options, field.name)
         if field.name in _NOT_KEPT or value is None or value == ():
             continue
-        if isinstance(value, Path) or (
-            field.name in ("robot", "reference")
-            and (os.sep in value or value.endswith((".urdf", ".csv")))
-        ):
+        names_file = field.name in ("robot", "reference") and (
+            os.sep in value or value.endswith((".urdf", ".csv"))
+        )
+        if isinstance(value, Path) or names_file:
             value = str(Path(value).resolve())
         values[field.name] = list(value) if isinstance(value, tuple) else value
     return values

@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NoReturn
 
-_CODES = {signal.SIGINT: 130, signal.SIGTERM: 143}  # as of a shell: 128 and the signal's number
-_WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+_MESSAGES = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 
 @contextmanager
@@ -22,26 +21,27 @@ def ended_by_signals() -> Iterator[None]:
     Raises:
         SystemExit: A signal came; the code is 130 after Ctrl-C, 143 after SIGTERM.
     """
-    told: list[signal.Signals] = []
+    received: list[signal.Signals] = []
 
     def end(number: int, frame: object) -> NoReturn:
-        told.append(signal.Signals(number))
-        warnings.simplefilter("ignore")  # that work is given up is no news
+        received.append(signal.Signals(number))
+        warnings.simplefilter("ignore")  # of work that is given up
         if number == signal.SIGINT:
-            raise KeyboardInterrupt  # as always: some parts clean up at it
-        raise SystemExit(_CODES[told[-1]])
+            raise KeyboardInterrupt  # libraries clean up at it
+        raise SystemExit
 
-    # Python hands signals to the main thread only, and lets no other one ask for them.
-    in_charge = threading.current_thread() is threading.main_thread()
-    before = {number: signal.signal(number, end) for number in _CODES} if in_charge else {}
+    handlers = {}
+    # Only the main thread may set handlers.
+    if threading.current_thread() is threading.main_thread():
+        handlers = {number: signal.signal(number, end) for number in _MESSAGES}
     try:
         yield
     except BaseException:
-        if not told:
+        if not received:
             raise
-        # Anything else that went wrong on the way out, as in processes that were being started.
-        print(_WORDS[told[0]], file=sys.stderr)
-        raise SystemExit(_CODES[told[0]]) from None
+        # Any other error on the way out, as of processes that were being started, is dropped.
+        print(_MESSAGES[received[0]], file=sys.stderr)
+        raise SystemExit(128 + received[0]) from None  # as of a shell
     finally:
-        for number, handler in before.items():
+        for number, handler in handlers.items():
             signal.signal(number, handler)

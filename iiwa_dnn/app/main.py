@@ -17,7 +17,7 @@ PROG = "iiwa-dnn"
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Run the command that the words name; None takes the process's own.
+    """Run a command by its words; None: the words of the process.
 
     Returns:
         The command's exit code; 2 for an unknown command, after one line on standard error.
@@ -44,7 +44,7 @@ def run(name: str, words: Sequence[str] | None = None, prog: str | None = None) 
 
 
 def describe_commands(*words: str) -> None:
-    """Let tyro print what the words ask for, of all commands at once: their list, or completion."""
+    """Print the list of all commands, or their completion for a shell, by tyro's own options."""
     kinds: Any = tuple(
         Annotated[kind, tyro.conf.subcommand(name, description=str(kind.__doc__).splitlines()[0])]
         for name, kind in COMMANDS.items()

@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from iiwa_dnn.app.command_line import tell
+from iiwa_dnn import checks
+from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import NoiseOptions
 from iiwa_dnn.errors import InvalidInputError
@@ -14,16 +15,20 @@ from iiwa_dnn.results.plots import write_figures
 from iiwa_dnn.studies import noise_study
 
 _HEAD = (
-    "countermeasure", "MSE [m²]", "MSE without / with", "max error [m]", "last error [m]",
-    "command [rad/s²]", "motion [rad/s²]",
-)  # fmt: skip
+    "countermeasure",
+    "MSE [m²]",
+    "MSE without / with",
+    "max error [m]",
+    "last error [m]",
+    "command [rad/s²]",
+    "motion [rad/s²]",
+)
 
 
 def run(options: NoiseOptions) -> int:
     """Run every disturbance with every countermeasure, and return the exit code."""
-    seeds, duration = options.seeds, options.duration
-    if seeds < 2:
-        raise InvalidInputError("seeds", f"must be at least 2, not {seeds}")
+    seeds = checks.integer("seeds", options.seeds, 2)
+    duration = options.duration
     least = noise_study.SETTLED_AFTER
     if not least < duration < 1e3:
         problem = f"must be above {least:g} and below 1000 s, not {duration:g}"
@@ -35,7 +40,7 @@ def run(options: NoiseOptions) -> int:
     write_figures({"noise": partial(noise_study.noise_figure, rows)}, options.out)
     text = _report(rows, seeds, duration)
     save_markdown(options.out, [text])
-    tell(options, text)
+    print_lines(options, text)
     return 0 if all(row["completed"] for row in rows) else 1
 
 

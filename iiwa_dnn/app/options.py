@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-from tyro.conf import FlagCreatePairsOff, Positional, arg
+from tyro.conf import Positional, arg
 
 from iiwa_dnn.control.controller import Mode
 from iiwa_dnn.control.policies import Policy
@@ -24,49 +24,16 @@ from iiwa_dnn.simulation.motion import Motion
 Check = Literal["proxqp", "osqp", "both", "none"]
 SHELLS = ("bash", "zsh", "tcsh")
 
-# The words in capitals stand for the value in the help. An empty hint: there is no default to show.
-_Flag = Annotated[bool, arg(help_behavior_hint=""), FlagCreatePairsOff]
-_Quiet = Annotated[bool, arg(aliases=["-q"], help_behavior_hint=""), FlagCreatePairsOff]
-_Verbose = Annotated[bool, arg(aliases=["-v"], help_behavior_hint=""), FlagCreatePairsOff]
-_Numbers = tuple[float, ...]
-_Vector = Annotated[_Numbers, arg(metavar="X Y Z")]
-_Normal = Annotated[_Numbers, arg(metavar="X Y Z", help_behavior_hint="")]
-_Pose = Annotated[_Numbers, arg(metavar="X Y Z R P Y", help_behavior_hint="")]
-_Angle = Annotated[float, arg(metavar="RAD")]
-_TipSpeed = Annotated[float, arg(metavar="M/S")]
-_Push = Annotated[_Numbers | None, arg(metavar="FX FY FZ", help_behavior_hint="")]
-_Angles = Annotated[_Numbers, arg(metavar="RAD", help_behavior_hint="")]
-_Schemes = Annotated[tuple[str, ...], arg(metavar="NAME", help_behavior_hint="")]
-_Counts = Annotated[tuple[int, ...], arg(metavar="N")]
-_Names = Annotated[tuple[str, ...], arg(metavar="JOINT", help_behavior_hint="")]
-_Frames = Annotated[tuple[str, ...], arg(metavar="FRAME", help_behavior_hint="")]
-_Limit = Annotated[str | None, arg(metavar="RAD", help_behavior_hint="")]
-_AnyLimit = Annotated[str | None, arg(metavar="X|robot", help_behavior_hint="")]
-_Robot = Annotated[str, arg(metavar="NAME|URDF")]
-_AnyRobot = Annotated[str | None, arg(metavar="NAME|URDF", help_behavior_hint="")]
-_Frame = Annotated[str | None, arg(metavar="FRAME", help_behavior_hint="")]
-_Path = Annotated[str, arg(metavar="PATH")]
-_File = Annotated[Path | None, arg(metavar="FILE", help_behavior_hint="")]
-_Form = Annotated[Orientation, arg(metavar="FORM")]
-_Mode = Annotated[Mode, arg(metavar="MODE")]
-_Matrix = Annotated[Kinetic, arg(metavar="G")]
-_Tracking = Annotated[Tracking, arg(metavar="TARGET")]
-_AnyGain = Annotated[float | None, arg(metavar="X", help_behavior_hint="")]
-_Policy = Annotated[Policy, arg(metavar="POLICY")]
-_Motion = Annotated[Motion, arg(metavar="METHOD")]
-_Where = Annotated[NoiseEntry, arg(metavar="WHERE")]
-_Run = Annotated[Path | None, arg(metavar="RUN", help_behavior_hint="")]
-_Solver = Annotated[Check, arg(metavar="SOLVER")]
-_AnyCount = Annotated[int | None, arg(metavar="N", help_behavior_hint="")]
-_AnyTime = Annotated[float | None, arg(metavar="S", help_behavior_hint="")]
-_AnyShare = Annotated[float | None, arg(metavar="SHARE", help_behavior_hint="")]
-_AnyAngle = Annotated[float | None, arg(metavar="RAD", help_behavior_hint="")]
-_Number = Annotated[float, arg(metavar="X")]
-_Length = Annotated[float, arg(metavar="M")]
-_Speed = Annotated[float, arg(metavar="RAD/S")]
-Count = Annotated[int, arg(metavar="N")]
-Folder = Annotated[Path, arg(metavar="DIR")]
-Time = Annotated[float, arg(metavar="S")]
+# Options whose default, None or (), the help need not show.
+_Float = Annotated[float | None, arg(metavar="FLOAT", help_behavior_hint="")]
+_Floats = Annotated[tuple[float, ...], arg(metavar="FLOAT ...", help_behavior_hint="")]
+_Int = Annotated[int | None, arg(metavar="INT", help_behavior_hint="")]
+_Name = Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")]
+_Names = Annotated[tuple[str, ...], arg(metavar="NAME ...", help_behavior_hint="")]
+_Path = Annotated[Path | None, arg(metavar="PATH", help_behavior_hint="")]
+_Limit = Annotated[str | None, arg(metavar="FLOAT|NAME", help_behavior_hint="")]
+_Quiet = Annotated[bool, arg(aliases=["-q"])]
+_Verbose = Annotated[bool, arg(aliases=["-v"])]
 
 
 @dataclass(frozen=True)
@@ -74,9 +41,9 @@ class RunOptions:
     """Options of every command that leaves a folder."""
 
     command: ClassVar[str]
-    settings: _File = None  # TOML file of options; those given here come first
-    out: Folder = Path("runs")  # folder that the results are written to
-    overwrite: _Flag = False  # write over a folder that holds another run or other files
+    settings: _Path = None  # TOML file of options; those given here come first
+    out: Path = Path("runs")  # folder of the results
+    overwrite: bool = False  # write over a folder that holds another run or other files
     quiet: _Quiet = False  # print nothing but the reasons of a failure
     verbose: _Verbose = False  # print settings, written files and the traceback of an error too
 
@@ -86,48 +53,48 @@ class TrackOptions(RunOptions):
     """Draw a path with a robot arm, every step checked; by default the paper's heart."""
 
     command: ClassVar[str] = "track"
-    out: Folder = Path("runs/heart")  # folder that the results are written to
-    robot: _Robot = "iiwa7"  # robot, by its name or by its file: URDF, xacro, MJCF
-    tip: _Frame = None  # frame that follows the path (none: the end of the chain)
-    frames: _Frames = ()  # names of further frames, such as a second arm's, that draw the path too
+    out: Path = Path("runs/heart")  # folder of the results
+    robot: str = "iiwa7"  # robot, by its name or by its file: URDF, xacro, MJCF
+    tip: _Name = None  # frame that follows the path (none: the end of the chain)
+    frames: _Names = ()  # further frames that draw the path, such as a second arm's
     lock: _Names = ()  # names of the joints that are held still
-    tool: _Pose = ()  # pose of a tool in that frame, which takes its place [m, rad] (none: no tool)
-    q0: _Angles = ()  # joint positions at the start [rad] (none: the robot's start posture)
+    tool: _Floats = ()  # pose of the tool frame in the tip frame: X Y Z R P Y [m, rad]
+    q0: _Floats = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
-    reference: _Path = "heart"
+    reference: str = "heart"
     """path: heart, circle, line, lissajous, cone, tilting-circle, plane-heart, sphere-heart, CSV"""
-    scale: _Length = Heart.scale  # factor a of the hearts, whose width is 32 a [m]
-    radius: _Length = 0.05  # radius of the circles [m]
-    angle: _Angle = TILT  # tilt of the tool on the cone and the tilting circle [rad]
-    sphere: _Length = 0.2  # radius of the sphere under the sphere-heart [m]
-    normal: _Normal = ()  # outward normal at the start, of plane and sphere (none: the tool's axis)
-    tool_speed: _TipSpeed = SPEED  # speed of the tip along a CSV file without times [m/s]
-    offset: _Vector = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
-    amplitudes: _Vector = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
-    period: Time = Heart.period  # time of one round on the path [s]; a CSV file has its own
-    obstacles: _File = None  # TOML file of obstacles; the arm avoids them and itself
-    weight: _Number = 0.2  # weight xi of the kinetic index against the joint drift, in [0, 1]
-    orientation: _Form = "so3"  # form of the orientation task: so3, block (the paper's) or none
-    dt: Time = 1e-4  # control period [s]
-    duration: _AnyTime = None  # length of the run [s] (none: one round on the path)
-    seed: Count = 0  # seed of the random numbers
-    check: _Solver = "proxqp"  # solvers that check every step: proxqp, osqp, both or none
-    tolerance: _Speed = 1e-6  # largest gap between the network and a checking solver [rad/s]
-    speed: _Number = 1.0  # velocity limits, as a share of the data sheet's
-    acceleration_limit: _AnyLimit = None  # acceleration limit of all joints [rad/s^2], or robot
-    jerk_limit: _AnyLimit = None  # jerk limit of all joints [rad/s^3], or robot (its own)
-    mode: _Mode = "converged"  # converged: network settled at every step; continuous: lagging
-    kinetic: _Matrix = "identity"  # matrix G of the kinetic index: identity (the paper's), inertia
-    gain: _Number = 10.2  # feedback gain of the position and the orientation error [1/s]
-    tracking: _Tracking = "paper"  # target of a step: paper (at its time) or next (at its end)
-    next_gain: _AnyGain = None  # feedback gain of --tracking next [1/s] (none: one over the period)
-    integral_gain: _Number = 0.0  # feedback gain of the error's integral [1/s^2]
-    policy: _Policy = "slow"  # action at a step without a solution: slow, relax, stop or raise
-    motion: _Motion = "euler"  # integration of the joint velocity: euler, midpoint or rk4
-    noise: _Speed = 0.0  # standard deviation of the noise [rad/s]; in the measurement [rad]
-    noise_at: _Where = "velocity"  # noisy quantity: velocity, network (its state) or measurement
-    filter_window: Count = 1  # number of samples in the moving average of the joint velocity
-    plots: _Flag = True  # draw no figures
+    scale: float = Heart.scale  # factor a of the hearts, whose width is 32 a [m]
+    radius: float = 0.05  # radius of the circles [m]
+    angle: float = TILT  # tilt of the tool on the cone and the tilting circle [rad]
+    sphere: float = 0.2  # radius of the sphere under the sphere-heart [m]
+    normal: _Floats = ()  # outward normal of plane or sphere at the start (none: the tool axis)
+    tool_speed: float = SPEED  # speed of the tip along a CSV file without times [m/s]
+    offset: tuple[float, ...] = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
+    amplitudes: tuple[float, ...] = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
+    period: float = Heart.period  # time of one round on the path [s]; a CSV file has its own
+    obstacles: _Path = None  # TOML file of obstacles; the arm avoids them and itself
+    weight: float = 0.2  # weight xi of the kinetic index against the joint drift, in [0, 1]
+    orientation: Orientation = "so3"  # form of the orientation task; block is the paper's
+    dt: float = 1e-4  # control period [s]
+    duration: _Float = None  # length of the run [s] (none: one round on the path)
+    seed: int = 0  # seed of the random numbers
+    check: Check = "proxqp"  # reference solvers that check every step
+    tolerance: float = 1e-6  # largest gap between the network and a checking solver [rad/s]
+    speed: float = 1.0  # ratio of the velocity limits to the data sheet's [1]
+    acceleration_limit: _Limit = None  # acceleration limit [rad/s^2], or robot: its own
+    jerk_limit: _Limit = None  # jerk limit [rad/s^3], or robot: its own
+    mode: Mode = "converged"  # network at a step: settled, or lagging behind in continuous time
+    kinetic: Kinetic = "identity"  # matrix G of the kinetic index; identity is the paper's
+    gain: float = 10.2  # feedback gain of the position and the orientation error [1/s]
+    tracking: Tracking = "paper"  # target of a step: at its time (paper) or at its end (next)
+    next_gain: _Float = None  # feedback gain of --tracking next [1/s] (none: one over the period)
+    integral_gain: float = 0.0  # feedback gain of the error's integral [1/s^2]
+    policy: Policy = "slow"  # action at a step without a solution
+    motion: Motion = "euler"  # integrator of the joint velocity
+    noise: float = 0.0  # standard deviation of the noise: velocity [rad/s], measurement [rad]
+    noise_at: NoiseEntry = "velocity"  # quantity that the noise is added to
+    filter_window: int = 1  # number of samples in the moving average of the joint velocity
+    plots: bool = True  # draw the figures
 
 
 @dataclass(frozen=True)
@@ -139,27 +106,27 @@ class PhysicsOptions(TrackOptions):
     """
 
     command: ClassVar[str] = "physics"
-    out: Folder = Path("runs/physics")  # folder that the results are written to
-    dt: Time = 1e-3  # control period [s]
-    physics_dt: Time = 2.5e-4  # time step of the physics [s], at most 1e-3
-    disturb: _Flag = False  # switch on the next five, each of the size in brackets
-    mass_error: _AnyShare = None  # error of each link's mass, as a share of it (0.1)
-    friction: _AnyShare = None  # Coulomb friction, as a share of the torque limit (0.01)
-    encoder_noise: _AnyAngle = None  # standard deviation of an encoder's reading [rad] (1e-05)
-    encoder_bits: _AnyCount = None  # resolution of an encoder [bits a turn] (18)
-    delay: _AnyCount = None  # delay of a velocity command [control periods] (1)
-    push: _Push = None  # force that pushes the tip, along the world's axes [N]
-    push_at: Time = 5.0  # time at which the push begins [s]
-    push_for: Time = 0.2  # time that the push lasts [s]
-    pictures: _Flag = True  # draw no pictures of the arm
-    video: _Flag = True  # make no video
+    out: Path = Path("runs/physics")  # folder of the results
+    dt: float = 1e-3  # control period [s]
+    physics_dt: float = 2.5e-4  # time step of the physics [s], at most 1e-3
+    disturb: bool = False  # apply the next five disturbances, each of the size in brackets
+    mass_error: _Float = None  # relative error of each link's mass [1] (0.1)
+    friction: _Float = None  # ratio of the Coulomb friction to the torque limit [1] (0.01)
+    encoder_noise: _Float = None  # standard deviation of the measured joint position [rad] (1e-05)
+    encoder_bits: _Int = None  # resolution of an encoder [bits a turn] (18)
+    delay: _Int = None  # delay of a velocity command [control periods] (1)
+    push: _Floats = ()  # force X Y Z on the tip, along the world's axes [N]
+    push_at: float = 5.0  # start time of the push [s]
+    push_for: float = 0.2  # duration of the push [s]
+    pictures: bool = True  # draw pictures of the arm
+    video: bool = True  # make a video
 
 
 @dataclass(frozen=True)
 class SweepOptions(RunOptions):
     """Options of every command that carries out many runs."""
 
-    workers: _AnyCount = None  # number of processes (one for each core)
+    workers: _Int = None  # number of processes (one for each core)
 
 
 @dataclass(frozen=True)
@@ -170,13 +137,12 @@ class PaperOptions(SweepOptions):
     """
 
     command: ClassVar[str] = "paper"
-    out: Folder = Path("runs/paper")  # folder that the results are written to
-    quick: _Flag = False  # run 1 s and 5 seeds only, to see that all works
-    seeds: _AnyCount = None  # number of noises in Table II (100)
-    duration: _AnyTime = None  # length of each run [s] (10)
-    dask: Annotated[str | None, arg(metavar="ADDRESS", help_behavior_hint="")] = None
-    """address of a Dask scheduler, or local to start one here"""
-    plots: _Flag = True  # draw no figures
+    out: Path = Path("runs/paper")  # folder of the results
+    quick: bool = False  # run 1 s and 5 seeds only, to see that all works
+    seeds: _Int = None  # number of noises in Table II (100)
+    duration: _Float = None  # length of each run [s] (10)
+    dask: _Name = None  # address of a Dask scheduler, or local to start one here
+    plots: bool = True  # draw the figures
 
 
 @dataclass(frozen=True)
@@ -187,9 +153,9 @@ class NoiseOptions(SweepOptions):
     """
 
     command: ClassVar[str] = "noise"
-    out: Folder = Path("runs/noise")  # folder that the results are written to
-    seeds: Count = 100  # number of noises
-    duration: Time = 2.0  # length of each run [s]
+    out: Path = Path("runs/noise")  # folder of the results
+    seeds: int = 100  # number of noises
+    duration: float = 2.0  # length of each run [s]
 
 
 @dataclass(frozen=True)
@@ -200,13 +166,13 @@ class AtlasOptions(SweepOptions):
     """
 
     command: ClassVar[str] = "atlas"
-    out: Folder = Path("runs/atlas")  # folder that the results are written to
-    seeds: Count = 100  # number of noises with the first scheme
-    other_seeds: Count = 10  # number of noises with the other schemes and budgets
-    schemes: _Schemes = ()  # names of the schemes (none: all)
-    networks: _Schemes = ()  # names of the networks (none: all)
-    evaluations: _Counts = (1, 2, 4, 8, 16)  # budgets: evaluations of a network a control period
-    plots: _Flag = True  # draw no figure
+    out: Path = Path("runs/atlas")  # folder of the results
+    seeds: int = 100  # number of noises with the first scheme
+    other_seeds: int = 10  # number of noises with the other schemes and budgets
+    schemes: _Names = ()  # names of the schemes (none: all)
+    networks: _Names = ()  # names of the networks (none: all)
+    evaluations: tuple[int, ...] = (1, 2, 4, 8, 16)  # evaluations of a network in a period
+    plots: bool = True  # draw the figure
 
 
 @dataclass(frozen=True)
@@ -214,14 +180,13 @@ class ViewOptions:
     """Replay a run in the browser, or let the arm follow a target that is dragged."""
 
     command: ClassVar[str] = "view"
-    run: Positional[_Run] = None  # folder or record of a run (none: live)
-    robot: _AnyRobot = None  # robot, by its name or by its URDF file (none: the record's, or iiwa7)
-    tip: _Frame = None  # frame that follows the target (none: the record's, or the chain's end)
+    run: Positional[_Path] = None  # folder or record of a run (none: live)
+    robot: _Name = None  # robot, by its name or by its file (none: the record's, or iiwa7)
+    tip: _Name = None  # frame that follows the target (none: the record's, or the chain's end)
     lock: _Names = ()  # names of the joints that are held still
-    tool: _Pose = ()  # pose of a tool in that frame, which takes its place [m, rad] (none: no tool)
-    host: Annotated[str, arg(metavar="ADDRESS")] = "127.0.0.1"
-    """address to listen on; 0.0.0.0 lets other machines in"""
-    port: Count = 8080  # port to listen on; 0 takes a free one
+    tool: _Floats = ()  # pose of the tool frame in the tip frame: X Y Z R P Y [m, rad]
+    host: str = "127.0.0.1"  # address of the page; 0.0.0.0 lets other machines in
+    port: int = 8080  # port of the page; 0 takes a free one
     verbose: _Verbose = False  # print the traceback of an error too
 
 
@@ -233,11 +198,11 @@ class SolveOptions:
     """
 
     command: ClassVar[str] = "solve"
-    file: Positional[_File] = None  # program, written with numpy.savez
-    tol: _Number = 1e-9  # largest residual of a solution, in the program's units
-    check: _Solver = "none"  # solvers that are asked too: proxqp, osqp or both
-    out: _File = None  # .npz file that the solution is written to
-    quiet: _Quiet = False  # print only the reason if there is no solution
+    file: Positional[_Path] = None  # program, written with numpy.savez
+    tol: float = 1e-9  # largest residual of a solution [program's units]
+    check: Check = "none"  # reference solvers that check the solution
+    out: _Path = None  # .npz file of the solution
+    quiet: _Quiet = False  # print nothing but the reason of a failure
     verbose: _Verbose = False  # print the multipliers, and the traceback of an error too
 
 
@@ -246,7 +211,7 @@ class WarmUpOptions:
     """Compile everything that a run needs, once for all later runs."""
 
     command: ClassVar[str] = "warm-up"
-    quiet: _Quiet = False  # print no progress
+    quiet: _Quiet = False  # hide the progress bar
 
 
 @dataclass(frozen=True)
@@ -258,13 +223,18 @@ class CompletionOptions:
     """shell that completes: bash, zsh or tcsh"""
 
 
-COMMANDS: dict[str, type[Any]] = {
-    kind.command: kind
-    for kind in (
-        TrackOptions, PaperOptions, NoiseOptions, AtlasOptions, PhysicsOptions, ViewOptions,
-        SolveOptions, WarmUpOptions, CompletionOptions,
-    )
-}  # fmt: skip
+_KINDS: tuple[Any, ...] = (
+    TrackOptions,
+    PaperOptions,
+    NoiseOptions,
+    AtlasOptions,
+    PhysicsOptions,
+    ViewOptions,
+    SolveOptions,
+    WarmUpOptions,
+    CompletionOptions,
+)
+COMMANDS: dict[str, type[Any]] = {kind.command: kind for kind in _KINDS}
 """Options of each command by its name; the module of that name holds its function ``run``."""
 
 EXIT_CODES = (

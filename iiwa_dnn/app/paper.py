@@ -2,15 +2,17 @@
 
 import os
 import platform
+import re
 import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.app.command_line import tell
+from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import PaperOptions
 from iiwa_dnn.files import write_json
@@ -26,31 +28,38 @@ EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 def run(options: PaperOptions) -> int:
     """Run every experiment of the paper, write tables, figures and report; return the exit code."""
     began = time.perf_counter()
-    asked: dict[str, Any] = {"seeds": options.seeds, "duration": options.duration}
-    changes = {name: value for name, value in asked.items() if value is not None}
-    scope = replace(QUICK if options.quick else FULL, **changes)
-    folder, figures = options.out, figure_runs(scope)
+    scope = _scope(options)
+    figures = figure_runs(scope)
     parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
     cells = [cell.settings() for part in (*parts.values(), figures.values()) for cell in part]
     sweep, results = run_sweep(options, measure, cells, options.dask)
-    tables, start = {}, 0
-    for name, part in parts.items():
-        tables[name] = EXPERIMENTS[name].tabulate(scope, results[start : start + len(part)])
-        write_json(folder / f"{name}.json", tables[name])
-        start += len(part)
+    remaining = iter(results)
+    tables = {
+        name: EXPERIMENTS[name].tabulate(scope, list(islice(remaining, len(part))))
+        for name, part in parts.items()
+    }
+    for name, table in tables.items():
+        write_json(options.out / f"{name}.json", table)
     drawn = []
     if options.plots:
         records = {name: sweep.record(cell.settings()) for name, cell in figures.items()}
-        drawn = save_paper_figures(records["noise, filter"], records, tables, folder)
+        drawn = save_paper_figures(records["noise, filter"], records, tables, options.out)
     head = _head(scope, results, time.perf_counter() - began)
-    write_paper_report(folder, tables, head, drawn)
+    write_paper_report(options.out, tables, head, drawn)
+    lines = [f"{name:<14}{value}" for name, value in head.items()] if options.verbose else []
+    print_lines(options, *lines, *findings(tables), f"written to {options.out}")
     ended_early = [values["status"] for values in results if values["status"] != "completed"]
-    shown = head if options.verbose else {}
-    lines = [f"{name:<14}{value}" for name, value in shown.items()]
-    tell(options, *lines, *findings(tables), f"written to {folder}")
-    if ended_early:
-        print(f"{len(ended_early)} runs ended early, the first: {ended_early[0]}", file=sys.stderr)
-    return 1 if ended_early else 0
+    if not ended_early:
+        return 0
+    print(f"{len(ended_early)} runs ended early, the first: {ended_early[0]}", file=sys.stderr)
+    return 1
+
+
+def _scope(options: PaperOptions) -> Scope:
+    """Return the size of the sweep that the options describe."""
+    values: dict[str, Any] = {"seeds": options.seeds, "duration": options.duration}
+    changes = {name: value for name, value in values.items() if value is not None}
+    return replace(QUICK if options.quick else FULL, **changes)
 
 
 def figure_runs(scope: Scope) -> dict[str, HeartRun]:
@@ -85,10 +94,8 @@ def _head(scope: Scope, results: Sequence[Mapping[str, Any]], wall: float) -> di
 
 
 def processor() -> str:
-    """Return the processor's name, where the system tells it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    """Return the processor's name, or the machine's type if the system does not give the name."""
+    file = Path("/proc/cpuinfo")
+    text = file.read_text(encoding="utf-8") if file.exists() else ""
+    found = re.search(r"(?m)^model name\s*:\s*(.+)$", text)
+    return found[1].strip() if found else platform.processor() or platform.machine()

@@ -1,6 +1,8 @@
 """``physics``: an arm with masses and motors draws a path, with disturbances, pictures, a video."""
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import PhysicsOptions
@@ -33,12 +35,10 @@ def run(options: PhysicsOptions) -> int:
 
 
 def disturbances(options: PhysicsOptions) -> Disturbances:
-    """Return the disturbances that are asked for by name, over those that ``--disturb`` means."""
+    """Return the disturbances by their options, over those of ``--disturb``."""
     base = Disturbances.typical() if options.disturb else Disturbances()
     names = ("mass_error", "friction", "encoder_noise", "encoder_bits", "delay")
-    asked = {name: getattr(options, name) for name in names}
-    chosen = {k: getattr(base, k) if value is None else value for k, value in asked.items()}
-    push = None
-    if options.push is not None:
-        push = Push(options.push, options.push_at, options.push_for)  # type: ignore[arg-type]
-    return Disturbances(**chosen, push=push)
+    values: dict[str, Any] = {name: getattr(options, name) for name in names}
+    if options.push:
+        values["push"] = Push(options.push, options.push_at, options.push_for)  # type: ignore[arg-type]
+    return replace(base, **{name: value for name, value in values.items() if value is not None})

@@ -31,12 +31,9 @@ def run(options: SolveOptions) -> int:
     qp = load_problem(options.file)
     solution = solve_problem(qp, tol=options.tol)
     if options.out is not None and solution.found:
-        # The file's name is taken as it is; numpy would put .npz behind it.
-        parts = {"x": solution.x, "y": solution.y, "z": solution.z, "z_box": solution.z_box}
-        kept: dict[str, Any] = {
-            k: value for k, value in parts.items() if value is not None and value.size
-        }
-        write_atomically(options.out, lambda file: np.savez(file, **kept))
+        arrays = {"x": solution.x, **_multipliers(solution)}
+        # numpy.savez with a name would put .npz behind it.
+        write_atomically(options.out, lambda file: np.savez(file, **arrays))
     if not options.quiet:
         print("\n".join(_lines(qp, solution, options)))
     elif not solution.found:
@@ -55,11 +52,9 @@ def load_problem(path: Path) -> QP:
     try:
         with path.open("rb") as file:
             archive = np.load(file, allow_pickle=False)
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise FileError(path, "not an .npz archive")
             arrays = {name: archive[name] for name in archive.files}
-    except FileError:
-        raise
+    except AttributeError as error:
+        raise FileError(path, "not an .npz archive") from error
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise FileError(path, f"cannot be read as .npz: {one_line(error)}") from error
     for name in arrays:
@@ -82,19 +77,23 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
         f"residuals  {_residuals(solution)}, tolerance {options.tol:.3g}",
     ]
     if not solution.found:
-        return [*lines, f"last x     {_numbers(extras['last_x'])} (not an answer)"]
-    lines += [f"objective  {solution.obj:.12g}", f"x          {_numbers(solution.x)}"]
-    for name in ("y", "z", "z_box") if options.verbose else ():
-        value = getattr(solution, name)
-        if value is not None and value.size:
-            lines.append(f"{name:<11}{_numbers(value)}")
+        return [*lines, f"last x     {_text(extras['last_x'])} (not an answer)"]
+    lines += [f"objective  {solution.obj:.12g}", f"x          {_text(solution.x)}"]
+    if options.verbose:
+        lines += [f"{name:<11}{_text(value)}" for name, value in _multipliers(solution).items()]
     check = CrossCheck(CHECKS[options.check])
     agreement = check.check(qp, np.asarray(solution.x))
-    for i, name in enumerate(check.solvers):
-        gap, objective = agreement.solution_gap[0, i], agreement.objective_gap[0, i]
-        told = f"gap {gap:.3g} in x, {objective:.3g} in the objective"
-        lines.append(f"{name:<11}{told if np.isfinite(gap) else 'no answer to be believed'}")
+    gaps = zip(agreement.solution_gap[0], agreement.objective_gap[0], strict=True)
+    for name, (gap, objective) in zip(check.solvers, gaps, strict=True):
+        found = f"gap {gap:.3g} in x, {objective:.3g} in the objective"
+        lines.append(f"{name:<11}{found if np.isfinite(gap) else 'no accurate answer'}")
     return lines
+
+
+def _multipliers(solution: qpsolvers.Solution) -> dict[str, Any]:
+    """Return the multipliers by their names, without those of constraints that are missing."""
+    values = {"y": solution.y, "z": solution.z, "z_box": solution.z_box}
+    return {name: value for name, value in values.items() if value is not None and value.size}
 
 
 def _residuals(solution: qpsolvers.Solution) -> str:
@@ -102,5 +101,5 @@ def _residuals(solution: qpsolvers.Solution) -> str:
     return ", ".join(f"{name} {solution.extras[key]:.3g}" for name, key in named.items())
 
 
-def _numbers(values: ArrayLike | None) -> str:
+def _text(values: ArrayLike | None) -> str:
     return " ".join(f"{value:.12g}" for value in np.asarray(values))

@@ -1,4 +1,4 @@
-"""``track``: an arm draws a path; and the parts that all commands with an arm share."""
+"""``track``: an arm draws a path; also the functions that all commands with an arm use."""
 
 import sys
 import warnings
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import progress_bar, tell
+from iiwa_dnn.app.command_line import print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, TrackOptions
 from iiwa_dnn.control.controller import Controller
@@ -52,7 +52,7 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "none": (),
 }
 
-# Of each path its own options, and the way from the options to it.
+# The options of each path, and the function that makes the path from all options.
 _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
     "heart": (("scale", "period"), lambda o: Heart(o.scale, o.period)),
     "circle": (("radius", "period"), lambda o: Circle(o.radius, o.period)),
@@ -71,29 +71,40 @@ _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
         ("scale", "sphere", "normal", "period"),
         lambda o: OnSurface(Heart(o.scale, o.period), o.sphere, o.normal or None),
     ),
+    "FILE.csv": (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed)),
 }
-_CSV = (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed))
 
-_HERE = 1e-3, 1e-2
-"""Distance [m] and angle [rad] up to which a path of poses begins where the tip is."""
+_NEAR_POSITION = 1e-3
+"""Distance [m] up to which a path of poses begins at the tip."""
 
-_REST = 1e-6
-"""Joint velocity [rad/s] below which an arm has come to rest."""
+_NEAR_ANGLE = 1e-2
+"""Angle [rad] up to which a path of poses begins at the tip."""
+
+_ZERO_VELOCITY = 1e-6
+"""Largest joint velocity [rad/s] of an arm at standstill."""
 
 # Options that are arguments of a simulation under the same name.
-_HANDED_ON = (
-    "dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "integral_gain",
-    "policy", "seed",
-)  # fmt: skip
+_ARGUMENTS = (
+    "dt",
+    "duration",
+    "mode",
+    "motion",
+    "noise",
+    "noise_at",
+    "filter_window",
+    "integral_gain",
+    "policy",
+    "seed",
+)
 
-# Options that have no effect, and beside which other ones they would have one.
+# Options without effect under a condition, and the option that they need.
 _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "next_gain": (lambda o: o.tracking != "next", "--tracking next"),
     "gain": (lambda o: o.tracking == "next", "--tracking paper; beside next it is --next-gain"),
     "noise_at": (lambda o: o.noise == 0.0, "--noise"),
     "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp or both"),
-    "push_at": (lambda o: o.push is None, "--push"),
-    "push_for": (lambda o: o.push is None, "--push"),
+    "push_at": (lambda o: not o.push, "--push"),
+    "push_for": (lambda o: not o.push, "--push"),
 }
 
 More = Callable[[Record, Path], list[Path]]
@@ -108,13 +119,41 @@ def run(options: TrackOptions) -> int:
 def simulation(
     options: TrackOptions, robot: Robot, q0: Vector, plant: Plant | None = None
 ) -> Simulation:
-    """Return the run that the options ask for from q0 (n,) [rad], checked and nothing written."""
-    for name, (idle, beside) in _IDLE.items():
-        value, default = (getattr(o, name, None) for o in (options, type(options)))
-        if value != default and idle(options):
-            flag = f"--{name.replace('_', '-')}"
-            raise InvalidInputError(flag, f"has no effect but beside {beside}", value)
-    scheme: Scheme = DoubleIndicator(
+    """Return the simulation that the options describe from q0 (n,) [rad]; no file is written."""
+    for name, (is_idle, needed) in _IDLE.items():
+        if hasattr(options, name) and is_idle(options):
+            _refuse_set(options, name, f"has no effect but beside {needed}")
+    scheme = scheme_of(options)
+    start = Configuration(robot, q0)
+    reference = path(options)
+    other_frames = [name for name in options.frames if name != robot.tip]
+    others = {name: reference.anchored(start.frame(name)) for name in other_frames}
+    silenced = "the start posture"  # the summary says it
+    if getattr(reference, "quaternions", None) is None:
+        reference = reference.anchored(start)
+    elif warn_if_elsewhere(reference, start, scheme):
+        silenced = ""
+    if others:
+        tasks: Any = scheme.tasks
+        further = [replace(task, frame=name) for name in others for task in tasks]
+        scheme = Scheme(scheme.costs, [*tasks, *further], scheme.limits)
+    arguments = {name: getattr(options, name) for name in _ARGUMENTS}
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", silenced, UserWarning)
+        return Simulation(
+            robot,
+            scheme,
+            {robot.tip: reference, **others} if others else reference,
+            q0,
+            plant=plant,
+            check=CrossCheck(CHECKS[options.check], options.tolerance),
+            **arguments,
+        )
+
+
+def scheme_of(options: TrackOptions) -> Scheme:
+    """Return the scheme that the options describe, for one frame."""
+    scheme = DoubleIndicator(
         weight=options.weight,
         position_gain=options.gain,
         orientation_gain=options.gain,
@@ -124,79 +163,74 @@ def simulation(
         tracking=options.tracking,
         next_gain=options.next_gain,
     )
-    if options.obstacles is not None:
-        avoidance = CollisionAvoidance.from_toml(options.obstacles)
-        scheme = Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoidance])
-    reference, start, elsewhere = path(options), Configuration(robot, q0), False
-    further = [name for name in options.frames if name != robot.tip]
-    own = {name: reference.anchored(start.frame(name)) for name in further}
-    if getattr(reference, "quaternions", None) is None:
-        reference = reference.anchored(start)
-    else:
-        elsewhere = tell_if_elsewhere(reference, start, scheme)
-    if own:
-        tasks: Any = scheme.tasks
-        others = [replace(task, frame=name) for name in own for task in tasks]
-        scheme = Scheme(scheme.costs, [*tasks, *others], scheme.limits)
-    references = {robot.tip: reference, **own} if own else reference
-    check = CrossCheck(CHECKS[options.check], options.tolerance)
-    asked = {name: getattr(options, name) for name in _HANDED_ON}
-    with warnings.catch_warnings():
-        # What the summary says, and what is said already.
-        warnings.filterwarnings("ignore", "" if elsewhere else "the start posture", UserWarning)
-        return Simulation(robot, scheme, references, q0, plant=plant, check=check, **asked)
+    if options.obstacles is None:
+        return scheme
+    avoidance = CollisionAvoidance.from_toml(options.obstacles)
+    return Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoidance])
 
 
 def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
-    """Return the limits on acceleration and jerk that the options name.
+    """Return the limits on acceleration and jerk that the options describe.
 
     Raises:
         InvalidInputError: A limit is neither a positive number nor ``robot``.
     """
-    limits: list[Limit] = []
-    for kind in (AccelerationLimits, JerkLimits):
-        value = getattr(options, kind.quantity)
-        if value is None:
-            continue
-        try:
-            limits.append(kind(None if value == "robot" else float(value)))
-        except (ValueError, InvalidInputError) as error:
-            option = f"--{kind.quantity.replace('_', '-')}"
-            problem = f"must be a number above 0 or 'robot', not {value!r}"
-            raise InvalidInputError(option, problem, value) from error
-    return tuple(limits)
+    return tuple(
+        kind(_number_or_word(kind.quantity, getattr(options, kind.quantity), "robot"))
+        for kind in (AccelerationLimits, JerkLimits)
+        if getattr(options, kind.quantity) is not None
+    )
 
 
-def tell_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> bool:
-    """Say where a path of poses in the base frame begins elsewhere than the tip, and return it."""
-    first = reference.at(0.0)
-    distance = float(np.linalg.norm(first.position - start.position))
-    angle = float(rotation_angle(start.rotation, first.rotation))
-    if not (elsewhere := distance > _HERE[0] or angle > _HERE[1]):
+def warn_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> bool:
+    """Print a line if a path of poses begins elsewhere than the tip; return whether it does."""
+    target = reference.at(0.0)
+    if _is_at(start, target):
         return False
-    away = f"{distance:.3g} m and {angle:.3g} rad from the tip"
-    there = f"{np.round(first.position, 4).tolist()} m"
-    q = _posture_at(first, start, scheme)
-    found = "no way there was found from here"
+    distance = np.linalg.norm(target.position - start.position)
+    angle = rotation_angle(start.rotation, target.rotation)
+    q = _posture_at(target, start, scheme)
+    advice = "no posture was found there"
     if q is not None:
         posture = " ".join(f"{value:.6f}" for value in q)
-        found = f"to begin there, with another --out or --overwrite: --q0 {posture}"
-    print(f"the path begins {away}, at {there}; {found}", file=sys.stderr)
-    return elsewhere
+        advice = f"to begin there, with another --out or --overwrite: --q0 {posture}"
+    print(
+        f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, "
+        f"at {np.round(target.position, 4).tolist()} m; {advice}",
+        file=sys.stderr,
+    )
+    return True
 
 
 def _posture_at(target: Target, start: Configuration, scheme: Scheme) -> Vector | None:
-    """Let the controller take the tip to a target; the posture (n,) [rad] there, or None."""
-    q, dt = start.q.copy(), 0.02
+    """Move the tip to a target by the controller; return the posture (n,) [rad] there, or None."""
+    q = start.q.copy()
+    dt = 0.02
     controller = Controller(start.robot, scheme, dt=dt)
     for k in range(1000):
         dq = controller.step(q, k * dt, target).dq
         q = q + dt * dq
-        if np.abs(dq).max() < _REST:
+        if np.abs(dq).max() < _ZERO_VELOCITY:
             break
-    there = Configuration(start.robot, q)
-    near = float(np.linalg.norm(there.position - target.position)) < _HERE[0]
-    return q if near and rotation_angle(there.rotation, target.rotation) < _HERE[1] else None
+    return q if _is_at(Configuration(start.robot, q), target) else None
+
+
+def _is_at(conf: Configuration, target: Target) -> bool:
+    """Compare the pose of the tip with a target."""
+    distance = float(np.linalg.norm(conf.position - target.position))
+    angle = float(rotation_angle(conf.rotation, target.rotation))
+    return distance <= _NEAR_POSITION and angle <= _NEAR_ANGLE
+
+
+def _refuse_set(options: TrackOptions, name: str, problem: str) -> None:
+    """Raise an InvalidInputError if an option differs from its default."""
+    value = getattr(options, name)
+    if value != getattr(type(options), name):
+        raise InvalidInputError(_flag(name), problem, value)
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
 
 
 def draw(
@@ -204,8 +238,11 @@ def draw(
 ) -> int:
     """Carry out a run, write it into its folder and print its summary; return the exit code.
 
-    `more` draws more figures into the folder and returns their files, `last` writes more files
-    after the report.
+    Args:
+        options: Options of the run.
+        simulation: The run.
+        more: Function that draws further figures into the folder and returns their files.
+        last: Function that writes further files after the report.
     """
     folder = claim_folder(options)
     with progress_bar(simulation.steps, "step", options.quiet) as bar:
@@ -219,28 +256,28 @@ def draw(
     reasons = failures(record)
     if not options.quiet:
         shown = [settings_lines(metrics)] if options.verbose else []
-        tell(options, *shown, summary(metrics, reasons), f"written to {folder}")
+        print_lines(options, *shown, summary(metrics, reasons), f"written to {folder}")
     elif reasons:
         print("\n".join(reasons), file=sys.stderr)
     return 1 if reasons else 0
 
 
 def path(options: TrackOptions) -> Reference:
-    """Return the path that the options name, before it is anchored.
+    """Return the path that the options describe, before it is anchored.
 
     Raises:
         NotFoundError: There is no path of this name.
         FileError: The CSV file cannot be read, or holds no path.
-        InvalidInputError: An option is out of range, or is given and another path's.
+        InvalidInputError: An option is out of range, or is set and another path's.
     """
     name = options.reference
-    if name not in _PATHS and not name.lower().endswith(".csv"):
-        raise NotFoundError("path", name, (*_PATHS, "FILE.csv"))
-    own, make = _PATHS.get(name, _CSV)
-    for other in sorted({*_CSV[0]}.union(*(options for options, _ in _PATHS.values()))):
-        value, flag = getattr(options, other), f"--{other.replace('_', '-')}"
-        if other not in own and value != getattr(TrackOptions, other):
-            raise InvalidInputError(flag, f"is no option of the path {name!r}", value)
+    kind = "FILE.csv" if name.lower().endswith(".csv") else name
+    if kind not in _PATHS:
+        raise NotFoundError("path", name, _PATHS)
+    own, make = _PATHS[kind]
+    for names, _ in _PATHS.values():
+        for other in set(names) - set(own):
+            _refuse_set(options, other, f"is no option of the path {name!r}")
     return make(options)
 
 
@@ -249,11 +286,14 @@ def arm(options: TrackOptions) -> tuple[Robot, Vector]:
     robot = load_robot(
         options.robot, tip=options.tip, locked=options.lock, tool=options.tool or None
     )
-    q0 = np.array(options.q0) if options.q0 else robot.start_posture()
+    q0 = robot.start_posture()
     speed = checks.positive("speed", options.speed) * robot.dq_max
     robot = limited(robot, options.joint_limit).with_limits(velocity=speed)
-    q0 = checks.finite_array("--q0", q0, (robot.dof,))
-    if options.q0 and (problem := robot.outside(q0)):
+    if not options.q0:
+        return robot, q0
+    q0 = checks.finite_array("--q0", options.q0, (robot.dof,))
+    problem = robot.outside(q0)
+    if problem:
         raise InvalidInputError("--q0", problem, options.q0)
     return robot, q0
 
@@ -266,13 +306,16 @@ def limited(robot: Robot, limit: str | None = None) -> Robot:
     """
     if limit is None:
         limit = str(paper.JOINT_LIMIT) if robot.name == "iiwa7" else "datasheet"
-    if limit == "datasheet":
-        return robot
+    angle = _number_or_word("joint_limit", limit, "datasheet")
+    return robot if angle is None else robot.with_limits(lower=-angle, upper=angle)
+
+
+def _number_or_word(option: str, text: str, word: str) -> float | None:
+    """Return the positive number that an option holds, or None if it holds a word."""
+    if text == word:
+        return None
     try:
-        value = float(limit)
-    except ValueError:
-        value = 0.0
-    if not value > 0.0:
-        problem = f"must be a positive angle [rad] or 'datasheet', not {limit!r}"
-        raise InvalidInputError("--joint-limit", problem, limit)
-    return robot.with_limits(lower=-value, upper=value)
+        return checks.positive(_flag(option), float(text))
+    except ValueError as error:
+        problem = f"must be a number above 0 or {word!r}, not {text!r}"
+        raise InvalidInputError(_flag(option), problem, text) from error

@@ -17,19 +17,20 @@ from iiwa_dnn.schemes import DoubleIndicator
 def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     """Open the page and keep it moving until `stop` returns True, or Ctrl-C; return 0."""
     record = None if options.run is None else load_run(options.run)
-    recorded = {} if record is None else record.settings
-    name, tip = options.robot or recorded.get("robot", "iiwa7"), options.tip or recorded.get("tip")
-    if options.tool:
-        tip = options.tip  # the record's is the tool
+    settings = {} if record is None else record.settings
+    tip = options.tip
+    if not options.tool:  # else the record's tip may be that tool
+        tip = tip or settings.get("tip")
+    name = options.robot or settings.get("robot", "iiwa7")
     robot = load_robot(name, tip=tip, locked=options.lock, tool=options.tool or None)
     if record is None:
         page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
-    elif robot.dof != record.dof:
+    elif robot.dof == record.dof:
+        robot = limits_of(record, robot)
+        page = Page(robot, record.q[0], record, scheme_of(record), options.host, options.port)
+    else:
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, options.robot)
-    else:
-        robot, scheme = limits_of(record, robot), scheme_of(record)
-        page = Page(robot, record.q[0], record, scheme, options.host, options.port)
     print(f"open {page.address} in a browser; Ctrl-C ends it", flush=True)
     try:
         page.run(stop)
@@ -54,7 +55,7 @@ def load_run(path: Path) -> Record:
 
 
 def scheme_of(record: Record) -> DoubleIndicator:
-    """Return the scheme of a record, without its home; the default where it is of another kind."""
+    """Return the scheme of a record without its home, or the default if it is of another kind."""
     settings = dict(record.settings.get("scheme") or {})
     if settings.pop("name", None) != DoubleIndicator().settings()["name"]:
         return DoubleIndicator()
@@ -62,9 +63,11 @@ def scheme_of(record: Record) -> DoubleIndicator:
 
 
 def limits_of(record: Record, robot: Robot) -> Robot:
-    """Return the robot with the limits of a record, where None is no limit."""
-    lower, upper, speed = (
-        np.array([unlimited if value is None else value for value in record.settings[key]])
-        for key, unlimited in (("q_lower", -np.inf), ("q_upper", np.inf), ("dq_max", np.inf))
+    """Return the robot with the limits of a record, in which None stands for no limit."""
+    keys = ("q_lower", "q_upper", "dq_max")
+    lower, upper, velocity = (np.array(record.settings[key], dtype=float) for key in keys)
+    return robot.with_limits(
+        lower=np.where(np.isnan(lower), -np.inf, lower),
+        upper=np.where(np.isnan(upper), np.inf, upper),
+        velocity=np.where(np.isnan(velocity), np.inf, velocity),
     )
-    return robot.with_limits(lower=lower, upper=upper, velocity=speed)

@@ -2,6 +2,7 @@
 
 import time
 from itertools import product
+from typing import get_args
 
 import numpy as np
 
@@ -18,17 +19,15 @@ from iiwa_dnn.schemes import AccelerationLimits, CollisionAvoidance, DoubleIndic
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 
-FORMS: tuple[Orientation, ...] = ("so3", "block", "none")
-MODES: tuple[Mode, ...] = ("converged", "continuous")
-
 
 def run(options: WarmUpOptions) -> int:
     """Take a few steps of every kind of run, solve a program and a batch; return 0."""
-    began, WATCH.quiet = time.perf_counter(), True
+    began = time.perf_counter()
+    WATCH.quiet = True
     robot = load_robot("iiwa7")
     q0 = robot.start_posture()
     reference = Heart().anchored(Configuration(robot, q0))
-    kinds = list(product(FORMS, MODES))
+    kinds = list(product(get_args(Orientation), get_args(Mode)))
     with progress_bar(len(kinds) + 2, "program", options.quiet) as bar:
         for orientation, mode in kinds:
             scheme = DoubleIndicator(orientation=orientation)
