@@ -113,7 +113,8 @@ class Encoder:
     """
 
     def __init__(self, noise: float, step: float, seed: int) -> None:
-        self.noise, self.step = noise, step
+        self.noise = noise
+        self.step = step
         self._rng = np.random.default_rng([seed, 1])
 
     def __call__(self, q: Vector) -> Vector:

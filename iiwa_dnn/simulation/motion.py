@@ -29,10 +29,11 @@ def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
     that track the target one control period ahead.
     """
     checks.one_of("motion", motion, tuple(MOTIONS))
+    problem = "must be euler in continuous mode and in physics: they have one clock"
+    if ahead:
+        problem = "must be euler with tasks that track the next target"
     if motion != "euler" and (one_clock or ahead):
-        why = "in continuous mode and in physics: they have one clock"
-        why = "with tasks that track the next target" if ahead else why
-        raise InvalidInputError("motion", f"must be euler {why}", motion)
+        raise InvalidInputError("motion", problem, motion)
 
 
 def euler(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
@@ -87,7 +88,8 @@ def accelerated(
     [rad/s], which is overwritten. Returns the velocities after the step [rad/s], (n,), and their
     mean in it; Euler holds one acceleration.
     """
-    n, before = q.size, last.copy()
+    n = q.size
+    before = last.copy()
 
     def rate(state: Vector, time: float) -> Vector:
         last[:] = state[n:]
@@ -95,4 +97,5 @@ def accelerated(
 
     mean = method.step(rate, np.append(q, before), t, dt)
     change = dt * mean[n:]
-    return before + change, before + 0.5 * change if method.stages == 1 else mean[:n]
+    moved = before + 0.5 * change if method.stages == 1 else mean[:n]
+    return before + change, moved

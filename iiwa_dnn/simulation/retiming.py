@@ -52,11 +52,11 @@ class Trajectory:
 
     def __post_init__(self) -> None:
         times = checks.finite_array("t", self.t, (-1,))
-        joints = np.shape(self.q)[-1:]
-        for name in ("q", "dq", "ddq"):
-            array = checks.finite_array(name, getattr(self, name), (len(times), *joints))
-            object.__setattr__(self, name, array)
         object.__setattr__(self, "t", times)
+        shape = (len(times), *np.shape(self.q)[-1:])
+        for name in ("q", "dq", "ddq"):
+            array = checks.finite_array(name, getattr(self, name), shape)
+            object.__setattr__(self, name, array)
         if len(times) < 2 or not (np.diff(times) > 0.0).all():
             raise InvalidInputError("t", "must hold two times at least, increasing", times)
         h = np.diff(times)[:, None]
@@ -72,11 +72,13 @@ class Trajectory:
         Raises:
             FileError: The file cannot be written, or holds something else when it is read back.
         """
-        table = np.column_stack([self.t, self.q, self.dq, self.ddq])
-        write_csv(path, _head(self.q.shape[1]), table)
-        back = Trajectory.load(path)
-        if not np.array_equal(np.column_stack([back.t, back.q, back.dq, back.ddq]), table):
+        write_csv(path, _head(self.q.shape[1]), self._table)
+        if not np.array_equal(Trajectory.load(path)._table, self._table):
             raise FileError(path, "holds other numbers than were written")
+
+    @property
+    def _table(self) -> Matrix:
+        return np.column_stack([self.t, self.q, self.dq, self.ddq])
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Trajectory:
@@ -139,21 +141,27 @@ def retime(
     checks.integer("points", points, 10)
     record = path if isinstance(path, Record) else _run(path, robot, q0, scheme)
     fastest = limits(record, "dq_max") if velocity is None else velocity
-    bounds = []
-    for name, value in (("velocity", fastest), ("acceleration", acceleration)):
-        bound = np.broadcast_to(np.asarray(value, dtype=np.float64), (record.dof,))
-        if not ((bound > 0.0) & np.isfinite(bound)).all():
-            raise InvalidInputError(name, "must be finite and above 0", value)
-        bounds.append(bound)
-    trajectory, end = _optimum(record, bounds[0], bounds[1], points)
+    dq_max = _bound("velocity", fastest, record.dof)
+    ddq_max = _bound("acceleration", acceleration, record.dof)
+    trajectory = _optimum(record, dq_max, ddq_max, points)
+    end = float(trajectory.duration)
     count = max(2, int(np.ceil(end / dt - 1e-9)))
-    samples = [trajectory(np.linspace(0.0, end, count + 1), order) for order in range(3)]
-    samples[1][[0, -1]] = 0.0
+    q, dq, ddq = (trajectory(np.linspace(0.0, end, count + 1), order) for order in range(3))
+    dq[[0, -1]] = 0.0
     # Limits hold at toppra's grid, up to rounding; the samples between are slowed to keep them too.
-    over = np.abs(samples[1] / bounds[0]).max(), np.sqrt(np.abs(samples[2] / bounds[1]).max())
-    slower = max(1.0, *over, count * dt / end)
+    too_fast = np.abs(dq / dq_max).max()
+    too_hard = np.sqrt(np.abs(ddq / ddq_max).max())
+    slower = max(1.0, too_fast, too_hard, count * dt / end)
     times = np.linspace(0.0, slower * end, count + 1)
-    return Trajectory(times, samples[0], samples[1] / slower, samples[2] / slower**2)
+    return Trajectory(times, q, dq / slower, ddq / slower**2)
+
+
+def _bound(name: str, value: ArrayLike, joints: int) -> Vector:
+    """Return the limits of n joints, (n,), of one number or of n."""
+    bound = np.broadcast_to(np.asarray(value, dtype=np.float64), (joints,))
+    if not ((bound > 0.0) & np.isfinite(bound)).all():
+        raise InvalidInputError(name, "must be finite and above 0", value)
+    return bound
 
 
 def _run(
@@ -170,17 +178,16 @@ def _run(
     return record
 
 
-def _optimum(
-    record: Record, velocity: Vector, acceleration: Vector, points: int
-) -> tuple[Any, float]:
-    """Fit a spline to the joint path and let toppra time it; return it and its duration [s]."""
+def _optimum(record: Record, velocity: Vector, acceleration: Vector, points: int) -> Any:
+    """Fit a spline to the joint path and let toppra time it; return its trajectory."""
     toppra = import_extra("toppra", "pip install 'iiwa-dnn[retime]'")
     limit = toppra.constraint
     # The clock of the path: where a policy slowed it down, the path is not longer for that.
-    share = np.ones(record.steps) if record.fraction is None else record.fraction
-    clock = np.concatenate([[0.0], np.cumsum(share * np.diff(record.t))])
+    factor = np.ones(record.steps) if record.fraction is None else record.fraction
+    clock = np.concatenate([[0.0], np.cumsum(factor * np.diff(record.t))])
     moves = np.concatenate([[True], np.diff(clock) > 1e-3 * np.diff(record.t)])
-    clock, q = clock[moves], record.q[moves]
+    clock = clock[moves]
+    q = record.q[moves]
     if len(clock) < 3 or not np.ptp(q, axis=0).max() > 0.0:
         raise InvalidInputError("path", "the arm does not move on it", record)
     while True:
@@ -189,13 +196,10 @@ def _optimum(
         if np.abs(spline(clock) - q).max() < _ON_PATH or len(knots) == len(clock):
             break
         points *= 2
-    both = np.array([-1.0, 1.0])
+    at_nodes = limit.DiscretizationType.Interpolation
     constraints = [
-        limit.JointVelocityConstraint(velocity[:, None] * both),
-        limit.JointAccelerationConstraint(
-            acceleration[:, None] * both,
-            discretization_scheme=limit.DiscretizationType.Interpolation,
-        ),
+        limit.JointVelocityConstraint(np.outer(velocity, [-1.0, 1.0])),
+        limit.JointAccelerationConstraint(np.outer(acceleration, [-1.0, 1.0]), at_nodes),
     ]
     fine = np.linspace(clock[0], clock[-1], max(points, len(knots) - 1) + 1)
     for grid in (fine, None):  # on a fine grid toppra may fail by rounding: then its own
@@ -204,5 +208,5 @@ def _optimum(
         )
         trajectory = problem.compute_trajectory(0.0, 0.0)
         if trajectory is not None:
-            return trajectory, float(trajectory.duration)
+            return trajectory
     raise InvalidInputError("acceleration", "toppra finds no timing within the limits")

@@ -46,8 +46,8 @@ class MujocoPlant(Plant):
             problem = f"must be at most {_COARSEST:g} s, not {timestep:g}"
             raise InvalidInputError("physics_dt", problem, timestep)
         self.timestep = timestep
-        wrong = Disturbances() if disturbances is None else disturbances
-        self.disturbances = checks.instance("disturbances", wrong, Disturbances)
+        self.disturbances = Disturbances() if disturbances is None else disturbances
+        checks.instance("disturbances", self.disturbances, Disturbances)
         self.gains = TorqueGains() if gains is None else gains
         self.dynamics = JointDynamics() if dynamics is None else dynamics
 
@@ -63,22 +63,21 @@ class MujocoPlant(Plant):
         if substeps < 1 or abs(substeps * self.timestep - dt) > 1e-9 * dt:
             problem = f"must divide the control period of {dt:g} s, {self.timestep:g} s does not"
             raise InvalidInputError("physics_dt", problem, self.timestep)
-        self._mj = mj = import_mujoco()
-        if mj.get_mju_user_warning() is None:  # else they go into a file in the working folder
-            mj.set_mju_user_warning(lambda message: None)
-        wrong, limit = self.disturbances, torque_limits(robot)
+        self._mj = import_mujoco()
+        if self._mj.get_mju_user_warning() is None:  # else they go into the working folder
+            self._mj.set_mju_user_warning(lambda message: None)
+        timestep = dt / substeps
+        wrong = self.disturbances
+        limit = torque_limits(robot)
         friction = np.where(np.isfinite(limit), wrong.friction * limit, 0.0)
-        self._model = compile_model(
-            robot, dt / substeps, self.dynamics, friction, wrong.mass_factors(robot.dof, seed)
-        )
-        self._data = mj.MjData(self._model)
+        factors = wrong.mass_factors(robot.dof, seed)
+        self._model = compile_model(robot, timestep, self.dynamics, friction, factors)
+        self._data = self._mj.MjData(self._model)
         self._data.qpos[:] = q0
-        mj.mj_forward(self._model, self._data)
-        self._tip = self._model.site(TIP_SITE).id
+        self._mj.mj_forward(self._model, self._data)
         self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_step, seed)
-        self._torques = TorqueController(robot, dt, dt / substeps, self.gains, self.dynamics)
+        self._torques = TorqueController(robot, dt, timestep, self.gains, self.dynamics)
         self._torques.reset(q0)
-        self._substeps = substeps
         self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay
         self._largest: Vector = np.zeros(robot.dof)
         self._reading: Vector | None = None
@@ -96,9 +95,9 @@ class MujocoPlant(Plant):
     @property
     def diverged(self) -> bool:
         """True if MuJoCo has met a state that is too large and reset the arm, or the loop has."""
-        kinds, warnings = self._mj.mjtWarning, self._data.warning
+        kinds = self._mj.mjtWarning
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
-        in_arm = any(warnings[int(kind)].number > 0 for kind in bad)
+        in_arm = any(self._data.warning[int(kind)].number > 0 for kind in bad)
         return in_arm or self._torques.diverged
 
     def read(self) -> Vector:
@@ -114,26 +113,30 @@ class MujocoPlant(Plant):
         self._late.append(np.array(command))
         self._torques.command(self._late.pop(0))
         self._largest = np.zeros_like(command)
-        for _ in range(self._substeps):
+        for _ in range(self._torques.substeps):
             reading = self._encoder(self._data.qpos) if self._reading is None else self._reading
             self._reading = None
             torque = self._torques.torque(reading)
             self._step(torque)
             larger = np.abs(torque) > np.abs(self._largest)
-            self._largest = np.where(larger, torque, self._largest)
+            self._largest[larger] = torque[larger]
 
     def _step(self, torque: Vector) -> None:
         """Hold joint torques (n,) [N m] for one physics step."""
-        mj, model, data, push = self._mj, self._model, self._data, self.disturbances.push
+        data = self._data
         data.ctrl[:] = torque
+        push = self.disturbances.push
         if push is not None:
             data.qfrc_applied[:] = 0.0
             # The middle of the step, so that rounding of the time cannot cost or add a step.
-            if push.start <= data.time + 0.5 * model.opt.timestep < push.end:
-                point, body = data.site_xpos[self._tip], int(model.site_bodyid[self._tip])
+            if push.start <= data.time + 0.5 * self._model.opt.timestep < push.end:
+                tip = self._model.site(TIP_SITE)
+                point = data.site_xpos[tip.id]
+                body = int(tip.bodyid[0])
                 force = np.array(push.force)
-                mj.mj_applyFT(model, data, force, np.zeros(3), point, body, data.qfrc_applied)
-        mj.mj_step(model, data)
+                out = data.qfrc_applied
+                self._mj.mj_applyFT(self._model, data, force, np.zeros(3), point, body, out)
+        self._mj.mj_step(self._model, data)
 
     def settings(self) -> dict[str, Any]:
         """Return torque limits, physics and torque loop, as a record has them."""

@@ -56,6 +56,37 @@ class TorqueGains:
             checks.positive(name, value)
 
 
+class Observer:
+    """Joint positions and velocities from encoder readings, by a model of double integrators.
+
+    Attributes:
+        q: Joint positions [rad], (n,).
+        v: Joint velocities [rad/s], (n,).
+    """
+
+    def __init__(self, bandwidth: float, timestep: float, q: Vector) -> None:
+        """Start at rest at q (n,) [rad]; bandwidth in [rad/s], time between readings in [s]."""
+        # Both poles of the error at exp(-w h), exactly, for any step h.
+        pole = math.exp(-bandwidth * timestep)
+        self._timestep = timestep
+        self._correct_q = 1.0 - pole**2
+        self._correct_v = (1.0 - pole) ** 2 / timestep
+        self.q = q.copy()
+        self.v = np.zeros_like(q)
+
+    def correct(self, reading: Vector) -> None:
+        """Correct the state by measured joint positions (n,) [rad]."""
+        innovation = reading - self.q
+        self.q = self.q + self._correct_q * innovation
+        self.v = self.v + self._correct_v * innovation
+
+    def predict(self, a: Vector) -> None:
+        """Advance the state to the next reading under an acceleration (n,) [rad/s^2]."""
+        h = self._timestep
+        self.q = self.q + h * (self.v + 0.5 * h * a)
+        self.v = self.v + h * a
+
+
 class TorqueController:
     """The torque loop of an arm with n joints, and its observer; `reset` comes first.
 
@@ -65,6 +96,7 @@ class TorqueController:
     Attributes:
         gains: Stiffness.
         limit: Torque limits [N m], (n,).
+        substeps: Timesteps in a period.
     """
 
     def __init__(
@@ -75,22 +107,22 @@ class TorqueController:
         gains: TorqueGains | None = None,
         dynamics: JointDynamics | None = None,
     ) -> None:
-        self.gains = TorqueGains() if gains is None else gains
         dynamics = JointDynamics() if dynamics is None else dynamics
+        self.gains = TorqueGains() if gains is None else gains
         self.limit = torque_limits(robot)
+        self.substeps = round(period / timestep)
+        self._period = period
+        self._timestep = timestep
         self._damping = dynamics.damping
         self._model = robot.model.copy()  # the robot's own stays as it is
         self._model.armature = np.full(robot.dof, dynamics.armature)
         self._data = self._model.createData()
-        self._period, self._timestep = period, timestep
-        # Both poles of the observer's error at exp(-w h), exactly, for any step h.
-        pole = math.exp(-self.gains.observer_bandwidth * timestep)
-        self._correct_q, self._correct_v = 1.0 - pole**2, (1.0 - pole) ** 2 / timestep
 
     def reset(self, q: Vector) -> None:
         """Start at rest at joint angles `q` (n,) [rad]."""
-        self._q, self._v, self._a = q.copy(), np.zeros_like(q), np.zeros_like(q)
-        self._q_desired, self._v_desired = q.copy(), np.zeros_like(q)
+        self._observer = Observer(self.gains.observer_bandwidth, self._timestep, q)
+        self._q_desired = q.copy()
+        self._v_desired = np.zeros_like(q)
         self._a_desired = np.zeros_like(q)
 
     def command(self, dq: Vector) -> None:
@@ -103,17 +135,15 @@ class TorqueController:
         Args:
             reading: Measured joint angles [rad], (n,).
         """
-        gains = self.gains
-        innovation = reading - self._q
-        q = self._q + self._correct_q * innovation
-        v = self._v + self._correct_v * innovation
-        ahead = np.clip(self._q_desired - q, -gains.leash, gains.leash)
-        a = self._a_desired + gains.bandwidth * (
-            2.0 * (self._v_desired - v) + gains.bandwidth * ahead
-        )
+        self._observer.correct(reading)
+        q = self._observer.q
+        v = self._observer.v
+        ahead = np.clip(self._q_desired - q, -self.gains.leash, self.gains.leash)
+        w = self.gains.bandwidth
+        a = self._a_desired + w * (2.0 * (self._v_desired - v) + w * ahead)
         torque = pin.rnea(self._model, self._data, q, v, a) + self._damping * v
+        self._observer.predict(a)
         h = self._timestep
-        self._q, self._v = q + h * (v + 0.5 * h * a), v + h * a
         self._q_desired = q + ahead + h * (self._v_desired + 0.5 * h * self._a_desired)
         self._v_desired = self._v_desired + h * self._a_desired
         limited: Vector = np.clip(torque, -self.limit, self.limit)
@@ -122,4 +152,4 @@ class TorqueController:
     @property
     def diverged(self) -> bool:
         """True if the observer's velocity is far beyond any joint's, or not a number."""
-        return not float(np.abs(self._v).max()) < _FASTEST
+        return not float(np.abs(self._observer.v).max()) < _FASTEST
