@@ -319,8 +319,8 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
     x = np.stack([solver.solve(qp).x for qp in programs[:block]])
     return [
         (
-            "kinematics: Configuration.from_checked",
-            _per_call(lambda k: Configuration.from_checked(robot, record.q[k], data), steps),
+            "kinematics: Configuration",
+            _per_call(lambda k: Configuration(robot, record.q[k], data), steps),
         ),
         (
             "of that, Pinocchio's two calls",

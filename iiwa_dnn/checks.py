@@ -1,7 +1,11 @@
-"""Checks of arguments: each returns the value as it is needed, or names the argument."""
+"""Checks of arguments: each returns the value in the form that is needed.
+
+A value that does not fit ends in an `InvalidInputError` under the name that the caller hands over,
+which is the name of the caller's own argument.
+"""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from numbers import Integral, Real
 from typing import Any, TypeVar
 
@@ -16,30 +20,29 @@ T = TypeVar("T")
 
 
 def finite(argument: str, value: object) -> float:
-    """The value as a float, or an InvalidInputError unless it is a finite number."""
-    if not isinstance(value, Real) or not math.isfinite(value):
-        raise InvalidInputError(argument, f"must be a finite number, not {value!r}", value)
-    return float(value)
+    """Return a finite number as a float; refuse any other value."""
+    return _number(argument, value, "a finite number", lambda number: True)
 
 
 def positive(argument: str, value: object) -> float:
-    """The value as a float, or an InvalidInputError unless it is a finite number above zero."""
-    if type(value) is float and 0.0 < value < math.inf:
-        return value  # the test for any kind of number costs more than all the rest of some callers
-    if not isinstance(value, Real) or not math.isfinite(value) or float(value) <= 0.0:
-        raise InvalidInputError(argument, f"must be a finite number above 0, not {value!r}", value)
-    return float(value)
+    """Return a finite number above zero as a float; refuse any other value."""
+    return _number(argument, value, "a finite number above 0", lambda number: number > 0.0)
 
 
 def not_negative(argument: str, value: object) -> float:
-    """The value as a float, or an InvalidInputError unless it is a finite number of at least 0."""
-    if not isinstance(value, Real) or not math.isfinite(value) or float(value) < 0.0:
-        raise InvalidInputError(argument, f"must be a finite number >= 0, not {value!r}", value)
-    return float(value)
+    """Return a finite number of at least 0 as a float; refuse any other value."""
+    return _number(argument, value, "a finite number >= 0", lambda number: number >= 0.0)
+
+
+def _number(argument: str, value: object, kind: str, fits: Callable[[float], bool]) -> float:
+    # A float first: the test for any kind of number costs more than all the rest of some callers.
+    if isinstance(value, float | Real) and math.isfinite(value) and fits(float(value)):
+        return float(value)
+    raise InvalidInputError(argument, f"must be {kind}, not {value!r}", value)
 
 
 def integer(argument: str, value: object, least: int) -> int:
-    """The value as an int, or an InvalidInputError unless it is a whole number >= `least`."""
+    """Return a whole number of at least `least` as an int; refuse any other value."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         raise InvalidInputError(
             argument, f"must be a whole number of at least {least}, not {value!r}", value
@@ -48,7 +51,7 @@ def integer(argument: str, value: object, least: int) -> int:
 
 
 def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
-    """An InvalidInputError unless the value is one of the choices."""
+    """Refuse a value that is not one of the choices."""
     if value not in choices:
         raise InvalidInputError(
             argument, f"must be one of {', '.join(choices)}, not {value!r}", value
@@ -56,7 +59,7 @@ def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
 
 
 def instance(argument: str, value: T, kind: type[Any]) -> T:
-    """The value, or an InvalidInputError unless it is an object of a class or of a subclass."""
+    """Return an object of a class or of a subclass; refuse any other value."""
     if not isinstance(value, kind):
         problem = f"must be an iiwa_dnn.{kind.__name__}, not {value!r:.80}"
         raise InvalidInputError(argument, problem, value)
@@ -64,7 +67,7 @@ def instance(argument: str, value: T, kind: type[Any]) -> T:
 
 
 def offers(argument: str, value: T, *names: str) -> T:
-    """The value, or an InvalidInputError unless it is an object, no class, with these members."""
+    """Return an object, no class, that has all of these members; refuse any other value."""
     if isinstance(value, type) or not all(hasattr(value, name) for name in names):
         problem = f"must be an object with {' and '.join(names)}, not {value!r:.80}"
         raise InvalidInputError(argument, problem, value)
@@ -72,13 +75,13 @@ def offers(argument: str, value: T, *names: str) -> T:
 
 
 def vector3(argument: str, value: Sequence[float] | Array) -> Vector3:
-    """The value (3,) as a tuple of floats, or an InvalidInputError unless it is three numbers."""
+    """Return three finite numbers as a tuple of floats; refuse any other value."""
     x, y, z = finite_array(argument, value, (3,)).tolist()
     return x, y, z
 
 
 def direction(argument: str, value: Sequence[float] | Array) -> Vector3:
-    """The value (3,) as a tuple of length one, or an InvalidInputError if that is impossible."""
+    """Return a vector (3,), scaled to length 1, as a tuple; refuse zero and any other value."""
     vector = np.array(vector3(argument, value))
     if not vector.any():
         raise InvalidInputError(argument, "must not be zero", value)
@@ -88,7 +91,7 @@ def direction(argument: str, value: Sequence[float] | Array) -> Vector3:
 
 
 def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """A read-only copy of the value, or an InvalidInputError unless it is finite and of this shape.
+    """Return a read-only copy of finite numbers of this shape; refuse any other value.
 
     An entry of -1 in ``shape`` leaves that length open.
     """
@@ -96,8 +99,9 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError(argument, "must be numbers", value) from error
-    fits = array.ndim == len(shape)
-    if not fits or any(n not in (-1, m) for n, m in zip(shape, array.shape, strict=True)):
+    lengths = zip(shape, array.shape, strict=False)
+    fits = array.shape == shape or all(n in (-1, m) for n, m in lengths)
+    if not fits or array.ndim != len(shape):
         wanted = str(shape).replace("-1", "m")
         raise InvalidInputError(argument, f"must have shape {wanted}, not {array.shape}", value)
     if not np.isfinite(array).all():
@@ -107,7 +111,7 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
 
 
 def rotation(argument: str, value: ArrayLike) -> Array:
-    """A read-only copy of the value (3, 3), or an InvalidInputError unless it is a rotation."""
+    """Return a read-only copy of a rotation matrix (3, 3); refuse any other value."""
     turn = finite_array(argument, value, (3, 3))
     if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-6 or np.linalg.det(turn) < 0.0:
         raise InvalidInputError(argument, "is not a rotation matrix", value)
@@ -115,7 +119,7 @@ def rotation(argument: str, value: ArrayLike) -> Array:
 
 
 def read_only(array: Array) -> Array:
-    """A view of `array`, of any shape, that cannot be written into."""
+    """Return a view of an array of any shape that cannot be written into."""
     view = array[...]
     view.setflags(False)  # write=False: by position it takes half the time
     return view

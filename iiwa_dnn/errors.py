@@ -21,11 +21,13 @@ class InvalidInputError(IiwaDnnError, ValueError):
 
     Attributes:
         argument: Name of the argument, as the caller wrote it.
-        value: What was given.
+        problem: Reason of the refusal, in a few words.
+        value: The value that was refused.
     """
 
     def __init__(self, argument: str, problem: str, value: object = None) -> None:
-        super().__init__(f"{argument}: {' '.join(problem.split())}")  # an array takes many lines
+        self.problem = " ".join(problem.split())  # an array takes many lines
+        super().__init__(f"{argument}: {self.problem}")
         self.argument = argument
         self.value = value
 
@@ -44,10 +46,6 @@ class NotFoundError(IiwaDnnError, LookupError):
         self.name = name
         self.available = tuple(available)
         super().__init__(f"no {kind} {name!r}{suggestion(name, self.available)}")
-
-    def __str__(self) -> str:
-        # LookupError's own __str__ is Exception's; KeyError's would add quotes.
-        return str(self.args[0])
 
 
 def suggestion(name: str, available: Iterable[str]) -> str:

@@ -1,5 +1,6 @@
 """Atomic writing of files: a reader sees the old one or the whole new one, never half of it."""
 
+import contextlib
 import json
 import math
 import os
@@ -37,26 +38,25 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], o
     # In the same folder, because a rename is atomic only inside one file system.
     temporary = path.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
-        try:
-            with temporary.open("xb") as file:
-                write(file)
-                file.flush()
-                # Without it, a power cut may leave the new name on an empty file.
-                os.fsync(file.fileno())
-            temporary.replace(path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
+        with temporary.open("xb") as file:
+            write(file)
+            file.flush()
+            # Without it, a power cut may leave the new name on an empty file.
+            os.fsync(file.fileno())
+        temporary.replace(path)
     except FileError:
         raise
     except OSError as error:
         raise FileError(path, f"cannot be written ({one_line(error)})") from error
+    finally:
+        with contextlib.suppress(OSError):  # it is there only after an error
+            temporary.unlink()
 
 
 def prepare_folder(folder: str | os.PathLike[str]) -> Path:
     """Make a folder with its parents and check that files can be written in it.
 
-    To be called before a long run, lest it end without a place for its record.
+    To be called before a long run, lest it end without a folder for its record.
 
     Args:
         folder: The folder; it may exist already.
@@ -151,6 +151,6 @@ def one_line(error: BaseException) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def percent(share: float) -> str:
-    """Show a share as ``12.3 %``; one below 1 never as 100.0 %."""
-    return f"{min(100.0 * share, 100.0 if share >= 1.0 else 99.9):.1f} %"
+def percent(fraction: float) -> str:
+    """Show a fraction as ``12.3 %``; one below 1 never as 100.0 %."""
+    return f"{min(100.0 * fraction, 100.0 if fraction >= 1.0 else 99.9):.1f} %"

@@ -10,7 +10,7 @@ from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.robot.shapes import STICK_COLOUR, visual_shapes
+from iiwa_dnn.robot.shapes import STICK_COLOR, visual_shapes
 
 if TYPE_CHECKING:
     import mujoco
@@ -48,11 +48,11 @@ def add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
     joints = {joint.name: joint.parent for joint in spec.joints}
     drawn = {"group": VISUAL_GROUP, "contype": 0, "conaffinity": 0}
     for number, shape in enumerate(visual_shapes(robot)):
-        if shape.mesh is None and shape.colour != STICK_COLOUR:
+        if shape.mesh is None and shape.color != STICK_COLOR:
             continue
         x, y, z, w = pin.Quaternion(shape.rotation).coeffs()
         body = joints[robot.model.names[shape.joint]] if shape.joint else spec.worldbody
-        place = {"pos": shape.position, "quat": [w, x, y, z], "rgba": [*shape.colour, 1.0], **drawn}
+        place = {"pos": shape.position, "quat": [w, x, y, z], "rgba": [*shape.color, 1.0], **drawn}
         if shape.mesh is None:
             radius, length = shape.size
             kind, size = mj.mjtGeom.mjGEOM_CYLINDER, [radius, 0.5 * length, 0.0]

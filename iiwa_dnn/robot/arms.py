@@ -45,7 +45,8 @@ class Arm:
             raise MissingDependencyError(_PACKAGE, "pip install 'iiwa-dnn[robots]'") from error
 
 
-_TALOS, _BAXTER = "talos_data/robots/talos_reduced.urdf", "baxter_description/urdf/baxter.urdf"
+_TALOS = "talos_data/robots/talos_reduced.urdf"
+_BAXTER = "baxter_description/urdf/baxter.urdf"
 # Stretched farther out, Baxter's motors do not hold its arms: a real one has springs.
 _BENT = (0.0, -1.0, 0.0, 1.9, 0.0, 0.67, 0.0)
 _TIAGO = "tiago_description/robots/tiago.urdf"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -21,16 +21,26 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
-from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
-from iiwa_dnn.robot.robot import Robot, file_of, tree_of
+from iiwa_dnn.robot.obstacles import Box
+from iiwa_dnn.robot.robot import Robot, file_of, urdf_of
+from iiwa_dnn.robot.shapes import read_shapes
 
-SAMPLES, CLEARANCE, ALWAYS = 10_000, 0.02, 0.95
-"""Random postures; distance that a pair never meets beyond [m]; share of one that always does."""
+SAMPLES = 10_000
+"""Random postures in which the distances of the pairs are measured."""
+
+CLEARANCE = 0.02
+"""Distance beyond which a pair never meets [m]."""
+
+ALWAYS = 0.95
+"""Fraction of the postures in which a pair that always meets does so."""
+
+
+Ball = tuple[float, ...]
+"""Middle and radius of a sphere [m], rounded."""
 
 
 @dataclass(frozen=True)
@@ -67,24 +77,22 @@ class CollisionModel:
         """List the pairs of capsules that may meet, the one nearer to the base first."""
         joints = [_joint(robot, capsule.link) for capsule in self.capsules]
         left_out = {frozenset(pair[:2]) for pair in self.left_out}
-        order = sorted(range(len(joints)), key=joints.__getitem__)
-        return [
-            (i, k)
-            for i, k in combinations(order, 2)
-            if joints[i] != joints[k]
-            and frozenset((self.capsules[i].link, self.capsules[k].link)) not in left_out
-        ]
+        pairs = []
+        for i, k in combinations(sorted(range(len(joints)), key=joints.__getitem__), 2):
+            links = frozenset((self.capsules[i].link, self.capsules[k].link))
+            if joints[i] != joints[k] and links not in left_out:
+                pairs.append((i, k))
+        return pairs
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the model as a TOML file that `collision_model` reads."""
         pairs = "".join(f"  {json.dumps(pair)},\n" for pair in self.left_out)
         text = "# Collision geometry: pairs of links left out, capsules in link frames [m]\n"
         text += f"left_out = [\n{pairs}]\n"
-        for c in self.capsules:
-            a, b = ([round(x, 6) + 0.0 for x in end] for end in (c.a, c.b))  # no -0.0
-            radius = round(c.radius + 1.4e-6, 6)  # rounding never makes it smaller
-            text += f"\n[[capsule]]\nlink = {json.dumps(c.link)}\n"
-            text += f"a = {a}\nb = {b}\nradius = {radius}\n"
+        for capsule in self.capsules:
+            radius = round(capsule.radius + 1.4e-6, 6)  # rounding never makes it smaller
+            text += f"\n[[capsule]]\nlink = {json.dumps(capsule.link)}\n"
+            text += f"a = {_rounded(capsule.a)}\nb = {_rounded(capsule.b)}\nradius = {radius}\n"
         write_text(path, text)
 
     @classmethod
@@ -96,15 +104,17 @@ class CollisionModel:
         """
         tables = read_toml(path)
         try:
-            capsules = tuple(
+            capsules = [
                 LinkCapsule(
-                    str(entry["link"]), checks.vector3("a", entry["a"]),
-                    checks.vector3("b", entry["b"]), checks.positive("radius", entry["radius"]),
+                    str(entry["link"]),
+                    checks.vector3("a", entry["a"]),
+                    checks.vector3("b", entry["b"]),
+                    checks.positive("radius", entry["radius"]),
                 )
                 for entry in tables["capsule"]
-            )  # fmt: skip
+            ]
             pairs = tuple((str(a), str(b), str(why)) for a, b, why in tables["left_out"])
-            return cls(capsules, pairs)
+            return cls(tuple(capsules), pairs)
         except KeyError as error:
             raise FileError(path, f"lacks the key {one_line(error)}") from error
         except (ValueError, TypeError) as error:
@@ -114,8 +124,8 @@ class CollisionModel:
 def collision_file(robot: Robot) -> Path:
     """Return the file that the collision geometry of a robot is kept in; it need not exist."""
     path = file_of(robot)
-    known = robot.name in ARMS and ARMS[robot.name].path == path
-    if known:  # the package's own file: the arm's folder is somebody else's
+    if robot.name in ARMS and ARMS[robot.name].path == path:
+        # The package's own file: the arm's folder is somebody else's.
         return robots_folder() / robot.name / f"{robot.name}.collisions.toml"
     return path.with_suffix(".collisions.toml")
 
@@ -141,38 +151,46 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
 
     Postures are drawn uniformly within the URDF's limits, with a fixed seed.
     """
-    capsules = tuple(_capsules(robot))
-    everything = CollisionModel(capsules, ())
-    pairs = everything.pairs(robot)
-    geometry = coal_geometry(robot, everything, pairs)
-    data, scratch = robot.model.createData(), pin.GeometryData(geometry)
-
-    def measured(q: Array) -> list[float]:
-        pin.computeDistances(robot.model, data, geometry, scratch, q)
-        return [result.min_distance for result in scratch.distanceResults]
-
+    whole = CollisionModel(tuple(_capsules(robot)), ())
+    pairs = whole.pairs(robot)
     model = robot.model
     lower = np.maximum(model.lowerPositionLimit, -np.pi)
     upper = np.minimum(model.upperPositionLimit, np.pi)
     postures = np.random.default_rng(0).uniform(lower, upper, (samples, robot.dof))
-    distances = np.array([measured(q) for q in postures]).reshape(samples, len(pairs))
-    at_start = measured(robot.start_posture())
-    links: dict[tuple[str, str], list[int]] = {}
-    for index, (i, k) in enumerate(pairs):
-        links.setdefault((capsules[i].link, capsules[k].link), []).append(index)
+    distances = _distances(robot, whole, pairs, np.vstack([robot.start_posture(), postures]))
+    columns: dict[tuple[str, str], list[int]] = {}
+    for column, (i, k) in enumerate(pairs):
+        links = (whole.capsules[i].link, whole.capsules[k].link)
+        columns.setdefault(links, []).append(column)
     left_out = []
-    for (first, second), columns in links.items():
-        joints = [_joint(robot, name) for name in (first, second)]
-        nearest = distances[:, columns].min(axis=1)
-        if robot.model.parents[joints[1]] == joints[0]:
-            left_out.append((first, second, "adjacent"))
-        elif nearest.min() > CLEARANCE:
-            left_out.append((first, second, "never"))
-        elif (nearest <= 0.0).mean() >= ALWAYS:
-            left_out.append((first, second, "always"))
-        elif min(at_start[column] for column in columns) <= CLEARANCE:
-            left_out.append((first, second, "start"))
-    return CollisionModel(capsules, tuple(left_out))
+    for (first, second), chosen in columns.items():
+        at_start, *nearest = distances[:, chosen].min(axis=1)
+        reason = ""
+        if model.parents[_joint(robot, second)] == _joint(robot, first):
+            reason = "adjacent"
+        elif min(nearest) > CLEARANCE:
+            reason = "never"
+        elif (np.array(nearest) <= 0.0).mean() >= ALWAYS:
+            reason = "always"
+        elif at_start <= CLEARANCE:
+            reason = "start"
+        if reason:
+            left_out.append((first, second, reason))
+    return CollisionModel(whole.capsules, tuple(left_out))
+
+
+def _distances(
+    robot: Robot, model: CollisionModel, pairs: list[tuple[int, int]], postures: checks.Array
+) -> checks.Array:
+    """Compute the distance of each pair [m] in each posture (k, n) by coal, (k, pairs)."""
+    geometry = coal_geometry(robot, model, pairs)
+    data = robot.model.createData()
+    scratch = pin.GeometryData(geometry)
+    distances = np.empty((len(postures), len(pairs)))
+    for row, q in zip(distances, postures, strict=True):
+        pin.computeDistances(robot.model, data, geometry, scratch, q)
+        row[:] = [result.min_distance for result in scratch.distanceResults]
+    return distances
 
 
 def coal_geometry(
@@ -181,16 +199,15 @@ def coal_geometry(
     """Describe capsules and pairs to coal, for `pinocchio.computeDistances`."""
     geometry = pin.GeometryModel()
     for i, capsule in enumerate(model.capsules):
-        a, b = np.array(capsule.a), np.array(capsule.b)
-        length, frame = (
-            float(np.linalg.norm(b - a)),
-            robot.model.frames[robot.frame_id(capsule.link)],
-        )
+        a = np.array(capsule.a)
+        b = np.array(capsule.b)
+        length = float(np.linalg.norm(b - a))
         shape = coal.Capsule(capsule.radius, length) if length else coal.Sphere(capsule.radius)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), b - a).matrix()
-        place = frame.placement * pin.SE3(turn if length else np.eye(3), 0.5 * (a + b))
+        frame = robot.model.frames[robot.frame_id(capsule.link)]
+        pose = frame.placement * pin.SE3(turn if length else np.eye(3), 0.5 * (a + b))
         name = f"{capsule.link}_{i}"
-        geometry.addGeometryObject(pin.GeometryObject(name, frame.parentJoint, place, shape))
+        geometry.addGeometryObject(pin.GeometryObject(name, frame.parentJoint, pose, shape))
     for i, k in pairs:
         geometry.addCollisionPair(pin.CollisionPair(i, k))
     return geometry
@@ -200,53 +217,58 @@ def _joint(robot: Robot, link: str) -> int:
     return int(robot.model.frames[robot.frame_id(link)].parentJoint)
 
 
-def _capsules(robot: Robot) -> Iterable[LinkCapsule]:
+def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
     """Fit capsules to the <collision> shapes of the URDF, in the frames of their links."""
-    path = file_of(robot)
-    root = tree_of(robot)
-    folders = [str(parent) for parent in path.parents]
     try:
-        found = pin.buildGeomFromUrdfString(
-            robot.model, urdf.text_of(root), pin.GeometryType.COLLISION, package_dirs=folders
-        )
-    except (ValueError, RuntimeError) as error:
+        shapes = read_shapes(robot, pin.GeometryType.COLLISION, urdf_of(robot))
+    except ValueError as error:
         problem = f"a shape cannot be read: {one_line(error)}"
         hint = "; ROS_PACKAGE_PATH names the folder of its packages" * ("package://" in problem)
-        raise FileError(path, problem + hint) from error
+        raise FileError(file_of(robot), problem + hint) from error
     by_link: dict[int, list[pin.GeometryObject]] = {}
-    for shape in found.geometryObjects:
+    for shape in shapes:
         by_link.setdefault(shape.parentFrame, []).append(shape)
-    for index, shapes in by_link.items():
+    for index, of_link in by_link.items():
         frame = robot.model.frames[index]
-        placed = [(frame.placement.actInv(shape.placement), shape.geometry) for shape in shapes]
-        balls = {(*place.translation.round(5).tolist(), round(shape.radius, 6))
-                 for place, shape in placed if isinstance(shape, coal.Sphere)}  # fmt: skip
-        used: set[tuple[float, ...]] = set()
-        loose: list[Array] = []
-        for place, shape in placed:
-            if isinstance(shape, coal.Sphere):
-                continue
-            if isinstance(shape, coal.Cylinder):
-                ends = [place.act(np.array([0.0, 0.0, z * shape.halfLength])) for z in (-1, 1)]
-                caps = [(*end, shape.radius) for end in ends]
-                near = [
-                    {ball for ball in balls if np.allclose(cap, ball, atol=3e-5)} for cap in caps
-                ]
-                if all(near):
-                    used |= near[0] | near[1]
-                    yield LinkCapsule(
-                        frame.name, _vector(ends[0]), _vector(ends[1]), float(shape.radius)
-                    )
-                    continue
-            loose.append(_corners(shape) @ place.rotation.T + place.translation)
-        if loose:
-            a, b, radius = _enclosing_capsule(np.vstack(loose))
-            yield LinkCapsule(frame.name, _vector(a), _vector(b), radius)
-        for x, y, z, radius in sorted(balls - used):
-            yield LinkCapsule(frame.name, (x, y, z), (x, y, z), radius)
+        placed = [(frame.placement.actInv(each.placement), each.geometry) for each in of_link]
+        found = [(pose, body.radius) for pose, body in placed if isinstance(body, coal.Sphere)]
+        spheres = {(*pose.translation.round(5).tolist(), round(r, 6)) for pose, r in found}
+        bodies = [(pose, body) for pose, body in placed if not isinstance(body, coal.Sphere)]
+        for a, b, radius in _link_capsules(bodies, spheres):
+            yield LinkCapsule(frame.name, checks.vector3("a", a), checks.vector3("b", b), radius)
 
 
-def _enclosing_capsule(points: Array) -> tuple[Array, Array, float]:
+def _link_capsules(
+    bodies: list[tuple[pin.SE3, coal.CollisionGeometry]], spheres: set[Ball]
+) -> Iterator[tuple[checks.Array, checks.Array, float]]:
+    """Fit capsules (end, end, radius) to the spheres of a link and its other bodies.
+
+    A cylinder between two of the spheres is a capsule, the other spheres are capsules of no
+    length, and one capsule holds all other bodies.
+    """
+    alone = set(spheres)
+    points = []
+    for pose, body in bodies:
+        half = body.halfLength if isinstance(body, coal.Cylinder) else 0.0
+        ends = [pose.act(np.array([0.0, 0.0, z])) for z in (-half, half)]
+        caps = [_spheres_at(end, body.radius, spheres) for end in ends] if half else [set()]
+        if all(caps):
+            alone -= caps[0] | caps[1]
+            yield ends[0], ends[1], float(body.radius)
+        else:
+            points.append(_corners(body) @ pose.rotation.T + pose.translation)
+    if points:
+        yield _enclosing_capsule(np.vstack(points))
+    for *middle, radius in sorted(alone):
+        yield np.array(middle), np.array(middle), radius
+
+
+def _spheres_at(point: checks.Array, radius: float, spheres: set[Ball]) -> set[Ball]:
+    """Select the spheres of a radius about a point [m]."""
+    return {ball for ball in spheres if np.allclose((*point, radius), ball, atol=3e-5)}
+
+
+def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:
     """Fit a capsule of small volume around points (k, 3) [m]; return its ends and its radius.
 
     The axis begins along each principal direction in turn and is then moved by Nelder and Mead's
@@ -257,37 +279,43 @@ def _enclosing_capsule(points: Array) -> tuple[Array, Array, float]:
 
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     axes = np.linalg.svd(points - middle, full_matrices=False)[2]
+
+    def volume(x: checks.Array) -> float:
+        return _volume(*_capsule_along(points, x))
+
     found = []
     for axis in axes:
         start = np.concatenate([middle, axis, [1.0]])
         scale = np.array([0.01, 0.01, 0.01, 0.1, 0.1, 0.1, 0.02])
         simplex = np.vstack([start, start + np.diag(scale)])
         options = {"initial_simplex": simplex, "maxfev": 4000, "xatol": 1e-6, "fatol": 1e-9}
-        best = minimize(lambda x: _volume(*_capsule_along(points, x)), start, (), "Nelder-Mead",
-                        options=options)  # fmt: skip
-        found.append(_capsule_along(points, best.x))
-    a, b, radius = min(found, key=lambda capsule: _volume(*capsule))
-    return a, b, radius
+        found.append(minimize(volume, start, (), "Nelder-Mead", options=options))
+    best = min(found, key=lambda result: float(result.fun))
+    return _capsule_along(points, best.x)
 
 
-def _capsule_along(points: Array, x: Array) -> tuple[Array, Array, float]:
+def _capsule_along(
+    points: checks.Array, x: checks.Array
+) -> tuple[checks.Array, checks.Array, float]:
     """Capsule along an axis: x holds a point, a direction and the radius over the least one."""
-    origin, axis = x[:3], x[3:6] / np.linalg.norm(x[3:6])
+    origin = x[:3]
+    axis = x[3:6] / np.linalg.norm(x[3:6])
     along = (points - origin) @ axis
     across = np.linalg.norm(points - origin - along[:, np.newaxis] * axis, axis=1)
     radius = float(across.max() * max(x[6], 1.0)) + 1e-9
     cap = np.sqrt(radius**2 - across**2)
-    low, high = float((along + cap).min()), float((along - cap).max())
+    low = float((along + cap).min())
+    high = float((along - cap).max())
     if low > high:  # any point between them is the middle of a sphere that holds all
         low = high = 0.5 * (low + high)
     return origin + low * axis, origin + high * axis, radius
 
 
-def _volume(a: Array, b: Array, radius: float) -> float:
+def _volume(a: checks.Array, b: checks.Array, radius: float) -> float:
     return float(np.pi * radius**2 * (np.linalg.norm(b - a) + 4.0 / 3.0 * radius))
 
 
-def _corners(shape: coal.CollisionGeometry) -> Array:
+def _corners(shape: coal.CollisionGeometry) -> checks.Array:
     """List points whose convex hull holds a shape, (k, 3) [m]."""
     if isinstance(shape, coal.Cylinder):
         turns = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
@@ -298,12 +326,10 @@ def _corners(shape: coal.CollisionGeometry) -> Array:
         return _corners(coal.Cylinder(shape.radius, 2.0 * (shape.halfLength + shape.radius)))
     if hasattr(shape, "vertices"):
         return np.array(shape.vertices(), dtype=np.float64)
-    half = np.array(shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3)
-    signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
-    corners: Array = signs * half
-    return corners
+    half = shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3
+    return Box(center=(0.0, 0.0, 0.0), half_extents=tuple(half)).points
 
 
-def _vector(point: Array) -> checks.Vector3:
-    x, y, z = point.tolist()
-    return x, y, z
+def _rounded(point: checks.Vector3) -> list[float]:
+    """Round to micrometers."""
+    return [round(x, 6) + 0.0 for x in point]  # no -0.0

@@ -11,9 +11,6 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.checks import Array, finite_array, instance, read_only
 from iiwa_dnn.robot.robot import Robot
 
-_WORLD_AXES = pin.LOCAL_WORLD_ALIGNED
-_jacobian, _place_frame = pin.computeFrameJacobian, pin.updateFramePlacement
-
 
 class FrameState:
     """Pose and Jacobian of a frame, read-only."""
@@ -21,7 +18,8 @@ class FrameState:
     __slots__ = ("_jacobian", "_pose")
 
     def __init__(self, pose: Array, jacobian: Array) -> None:
-        self._pose, self._jacobian = pose, jacobian
+        self._pose = pose
+        self._jacobian = jacobian
 
     @property
     def pose(self) -> Array:
@@ -68,17 +66,12 @@ class Configuration(FrameState):
     _inertia: Array | None
 
     def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
-        vector = _joint_vector(q, instance("robot", robot, Robot).q_lower.shape)
-        self._robot, self._q, self._data, self._inertia = robot, vector, data, None
-        self._pose, self._jacobian = _kinematics(robot, vector, data, robot.tip_id)
-
-    @classmethod
-    def from_checked(cls, robot: Robot, q: Array, data: pin.Data | None = None) -> Configuration:
-        """Make a configuration over an array ``q`` (n,) that is neither copied nor checked."""
-        conf = cls.__new__(cls)
-        conf._robot, conf._q, conf._data, conf._inertia = robot, q, data, None
-        conf._pose, conf._jacobian = _kinematics(robot, q, data, robot.tip_id)
-        return conf
+        shape = instance("robot", robot, Robot).q_lower.shape
+        self._robot = robot
+        self._q = finite_array("q", q, shape).copy()  # not read-only, for compiled code
+        self._data = data
+        self._inertia = None
+        super().__init__(*_kinematics(robot, self._q, data, robot.tip_id))
 
     @property
     def arrays(self) -> tuple[Array, Array, Array]:
@@ -140,23 +133,12 @@ class Configuration(FrameState):
         return Configuration, (self._robot, self._q)
 
 
-def _joint_vector(q: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """Return a checked copy of joint positions, which is not protected."""
-    try:
-        vector = np.array(q, np.float64)
-        if vector.shape == shape and np.isfinite(vector).all():
-            return vector
-    except (TypeError, ValueError):
-        pass
-    return finite_array("q", q, shape)  # slower, and raises
-
-
 def _kinematics(robot: Robot, q: Array, data: pin.Data, index: int) -> tuple[Array, Array]:
     """Compute pose (4, 4) and Jacobian (6, n) of a frame."""
     model = robot.model
     data = model.createData() if data is None else data
     # Both results are new arrays, not views of the scratch memory. The first call has placed the
     # joints, so the second need not run over the chain again.
-    jacobian = _jacobian(model, data, q, index, _WORLD_AXES)
-    pose = _place_frame(model, data, index).homogeneous
-    return pose, jacobian if jacobian.ndim == 2 else jacobian[:, None]  # (6,) for a single joint
+    jacobian = pin.computeFrameJacobian(model, data, q, index, pin.LOCAL_WORLD_ALIGNED)
+    pose = pin.updateFramePlacement(model, data, index).homogeneous
+    return pose, jacobian.reshape(6, -1)  # (6,) for a single joint

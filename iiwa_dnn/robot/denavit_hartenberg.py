@@ -59,23 +59,29 @@ def robot_from_dh(
     checks.one_of("convention", convention, ("standard", "modified"))
     rows = checks.finite_array("table", table, (-1, 4))
     slides = set(prismatic)
-    if not len(rows) or not slides <= set(range(1, len(rows) + 1)):
-        problem = f"has {len(rows)} rows for prismatic joints {sorted(slides)}"
-        raise InvalidInputError("table", problem, table)
+    if not len(rows):
+        raise InvalidInputError("table", "has 0 rows", table)
+    if not slides <= set(range(1, len(rows) + 1)):
+        problem = f"must be numbers from 1 to {len(rows)}, not {sorted(slides)}"
+        raise InvalidInputError("prismatic", problem, prismatic)
     model = pin.Model()
     model.name = name
     model.addFrame(pin.Frame("base", 0, pin.SE3.Identity(), pin.FrameType.BODY))
-    joint, behind, still = 0, pin.SE3.Identity(), pin.SE3.Identity()
+    joint = 0
+    behind = pin.SE3.Identity()
     for i, (a, alpha, d, theta) in enumerate(rows, 1):
         across = pin.SE3(pin.utils.rotate("x", alpha), np.array([a, 0.0, 0.0]))
         along = pin.SE3(pin.utils.rotate("z", theta), np.array([0.0, 0.0, d]))
         # The joint moves about or along z, like `along`, and may come after it.
-        before, after = (along, across) if convention == "standard" else (across * along, still)
+        if convention == "standard":
+            before = behind * along
+            behind = across
+        else:
+            before = across * along
         kind = pin.JointModelPZ() if i in slides else pin.JointModelRZ()
-        joint = model.addJoint(joint, kind, behind * before, f"joint_{i}")
+        joint = model.addJoint(joint, kind, before, f"joint_{i}")
         model.addJointFrame(joint)
-        model.addFrame(pin.Frame(f"link_{i}", joint, after, pin.FrameType.BODY))
-        behind = after
-    free = np.full(len(rows), np.inf)
-    robot = Robot(name, model, f"link_{len(rows)}", -free, free, free)
+        model.addFrame(pin.Frame(f"link_{i}", joint, behind, pin.FrameType.BODY))
+    unlimited = np.full(len(rows), np.inf)
+    robot = Robot(name, model, f"link_{len(rows)}", -unlimited, unlimited, unlimited)
     return robot.with_limits(lower, upper, velocity)

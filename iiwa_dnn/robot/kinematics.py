@@ -37,29 +37,28 @@ class Kinematics:
             NotFoundError: The robot has no frame of that name.
         """
         self.robot = robot
-        self._model, self._data = robot.model, robot.model.createData()
+        self._data = robot.model.createData()
         ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
         self.frame_ids = tuple(dict.fromkeys(ids))
-        self._ids: dict[str, int] = {}
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.
         self.jacobian: Array = self._data.J.T.reshape(robot.dof, 6)
         self.inertia: Array = self._data.M.reshape(robot.dof, robot.dof)
-        self.placements = _placements(self._data)
+        self.placements = _placements(robot.model, self._data)
         self.moves: Array = robot.moves
 
     @property
     def pinocchio(self) -> tuple[pin.Model, pin.Data, int, tuple[int, ...]]:
         """Model, data, the tip's frame index and the others', for a loop that calls them itself."""
-        return self._model, self._data, self.frame_ids[0], self.frame_ids[1:]
+        return self.robot.model, self._data, self.frame_ids[0], self.frame_ids[1:]
 
     def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
-        model, data = self._model, self._data
+        model = self.robot.model
         if self._dynamics:
-            pin.crba(model, data, q)
-        pin.computeJointJacobians(model, data, q)
-        pin.updateFramePlacements(model, data)  # no slower than one of them
+            pin.crba(model, self._data, q)
+        pin.computeJointJacobians(model, self._data, q)
+        pin.updateFramePlacements(model, self._data)  # no slower than one of them
 
     def frame(self, name: str) -> tuple[Array, Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.
@@ -69,13 +68,10 @@ class Kinematics:
         Raises:
             NotFoundError: The robot has no frame of that name.
         """
-        model, data = self._model, self._data
-        if name not in self._ids:
-            self._ids[name] = self.robot.frame_id(name)
-        index = self._ids[name]
-        place = pin.updateFramePlacement(model, data, index)
-        jacobian = pin.getFrameJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)
-        return place.homogeneous, jacobian
+        model = self.robot.model
+        index = self.robot.frame_id(name)
+        pose = pin.updateFramePlacement(model, self._data, index).homogeneous
+        return pose, pin.getFrameJacobian(model, self._data, index, pin.LOCAL_WORLD_ALIGNED)
 
     def support(self, index: int) -> NDArray[np.int64]:
         """Return 1 for each joint that moves a frame and 0 for the others, (n,)."""
@@ -83,14 +79,12 @@ class Kinematics:
         return support
 
 
-def _placements(data: pin.Data) -> Array:
-    """All frame placements as one array, (frames, 12): Pinocchio keeps them one after the other."""
-    rotations = [place.rotation for place in data.oMf]
-    starts = [rotation.__array_interface__["data"][0] for rotation in rotations]
-    step = 8 * _PLACEMENT
-    offset = data.oMf[0].translation.__array_interface__["data"][0] - starts[0]
-    expected = [starts[0] + step * i for i in range(len(starts))]
-    if starts != expected or offset != 72 or rotations[0].strides != (8, 24):
+def _placements(model: pin.Model, data: pin.Data) -> Array:
+    """View all frame placements as one array, (frames, 12): Pinocchio keeps them in one block."""
+    shape = (model.nframes, _PLACEMENT)
+    view: Array = np.lib.stride_tricks.as_strided(data.oMf[0].rotation, shape, (8 * _PLACEMENT, 8))
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    copies = [np.append(pose.rotation.T, pose.translation) for pose in data.oMf]
+    if not np.array_equal(view, copies):
         raise RuntimeError("this build of Pinocchio keeps its frame placements in another way")
-    shape, strides = (len(starts), _PLACEMENT), (step, 8)
-    return np.lib.stride_tricks.as_strided(rotations[0], shape, strides)
+    return view

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.arms import ARMS, RATES
+from iiwa_dnn.robot.arms import ARMS, RATES, Arm
 from iiwa_dnn.robot.robot import Mimic, Robot
 
 _Joints = dict[str, ET.Element]
@@ -36,7 +36,7 @@ def package_robots() -> tuple[str, ...]:
 def load_robot(
     name_or_path: str | os.PathLike[str],
     tip: str | None = None,
-    locked: Iterable[str] = (),
+    locked: str | Iterable[str] = (),
     verify: bool = False,
     tool: pin.SE3 | ArrayLike | None = None,
     mobile: bool = False,
@@ -69,29 +69,37 @@ def load_robot(
         MissingDependencyError: If the arm of that name, or the second reader, is in a package that
             is not installed.
     """
-    arm = ARMS.get(name_or_path) if isinstance(name_or_path, str) else None
-    path = _find(name_or_path) if arm is None else arm.path
+    path, arm = _find(name_or_path)
     mobile = mobile or (arm is not None and arm.mobile)
     root = urdf.read(path, mobile)
     full = urdf.build_model(path, root)
-    if not isinstance(locked, Iterable):
-        raise InvalidInputError("locked", f"must be names of joints, not {locked!r}", locked)
-    chosen = (locked,) if isinstance(locked, str) else tuple(locked)
-    frozen = tuple(dict.fromkeys((*(_still(full, arm.tip) if arm is not None else ()), *chosen)))
+    frozen = _frozen_joints(full, arm, locked)
     # Not the locked model: Pinocchio's reduction loses which frame a locked joint hangs on.
     if tip is None:
-        tip = root.get("tip") or _default_tip(full) if arm is None else arm.tip
+        tip = _default_tip(root, full) if arm is None else arm.tip
     model, q_locked = _lock(full, frozen)
     joints = {joint.get("name", ""): joint for joint in root.findall("joint")}
     lower, upper, velocity = _limits(path, model, joints)
     # By the name it was asked for: the URDFs call some of these arms otherwise.
     name = model.name if arm is None else str(name_or_path)
-    robot = Robot(name, model, tip, lower, upper, velocity, frozen, path, q_locked, mobile=mobile)
+    robot = Robot(
+        name,
+        model,
+        tip,
+        lower,
+        upper,
+        velocity,
+        frozen,
+        path,
+        q_locked,
+        mobile=mobile,
+        urdf=urdf.text_of(root),
+    )
     if name in RATES and len(RATES[name][0]) == robot.dof:
         robot = robot.with_limits(acceleration=RATES[name][0], jerk=RATES[name][1])
     robot = replace(robot, mimics=_mimics(robot, joints))
     if verify:
-        from iiwa_dnn.robot.verification import verify_robot  # slow to import
+        from iiwa_dnn.robot.verification import verify_robot  # of an extra
 
         verify_robot(robot)
     return robot if tool is None else robot.with_tool(tool)
@@ -104,24 +112,26 @@ def robots_folder() -> Path:
     return inside if inside.is_dir() else here.parent / "robots"
 
 
-def _find(name_or_path: str | os.PathLike[str]) -> Path:
-    """Find the URDF file of a robot that is not one of `ARMS`."""
+def _find(name_or_path: str | os.PathLike[str]) -> tuple[Path, Arm | None]:
+    """Find the URDF file of a robot, and the further facts if it is one of `ARMS`."""
     if not isinstance(name_or_path, str | os.PathLike):
         raise InvalidInputError("name_or_path", "must be a robot's name or a path", name_or_path)
-    text = os.fspath(name_or_path)
-    if (
-        isinstance(name_or_path, os.PathLike)
-        or text.endswith((".urdf", ".xacro", ".xml"))
-        or {"/", os.sep} & set(text)
-    ):
-        return Path(text)
-    if text not in (available := package_robots()):
-        raise NotFoundError("robot", text, (*available, *ARMS))
-    return robots_folder() / text / f"{text}.urdf"
+    name = os.fspath(name_or_path)
+    is_file = isinstance(name_or_path, os.PathLike) or name.endswith((".urdf", ".xacro", ".xml"))
+    if is_file or "/" in name or os.sep in name:
+        return Path(name), None
+    if name in ARMS:
+        return ARMS[name].path, ARMS[name]
+    available = package_robots()
+    if name not in available:
+        raise NotFoundError("robot", name, (*available, *ARMS))
+    return robots_folder() / name / f"{name}.urdf", None
 
 
-def _default_tip(model: pin.Model) -> str:
-    """Name the link at the end of the chain; refuse a robot with several ends."""
+def _default_tip(root: ET.Element, model: pin.Model) -> str:
+    """Name the tip of the file, else the link at the end of the chain, if there is only one."""
+    if "tip" in root.attrib:
+        return root.attrib["tip"]
     parents = {frame.parentFrame for frame in model.frames}
     frames = enumerate(model.frames)
     ends = [f.name for i, f in frames if f.type == pin.FrameType.BODY and i not in parents]
@@ -130,59 +140,69 @@ def _default_tip(model: pin.Model) -> str:
     return str(ends[0])
 
 
-def _still(model: pin.Model, tip: str) -> list[str]:
-    """List the joints that do not move a frame."""
-    frame = model.frames[model.getFrameId(tip, pin.FrameType.BODY)]
-    moving = set(model.supports[frame.parentJoint])
-    return [name for i, name in enumerate(model.names) if i not in moving]
+def _frozen_joints(
+    model: pin.Model, arm: Arm | None, locked: str | Iterable[str]
+) -> tuple[str, ...]:
+    """List the joints to freeze, each once: those that do not move an arm's tip, then `locked`."""
+    if not isinstance(locked, Iterable):
+        raise InvalidInputError("locked", f"must be names of joints, not {locked!r}", locked)
+    chosen = [locked] if isinstance(locked, str) else list(locked)
+    for name in chosen:
+        if name not in tuple(model.names)[1:]:
+            raise NotFoundError("joint", name, tuple(model.names)[1:])
+    if arm is None:
+        return tuple(dict.fromkeys(chosen))
+    tip = model.frames[model.getFrameId(arm.tip, pin.FrameType.BODY)]
+    moving = set(model.supports[tip.parentJoint])
+    idle = [name for i, name in enumerate(model.names) if i not in moving]
+    return tuple(dict.fromkeys([*idle, *chosen]))
 
 
 def _lock(model: pin.Model, locked: tuple[str, ...]) -> tuple[pin.Model, tuple[float, ...]]:
     """Freeze joints at zero or the limit nearest to it; return model and frozen positions [rad]."""
-    names = tuple(model.names)
-    for name in locked:
-        if name not in names[1:]:
-            raise NotFoundError("joint", name, names[1:])
-    if len(locked) == len(names) - 1:
+    if len(locked) == model.njoints - 1:
         raise InvalidInputError("locked", "no joint is left to move", locked)
     # A zero position can lie outside the limits (the panda's joint 4): then the nearest limit.
     posture = np.clip(pin.neutral(model), model.lowerPositionLimit, model.upperPositionLimit)
-    frozen = [names.index(name) for name in locked]
+    frozen = [model.getJointId(name) for name in locked]
     # Planar and floating joints are at zero.
-    q_locked = [posture[model.idx_qs[i]] if model.nqs[i] == 1 else 0.0 for i in frozen]
+    q_locked = [float(posture[model.idx_qs[i]]) if model.nqs[i] == 1 else 0.0 for i in frozen]
     reduced = pin.buildReducedModel(model, frozen, posture) if locked else model
-    return reduced, tuple(map(float, q_locked))
+    return reduced, tuple(q_locked)
 
 
 def _mimics(robot: Robot, joints: _Joints) -> tuple[Mimic, ...]:
     """Find the joints that move the tip and follow another; that one must be free as well."""
-    model, found = robot.model, []
+    found = []
+    model = robot.model
     for index in list(model.supports[model.frames[robot.tip_id].parentJoint])[1:]:
         name = model.names[index]
-        if (mimic := joints[name].find("mimic")) is None:
+        mimic = joints[name].find("mimic")
+        if mimic is None:
             continue
-        leader, ratio, offset = (mimic.get(key) for key in ("joint", "multiplier", "offset"))
+        leader = mimic.get("joint", "")
         if leader not in robot.joint_names:
             problem = f"joint {name!r} follows {leader!r} (<mimic>), which is locked: lock it too"
             raise InvalidInputError("locked", problem, name)
-        found.append(Mimic(name, str(leader), float(ratio or 1.0), float(offset or 0.0)))
+        multiplier = float(mimic.get("multiplier", 1.0))
+        found.append(Mimic(name, leader, multiplier, float(mimic.get("offset", 0.0))))
     return tuple(found)
 
 
 def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[Array, Array, Array]:
     """Read lower, upper and velocity limits, each (n,); infinite where the URDF gives none."""
-    lower, upper = model.lowerPositionLimit.copy(), model.upperPositionLimit.copy()
+    lower = model.lowerPositionLimit.copy()
+    upper = model.upperPositionLimit.copy()
     velocity = model.velocityLimit.copy()
     for i, name in enumerate(tuple(model.names)[1:]):
         if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:  # q and its velocity differ in kind
-            problem = (
-                f"joint {name!r} is {joints[name].get('type')}; only joints with one coordinate "
-                "are supported: lock it"
-            )
-            raise InvalidInputError("locked", problem, name)
+            kind = joints[name].get("type")
+            problem = f"joint {name!r} is {kind}; only joints with one coordinate are supported"
+            raise InvalidInputError("locked", f"{problem}: lock it", name)
         limit = joints[name].find("limit")
         if limit is None or not {"lower", "upper"} & set(limit.keys()):
-            lower[i], upper[i] = -np.inf, np.inf
+            lower[i] = -np.inf
+            upper[i] = np.inf
         if not lower[i] < upper[i]:
             raise FileError(path, f"joint {name!r}: lower limit {lower[i]} is not below {upper[i]}")
         if not velocity[i] >= 0.0:

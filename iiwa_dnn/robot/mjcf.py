@@ -14,8 +14,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.robot.offscreen import import_mujoco
+from iiwa_dnn.robot.urdf import set_origin, words
 
 
 def as_urdf(path: Path) -> ET.Element:
@@ -32,107 +34,90 @@ def as_urdf(path: Path) -> ET.Element:
     except ValueError as error:
         raise FileError(path, f"MuJoCo refuses it: {str(error).partition(chr(10))[0]}") from error
     root = ET.Element("robot", name=path.stem)
-    names = [model.body(i).name or f"body_{i}" for i in range(model.nbody)]
-    for body, name in enumerate(names):
-        link = _link(root, name)
-        if body == 0:
-            continue
-        place = _pose(model.body_ipos[body], model.body_iquat[body])
-        _inertial(link, place, model.body_mass[body], model.body_inertia[body].tolist())
-        parent = names[model.body_parentid[body]]
-        place = _pose(model.body_pos[body], model.body_quat[body])
-        first = model.body_jntadr[body]
-        for joint in range(first, first + model.body_jntnum[body]):
-            anchor = model.jnt_pos[joint]
-            before = f"{name}_at_{model.joint(joint).name or joint}"
-            _joint(root, mj, model, path, joint, parent, before, place * pin.SE3(np.eye(3), anchor))
+    bodies = [model.body(i) for i in range(model.nbody)]
+    names = [body.name or f"body_{body.id}" for body in bodies]
+    links = [ET.SubElement(root, "link", name=name) for name in names]
+    for body, name, link in list(zip(bodies, names, links, strict=True))[1:]:
+        _add_inertial(link, _pose(body.ipos, body.iquat), body.mass[0], body.inertia)
+        parent = names[body.parentid[0]]
+        pose = _pose(body.pos, body.quat)
+        for index in range(body.jntadr[0], body.jntadr[0] + body.jntnum[0]):
+            joint = model.joint(index)
+            between = f"{name}_at_{joint.name or index}"
+            anchored = pose * pin.SE3(np.eye(3), joint.pos)
+            element = _add_joint(root, joint.name or f"joint_{index}", parent, between, anchored)
+            _set_motion(mj, model, path, joint, element)
             # MuJoCo wants all that moves to have mass.
-            _inertial(_link(root, before), pin.SE3.Identity(), 1e-6, [1e-9] * 3)
-            parent, place = before, pin.SE3(np.eye(3), -anchor)
-        _fix(root, f"{name}_fixed", parent, name, place)
-    for geom in range(model.ngeom):
-        _shape(root, mj, model, geom, names)
+            light = ET.SubElement(root, "link", name=between)
+            _add_inertial(light, pin.SE3.Identity(), 1e-6, np.full(3, 1e-9))
+            parent = between
+            pose = pin.SE3(np.eye(3), -joint.pos)
+        _add_joint(root, f"{name}_fixed", parent, name, pose)
+    for index in range(model.ngeom):
+        geom = model.geom(index)
+        if geom.bodyid[0] != 0:
+            _add_shape(mj, geom, links[geom.bodyid[0]])
     return root
 
 
-def _link(root: ET.Element, name: str) -> ET.Element:
-    return ET.SubElement(root, "link", name=name)
-
-
-def _fix(root: ET.Element, name: str, parent: str, child: str, place: pin.SE3) -> ET.Element:
-    """Add a joint between two links, fixed for the time being."""
+def _add_joint(root: ET.Element, name: str, parent: str, child: str, pose: pin.SE3) -> ET.Element:
+    """Add a fixed joint between two links."""
     joint = ET.SubElement(root, "joint", name=name, type="fixed")
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)
-    _origin(joint, place)
+    set_origin(joint, pose)
     return joint
 
 
-def _joint(
-    root: ET.Element, mj: Any, model: Any, path: Path, joint: int, parent: str, child: str,
-    place: pin.SE3,
-) -> None:  # fmt: skip
-    """Add a hinge or slide with its limits."""
-    name, at = model.joint(joint).name or f"joint_{joint}", model.jnt_qposadr[joint]
+def _set_motion(mj: Any, model: Any, path: Path, joint: Any, element: ET.Element) -> None:
+    """Make a fixed joint a hinge or slide with its axis and limits."""
     kinds = {mj.mjtJoint.mjJNT_HINGE.value: "revolute", mj.mjtJoint.mjJNT_SLIDE.value: "prismatic"}
-    kind = kinds.get(int(model.jnt_type[joint]))
-    if kind is None or model.qpos0[at] != 0.0:
-        problem = "is no hinge or slide" if kind is None else f"begins at {model.qpos0[at]:g}"
+    kind = kinds.get(int(joint.type[0]))
+    if kind is None or joint.qpos0[0] != 0.0:
+        problem = "is no hinge or slide" if kind is None else f"begins at {joint.qpos0[0]:g}"
+        name = element.get("name")
         raise FileError(path, f"joint {name!r} {problem}, which is not supported")
-    element = _fix(root, name, parent, child, place)
     element.set("type", kind)
-    ET.SubElement(element, "axis", xyz=_words(model.jnt_axis[joint]))
-    motors = (model.actuator_trnid[:, 0] == joint) & (
-        model.actuator_trntype == mj.mjtTrn.mjTRN_JOINT.value
-    )
+    ET.SubElement(element, "axis", xyz=words(joint.axis))
+    on_joints = model.actuator_trntype == mj.mjtTrn.mjTRN_JOINT.value
+    motors = on_joints & (model.actuator_trnid[:, 0] == joint.id)
     force = np.abs(model.actuator_forcerange[motors]).max(initial=0.0)
-    limit = ET.SubElement(element, "limit", effort=repr(float(force)), velocity="0")
-    if model.jnt_limited[joint]:
-        for key, value in zip(("lower", "upper"), model.jnt_range[joint].tolist(), strict=True):
-            limit.set(key, repr(value))
+    limit = ET.SubElement(element, "limit", effort=words([force]), velocity="0")
+    if joint.limited[0]:
+        limit.set("lower", words(joint.range[:1]))
+        limit.set("upper", words(joint.range[1:]))
 
 
-def _inertial(link: ET.Element, place: pin.SE3, mass: float, moments: list[float]) -> None:
+def _add_inertial(link: ET.Element, pose: pin.SE3, mass: float, moments: Array) -> None:
     inertial = ET.SubElement(link, "inertial")
-    _origin(inertial, place)
-    ET.SubElement(inertial, "mass", value=repr(float(mass)))
-    numbers = dict(zip(("ixx", "iyy", "izz"), map(repr, moments), strict=True))
-    ET.SubElement(inertial, "inertia", dict.fromkeys(("ixy", "ixz", "iyz"), "0") | numbers)
+    set_origin(inertial, pose)
+    ET.SubElement(inertial, "mass", value=words([mass]))
+    xx, yy, zz = words(moments).split()
+    ET.SubElement(inertial, "inertia", ixx=xx, iyy=yy, izz=zz, ixy="0", ixz="0", iyz="0")
 
 
-def _shape(root: ET.Element, mj: Any, model: Any, geom: int, names: list[str]) -> None:
-    """Add a primitive to its link, for the eye, and where it can collide for that too."""
-    kinds, size = mj.mjtGeom, model.geom_size[geom]
-    tall = {"radius": repr(float(size[0])), "length": repr(2.0 * float(size[1]))}
+def _add_shape(mj: Any, geom: Any, link: ET.Element) -> None:
+    """Add a primitive to its link as a visual and, where it can collide, as a collision shape."""
+    radius = words(geom.size[:1])
+    length = words(2.0 * geom.size[1:2])
     shapes = {
-        kinds.mjGEOM_SPHERE.value: ("sphere", {"radius": repr(float(size[0]))}),
-        kinds.mjGEOM_CYLINDER.value: ("cylinder", tall),
-        kinds.mjGEOM_CAPSULE.value: ("cylinder", tall),
-        kinds.mjGEOM_BOX.value: ("box", {"size": _words(2.0 * size)}),
+        mj.mjtGeom.mjGEOM_SPHERE: ("sphere", {"radius": radius}),
+        mj.mjtGeom.mjGEOM_CYLINDER: ("cylinder", {"radius": radius, "length": length}),
+        mj.mjtGeom.mjGEOM_CAPSULE: ("cylinder", {"radius": radius, "length": length}),
+        mj.mjtGeom.mjGEOM_BOX: ("box", {"size": words(2.0 * geom.size)}),
     }
-    body, form = int(model.geom_bodyid[geom]), int(model.geom_type[geom])
-    if body == 0 or form not in shapes:
+    form = mj.mjtGeom(geom.type[0])
+    if form not in shapes:
         return
-    kind, numbers = shapes[form]
-    link = next(link for link in root.findall("link") if link.get("name") == names[body])
-    for use in ("visual", "collision") if model.geom_contype[geom] else ("visual",):
+    for use in ("visual", "collision") if geom.contype[0] else ("visual",):
         element = ET.SubElement(link, use)
-        _origin(element, _pose(model.geom_pos[geom], model.geom_quat[geom]))
-        ET.SubElement(ET.SubElement(element, "geometry"), kind, numbers)
+        set_origin(element, _pose(geom.pos, geom.quat))
+        ET.SubElement(ET.SubElement(element, "geometry"), *shapes[form])
         if use == "visual":
-            material = ET.SubElement(element, "material", name=f"geom_{geom}")
-            ET.SubElement(material, "color", rgba=_words(model.geom_rgba[geom]))
+            material = ET.SubElement(element, "material", name=f"geom_{geom.id}")
+            ET.SubElement(material, "color", rgba=words(geom.rgba))
 
 
-def _pose(position: ArrayLike, quaternion: Any) -> pin.SE3:
-    w, x, y, z = map(float, quaternion)
-    return pin.SE3(pin.Quaternion(w, x, y, z).matrix(), np.array(position))
-
-
-def _origin(element: ET.Element, place: pin.SE3) -> None:
-    turn = _words(pin.rpy.matrixToRpy(place.rotation))
-    ET.SubElement(element, "origin", xyz=_words(place.translation), rpy=turn)
-
-
-def _words(numbers: Any) -> str:
-    return " ".join(map(repr, np.asarray(numbers, dtype=float).tolist()))
+def _pose(position: ArrayLike, quaternion: Array) -> pin.SE3:
+    """Convert a position [m] and a quaternion, its scalar first, to a pose."""
+    return pin.SE3(pin.Quaternion(*quaternion.tolist()).matrix(), np.array(position))

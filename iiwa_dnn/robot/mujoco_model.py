@@ -5,28 +5,25 @@ Facts that a URDF does not hold are added here: torque motors, joint damping, ro
 pairs of links that can collide. MuJoCo is imported only when a model is built (extra ``sim``).
 """
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.offscreen import import_mujoco
-from iiwa_dnn.robot.robot import Robot, tree_of
+from iiwa_dnn.robot.robot import Robot, urdf_of
 
-if TYPE_CHECKING:
-    import mujoco
+TIP_SITE = "tip"
+"""Name of the site at the tip frame."""
 
-TIP_SITE, VISUAL_GROUP = "tip", 1
-"""Name of the site at the tip frame, and the geometry group of the URDF's <visual> shapes."""
+VISUAL_GROUP = 1
+"""Geometry group of the URDF's <visual> shapes."""
 
 # Links whose collision shapes can really meet (the others are neighbours, or stay apart by design
 # although the capsules around them overlap). Robots that are not named here collide with nothing.
@@ -52,13 +49,13 @@ class JointDynamics:
         checks.not_negative("armature", self.armature)
 
 
-def torque_limits(robot: Robot) -> NDArray[np.float64]:
+def torque_limits(robot: Robot) -> checks.Array:
     """Return the torque limits of the URDF [N m], (n,); inf where it gives none."""
     return np.where(robot.model.effortLimit > 0.0, robot.model.effortLimit, np.inf)
 
 
-def build_spec(robot: Robot) -> mujoco.MjSpec:
-    """Describe a robot to MuJoCo: its URDF, a torque motor on each joint, its collision pairs.
+def build_spec(robot: Robot) -> Any:
+    """Make MuJoCo's ``MjSpec`` of a robot: its URDF, a torque motor a joint, its collision pairs.
 
     Locked joints are welded. The mechanical stops are the URDF's: the robot's own position limits
     are a matter of the controller. Body 0 is the world; every link is a body of its own,
@@ -67,9 +64,9 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
     Raises:
         MissingDependencyError: If MuJoCo is not installed.
         InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
-        FileError: If the file cannot be read any more.
     """
-    mj, root = import_mujoco(), tree_of(robot)
+    mj = import_mujoco()
+    root = ET.fromstring(urdf_of(robot))
     urdf.weld(root, dict(zip(robot.locked, robot.q_locked, strict=True)))
     urdf.drop_meshes(root)
     urdf.mend_inertias(root)
@@ -86,8 +83,10 @@ def build_spec(robot: Robot) -> mujoco.MjSpec:
     for name, limit in zip(robot.joint_names, torque_limits(robot), strict=True):
         motor = spec.add_actuator(name=name, target=name, trntype=mj.mjtTrn.mjTRN_JOINT)
         if np.isfinite(limit):
-            motor.ctrllimited, motor.ctrlrange = True, [-limit, limit]
-            motor.forcelimited, motor.forcerange = True, [-limit, limit]
+            motor.ctrllimited = True
+            motor.ctrlrange = [-limit, limit]
+            motor.forcelimited = True
+            motor.forcerange = [-limit, limit]
     # The site of the tip hangs on the body of the joint that carries Pinocchio's frame.
     frame = robot.model.frames[robot.tip_id]
     x, y, z, w = pin.Quaternion(frame.placement.rotation).coeffs()
@@ -103,15 +102,16 @@ def compile_model(
     robot: Robot,
     timestep: float,
     dynamics: JointDynamics | None = None,
-    friction: NDArray[np.float64] | None = None,
-    mass_factors: NDArray[np.float64] | None = None,
-) -> mujoco.MjModel:
-    """Compile a robot (`build_spec`) for steps of so long [s], with an implicit method for damping.
+    friction: checks.Array | None = None,
+    mass_factors: checks.Array | None = None,
+) -> Any:
+    """Compile MuJoCo's ``MjModel`` of a robot (`build_spec`) with an implicit method for damping.
 
     Drives without `dynamics` have the estimates, joints Coulomb friction (n,) [N m]; masses and
     inertias of the links that each joint carries are multiplied by `mass_factors` (n,).
     """
-    mj, spec = import_mujoco(), build_spec(robot)
+    mj = import_mujoco()
+    spec = build_spec(robot)
     dynamics = JointDynamics() if dynamics is None else dynamics
     spec.option.timestep = timestep
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST

@@ -12,8 +12,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, suggestion
 from iiwa_dnn.files import one_line
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Motion = Callable[[float], ArrayLike]
 
 
@@ -36,11 +34,10 @@ class Obstacle(ABC):
     speed: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in {"center", "a", "b", "half_extents"} & vars(self).keys():
+        for name in {"center", "a", "b", "half_extents", "velocity"} & vars(self).keys():
             self._set(name, checks.vector3(name, getattr(self, name)))
         if hasattr(self, "radius"):
             checks.positive("radius", self.radius)
-        self._set("velocity", checks.vector3("velocity", self.velocity))
         own = float(np.linalg.norm(self.velocity))
         self._set("speed", max(own, checks.not_negative("speed", self.speed)))
         if self.motion is not None and (own > 0.0 or not self.speed > 0.0):
@@ -54,7 +51,7 @@ class Obstacle(ABC):
 
     @property
     @abstractmethod
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """Points whose convex hull, grown by `thickness`, is the shape at time 0 [m], (k, 3)."""
 
     @property
@@ -62,7 +59,7 @@ class Obstacle(ABC):
         """Radius by which the hull of `points` is grown [m]."""
         return float(getattr(self, "radius", 0.0))
 
-    def shift(self, t: float) -> Vector:
+    def shift(self, t: float) -> checks.Array:
         """Return the displacement at a time [s], (3,) [m]."""
         if self.motion is None:
             return t * np.asarray(self.velocity)
@@ -92,7 +89,7 @@ class Sphere(Obstacle):
     radius: float
 
     @property
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """The middle, (1, 3)."""
         return np.array([self.center])
 
@@ -112,7 +109,7 @@ class Capsule(Obstacle):
     radius: float
 
     @property
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """The ends, (2, 3)."""
         return np.array([self.a, self.b])
 
@@ -140,11 +137,13 @@ class Box(Obstacle):
             self._set("rotation", tuple(map(tuple, turn.tolist())))
 
     @property
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """The corners, (8, 3)."""
         signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
         axes = np.eye(3) if self.rotation is None else np.array(self.rotation)
-        corners: Matrix = np.asarray(self.center) + signs * np.asarray(self.half_extents) @ axes.T
+        corners: checks.Array = (
+            np.asarray(self.center) + signs * np.asarray(self.half_extents) @ axes.T
+        )
         return corners
 
 
@@ -166,7 +165,7 @@ class ConvexMesh(Obstacle):
         self._set("vertices", tuple(map(tuple, vertices.tolist())))
 
     @property
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """The vertices, (k, 3)."""
         return np.array(self.vertices)
 
@@ -191,7 +190,7 @@ class HalfSpace(Obstacle):
         checks.finite("offset", self.offset)
 
     @property
-    def points(self) -> Matrix:
+    def points(self) -> checks.Array:
         """A point of the boundary, (1, 3)."""
         return self.offset * np.array([self.normal])
 
@@ -209,35 +208,34 @@ def make_obstacle(table: dict[str, Any]) -> Obstacle:
     """
     values = dict(table)
     name = str(values.pop("shape", "")).replace("_", "").lower()
-    by_name = {shape.lower(): kind for shape, kind in SHAPES.items()}
-    if name not in by_name:
+    kind = next((kind for shape, kind in SHAPES.items() if shape.lower() == name), None)
+    if kind is None:
         raise InvalidInputError("shape", f"must be one of {', '.join(SHAPES)}, not {name!r}")
-    kind = by_name[name]
     known = {field.name for field in fields(kind)} - {"motion"}
-    if unknown := sorted(values.keys() - known):
-        problem = f"is no parameter of {kind.__name__}{suggestion(unknown[0], sorted(known))}"
-        raise InvalidInputError(unknown[0], problem)
+    for unknown in sorted(values.keys() - known):
+        problem = f"is no parameter of {kind.__name__}{suggestion(unknown, sorted(known))}"
+        raise InvalidInputError(unknown, problem)
     try:
         return kind(**values)
     except TypeError as error:
         raise InvalidInputError(kind.__name__, one_line(error).partition(" ")[2]) from error
 
 
-def outline(obstacle: Obstacle) -> tuple[Matrix, NDArray[np.int32]]:
+def outline(obstacle: Obstacle) -> tuple[checks.Array, NDArray[np.int32]]:
     """Return vertices (k, 3) [m] at time 0 and triangles (m, 3) of a shape, for pictures."""
     from scipy.spatial import ConvexHull  # slow to import
 
     points = obstacle.points
     if obstacle.thickness:
         rank = np.arange(800) + 0.5  # points spread evenly over a ball
-        turn, height = np.pi * (1.0 + 5.0**0.5) * rank, 1.0 - rank / 400.0
+        turn = np.pi * (1.0 + 5.0**0.5) * rank
+        height = 1.0 - rank / 400.0
         ring = np.sqrt(1.0 - height**2)
         ball = np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
         points = (points[:, np.newaxis] + obstacle.thickness * ball).reshape(-1, 3)
     hull = ConvexHull(points)
-    outside = np.cross(
-        *(points[hull.simplices[:, k]] - points[hull.simplices[:, 0]] for k in (1, 2))
-    )
-    inward = np.sum(outside * hull.equations[:, :3], axis=1) < 0.0
-    faces = np.where(inward[:, np.newaxis], hull.simplices[:, ::-1], hull.simplices)
-    return points, faces.astype(np.int32)
+    faces = hull.simplices.astype(np.int32)
+    a, b, c = points[faces].transpose(1, 0, 2)
+    inward = np.sum(np.cross(b - a, c - a) * hull.equations[:, :3], axis=1) < 0.0
+    faces[inward] = faces[inward, ::-1]
+    return points, faces

@@ -4,15 +4,16 @@ On Linux it is the library that the environment variable MUJOCO_GL names, else E
 or Mesa's software driver), else OSMesa (always in software). Physics needs none of them.
 """
 
-import ctypes
 import importlib
 import os
+import subprocess
 import sys
+from functools import cache
 from typing import Any
 
 from iiwa_dnn.errors import MissingDependencyError
 
-_EGL_PLATFORM_DEVICE = 0x313F
+_LIBRARIES = ("egl", "osmesa")
 _OPENGL_REMEDY = "on Debian and Ubuntu: apt-get install libosmesa6 (or, for EGL: libegl1 libgl1)"
 
 
@@ -29,7 +30,8 @@ def import_mujoco() -> Any:
         package = "the Python package mujoco"
         raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
     except Exception as error:  # whatever PyOpenGL meets where that library is not there
-        if (wanted := os.environ.get("MUJOCO_GL", "").lower()) not in ("egl", "osmesa"):
+        wanted = os.environ.get("MUJOCO_GL", "").lower()
+        if wanted not in _LIBRARIES:
             raise
         library = f"the OpenGL library that MUJOCO_GL={wanted} asks for"
         raise MissingDependencyError(library, _OPENGL_REMEDY) from error
@@ -46,13 +48,21 @@ def opengl_library() -> str:
     """
     if not sys.platform.startswith("linux"):
         return "gl_context"
-    libraries = {"egl": egl_works, "osmesa": osmesa_works}
     # PyOpenGL loads one library in a process, and MuJoCo sets the first of these to say which.
     wanted = [os.environ.get(name, "").lower() for name in ("PYOPENGL_PLATFORM", "MUJOCO_GL")]
-    for name in [name for name in wanted if name in libraries][:1] or libraries:
-        if libraries[name]():
-            return name
+    for library in [name for name in wanted if name in _LIBRARIES][:1] or _LIBRARIES:
+        if opens(library):
+            return library
     raise MissingDependencyError("an OpenGL library for pictures without a display", _OPENGL_REMEDY)
+
+
+@cache
+def opens(library: str) -> bool:
+    """Check, in a process of its own, that MuJoCo opens a context of ``"egl"`` or ``"osmesa"``."""
+    code = f"from mujoco.{library} import GLContext; GLContext(1, 1)"
+    environment = os.environ | {"MUJOCO_GL": library, "PYOPENGL_PLATFORM": library}
+    command = [sys.executable, "-c", code]
+    return not subprocess.run(command, env=environment, capture_output=True, check=False).returncode
 
 
 def open_context(width: int, height: int) -> Any:
@@ -65,38 +75,3 @@ def open_context(width: int, height: int) -> Any:
     context = importlib.import_module(f"mujoco.{opengl_library()}").GLContext(width, height)
     context.make_current()
     return context
-
-
-def egl_works() -> bool:
-    """Check that EGL opens a display on some device; a library without a driver does not."""
-    if not (_loads("libOpenGL.so.0") or _loads("libGL.so.1")) or not _loads("libEGL.so.1"):
-        return False
-    egl, pointer, number = ctypes.CDLL("libEGL.so.1"), ctypes.c_void_p, ctypes.c_uint
-    egl.eglGetProcAddress.restype = pointer
-    query = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
-    get_display = egl.eglGetProcAddress(b"eglGetPlatformDisplayEXT")
-    if not (query and get_display):
-        return False
-    devices, count = (pointer * 32)(), ctypes.c_int()
-    query = ctypes.CFUNCTYPE(number, ctypes.c_int, pointer, pointer)(query)
-    get_display = ctypes.CFUNCTYPE(pointer, number, pointer, pointer)(get_display)
-    if not query(len(devices), devices, ctypes.byref(count)):
-        return False
-    egl.eglInitialize.argtypes = [pointer] * 3
-    found = devices[: count.value]
-    displays = (get_display(_EGL_PLATFORM_DEVICE, device, None) for device in found)
-    # Left open: MuJoCo gets the same display and closes it.
-    return any(display and egl.eglInitialize(display, None, None) for display in displays)
-
-
-def osmesa_works() -> bool:
-    """Check that OSMesa is there; it needs neither a device nor a display."""
-    return _loads("libOSMesa.so.8") or _loads("libOSMesa.so")
-
-
-def _loads(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True

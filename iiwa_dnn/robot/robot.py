@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,15 +12,20 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
-from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import STARTS
 
 SINGULAR = 0.05
 """Smallest singular value of the tip's Jacobian below which a posture is no start."""
 
-_LIMITS = ("q_lower", "q_upper", "dq_max", "ddq_max", "dddq_max")
+_LIMITS = {
+    "q_lower": "lower",
+    "q_upper": "upper",
+    "dq_max": "velocity",
+    "ddq_max": "acceleration",
+    "dddq_max": "jerk",
+}
+"""Limits of a robot, and the arguments of `Robot.with_limits` that set them."""
 
 
 class Mimic(NamedTuple):
@@ -48,12 +51,13 @@ class Robot:
         q_upper: Upper joint position limits [rad], (n,); inf where there is none.
         dq_max: Joint velocity limits [rad/s], (n,); inf where there is none.
         locked: Names of the URDF's joints that were frozen on loading.
-        path: The URDF file, where the robot came from one.
+        path: The URDF file, where the robot came from one; it is read once, on loading.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
         ddq_max: Joint acceleration limits [rad/s^2], (n,); inf where there is none.
         dddq_max: Joint jerk limits [rad/s^3], (n,); inf where there is none.
         mobile: Whether the first three joints are a mobile base, which the file does not have.
         mimics: Joints between base and tip that follow others; schemes hold them to it.
+        urdf: Text of the URDF as it was read: includes, xacro and MJCF expanded.
         tip_id: Pinocchio's index of the tip frame.
         limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
@@ -65,18 +69,19 @@ class Robot:
     name: str
     model: pin.Model
     tip: str
-    q_lower: Array
-    q_upper: Array
-    dq_max: Array
+    q_lower: checks.Array
+    q_upper: checks.Array
+    dq_max: checks.Array
     locked: tuple[str, ...] = ()
     path: Path | None = None
     q_locked: tuple[float, ...] = ()
-    ddq_max: Array = field(default_factory=lambda: np.array(np.inf))
-    dddq_max: Array = field(default_factory=lambda: np.array(np.inf))
+    ddq_max: checks.Array = field(default_factory=lambda: np.array(np.inf))
+    dddq_max: checks.Array = field(default_factory=lambda: np.array(np.inf))
     mobile: bool = False
     mimics: tuple[Mimic, ...] = ()
+    urdf: str | None = None
     tip_id: int = field(init=False)
-    limits: Array = field(init=False)
+    limits: checks.Array = field(init=False)
 
     def __post_init__(self) -> None:
         tip_id = self.frame_id(self.tip)
@@ -89,7 +94,14 @@ class Robot:
         for name in _LIMITS:
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
         object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
-        _check_limits(vars(self), dict(zip(_LIMITS, _LIMITS, strict=True)))
+        for i in np.flatnonzero(self.q_lower >= self.q_upper):
+            lower, upper = self.limits[:2, i]
+            problem = f"joint {i + 1}: lower limit {lower:g} is not below upper limit {upper:g}"
+            raise InvalidInputError("q_lower", problem, (self.q_lower, self.q_upper))
+        for name in ("dq_max", "ddq_max", "dddq_max"):
+            limit = getattr(self, name)
+            for i in np.flatnonzero(limit <= 0.0):
+                raise InvalidInputError(name, f"joint {i + 1}: {limit[i]:g} is not above 0", limit)
 
     @property
     def dof(self) -> int:
@@ -104,12 +116,19 @@ class Robot:
     @property
     def frame_names(self) -> tuple[str, ...]:
         """Names of all frames, each once: the links, then the joints."""
-        frames = list(self.model.frames)[1:]
-        links = [frame.name for frame in frames if frame.type == pin.FrameType.BODY]
-        return tuple(dict.fromkeys(links + [frame.name for frame in frames]))
+        return tuple(self._frame_ids)
 
     @cached_property
-    def moves(self) -> Array:
+    def _frame_ids(self) -> dict[str, int]:
+        """Pinocchio's index of each frame: the link's, where a joint has the same name."""
+        frames = list(enumerate(self.model.frames))[1:]
+        ids: dict[str, int] = {}
+        for index, frame in sorted(frames, key=lambda each: each[1].type != pin.FrameType.BODY):
+            ids.setdefault(frame.name, index)
+        return ids
+
+    @cached_property
+    def moves(self) -> checks.Array:
         """Joints that move each frame, (frames, n), by Pinocchio's index of the frame: 1 or 0.
 
         For compiled code, so not protected.
@@ -125,11 +144,10 @@ class Robot:
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
         """
-        if self.model.existFrame(str(name), pin.FrameType.BODY):
-            return int(self.model.getFrameId(name, pin.FrameType.BODY))
-        if name not in self.frame_names:
+        index = self._frame_ids.get(str(name))
+        if index is None:
             raise NotFoundError("frame", str(name), self.frame_names)
-        return int(self.model.getFrameId(name))
+        return index
 
     def with_limits(
         self,
@@ -152,25 +170,24 @@ class Robot:
             InvalidInputError: If a limit is not a number, has a wrong length, is not below its
                 upper counterpart or, for a rate, is not above zero.
         """
-        names = {"q_lower": "lower", "q_upper": "upper", "dq_max": "velocity",
-                 "ddq_max": "acceleration", "dddq_max": "jerk"}  # fmt: skip
-        given = zip(names.items(), (lower, upper, velocity, acceleration, jerk), strict=True)
-        changed: dict[str, Any] = {
-            key: _limit(name, value, self.dof) for (key, name), value in given if value is not None
-        }
-        wrong = {"q_lower": "upper"} if lower is None else {}
-        _check_limits({**vars(self), **changed}, names | wrong)
-        return replace(self, **changed)
+        values = zip(_LIMITS, (lower, upper, velocity, acceleration, jerk), strict=True)
+        changed: dict[str, Any] = {name: value for name, value in values if value is not None}
+        try:
+            return replace(self, **changed)
+        except InvalidInputError as error:
+            crossed = error.argument == "q_lower" and lower is None
+            argument = "upper" if crossed else _LIMITS[error.argument]
+            raise InvalidInputError(argument, error.problem, error.value) from None
 
     def outside(self, q: ArrayLike) -> str:
         """Name the first joint of q (n,) [rad] that is off its limits, in words; "" if none is.
 
         A distance of 1e-9 beyond a limit is forgiven: a run may end there, and the next one begin.
         """
-        at = np.asarray(q)
-        for i in np.flatnonzero((at < self.q_lower - 1e-9) | (at > self.q_upper + 1e-9)):
+        q = np.asarray(q)
+        for i in np.flatnonzero((q < self.q_lower - 1e-9) | (q > self.q_upper + 1e-9)):
             limits = f"{self.q_lower[i]:g} and {self.q_upper[i]:g} rad"
-            return f"must be within {limits}: joint {i + 1} is at {at[i]:g}"
+            return f"must be within {limits}: joint {i + 1} is at {q[i]:g}"
         return ""
 
     def with_tool(self, tool: pin.SE3 | ArrayLike, name: str = "tool") -> Robot:
@@ -186,16 +203,16 @@ class Robot:
         """
         if name in self.frame_names:
             raise InvalidInputError("name", f"the robot has a frame {name!r} already", name)
-        place = tool
         if not isinstance(tool, pin.SE3):
-            numbers = checks.finite_array("tool", tool, (6,)).copy()
-            place = pin.SE3(pin.rpy.rpyToMatrix(numbers[3:]), numbers[:3])
-        model, tip = self.model.copy(), self.model.frames[self.tip_id]
-        at = (name, tip.parentJoint, self.tip_id, tip.placement * place, pin.FrameType.OP_FRAME)
-        model.addFrame(pin.Frame(*at))
+            xyz_rpy = checks.finite_array("tool", tool, (6,)).copy()
+            tool = pin.SE3(pin.rpy.rpyToMatrix(xyz_rpy[3:]), xyz_rpy[:3])
+        tip = self.model.frames[self.tip_id]
+        pose = tip.placement * tool
+        model = self.model.copy()
+        model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
         return replace(self, model=model, tip=name)
 
-    def start_posture(self) -> Array:
+    def start_posture(self) -> checks.Array:
         """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.
 
         A robot of a known name and number of joints starts from its known posture
@@ -213,24 +230,38 @@ class Robot:
         fits = known.size == self.dof and not self.mimics
         if fits and (self.q_lower < known).all() and (known < self.q_upper).all():
             return known
-        nearest, turn = np.clip(0.0, self.q_lower, self.q_upper), 2.0 * np.pi
-        lower = np.maximum(self.q_lower, nearest - turn)  # a limit may be infinite
-        upper = np.minimum(self.q_upper, nearest + turn)
+        nearest = np.clip(0.0, self.q_lower, self.q_upper)
+        lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)  # a limit may be infinite
+        upper = np.minimum(self.q_upper, nearest + 2.0 * np.pi)
         middle = 0.5 * (lower + upper)
         drawn = np.random.default_rng(0).uniform(-0.3, 0.3, (200, self.dof))
         postures = np.vstack([middle, middle + (upper - lower) * drawn])
-        for joint, leader, multiplier, offset in self.mimics:
-            at, of = self.joint_names.index(joint), self.joint_names.index(leader)
-            postures[:, at] = np.clip(multiplier * postures[:, of] + offset, lower[at], upper[at])
-        place = (self.tip_id, pin.LOCAL_WORLD_ALIGNED)
-        data, rows = self.model.createData(), 6 if self.dof >= 6 else 3
-        found = [pin.computeFrameJacobian(self.model, data, q, *place) for q in postures]
-        jacobians = np.reshape(found, (-1, 6, self.dof))
-        values = np.linalg.svd(jacobians[:, :rows], compute_uv=False)
-        rank = np.count_nonzero(values.max(axis=0) > 1e-9)
-        smallest = values[:, rank - 1]
-        best = 0 if rank == 0 or smallest[0] >= SINGULAR else int(smallest.argmax())
+        for mimic in self.mimics:
+            j = self.joint_names.index(mimic.joint)
+            followed = postures[:, self.joint_names.index(mimic.leader)]
+            position = mimic.multiplier * followed + mimic.offset
+            postures[:, j] = np.clip(position, lower[j], upper[j])
+        smallest = self._smallest_singular_values(postures)
+        best = 0 if smallest[0] >= SINGULAR else int(smallest.argmax())
         return np.array(postures[best])
+
+    def _smallest_singular_values(self, postures: checks.Array) -> checks.Array:
+        """Compute the smallest singular value of the tip's Jacobian in each posture (k, n), (k,).
+
+        If it is 0 in every posture, as a planar arm's is, the next larger one counts; if all are,
+        the result is infinite.
+        """
+        data = self.model.createData()
+        jacobians = [
+            pin.computeFrameJacobian(self.model, data, q, self.tip_id, pin.LOCAL_WORLD_ALIGNED)
+            for q in postures
+        ]
+        rows = 6 if self.dof >= 6 else 3
+        judged = np.reshape(jacobians, (-1, 6, self.dof))[:, :rows]
+        values = np.linalg.svd(judged, compute_uv=False)
+        values = values[:, values.max(axis=0) > 1e-9]
+        smallest: checks.Array = values.min(axis=1, initial=np.inf)
+        return smallest
 
     def __repr__(self) -> str:
         locked = f", locked: {', '.join(self.locked)}" if self.locked else ""
@@ -248,12 +279,15 @@ def file_of(robot: Robot) -> Path:
     return robot.path
 
 
-def tree_of(robot: Robot) -> ET.Element:
-    """Read the URDF of a robot again, with its mobile base; errors as of `file_of`, `urdf.read`."""
-    return urdf.read(file_of(robot), robot.mobile)
+def urdf_of(robot: Robot) -> str:
+    """Return the text of a robot's URDF, or raise an InvalidInputError if it has none."""
+    file_of(robot)
+    if robot.urdf is None:
+        raise InvalidInputError("robot", "must be loaded from a URDF file", robot)
+    return robot.urdf
 
 
-def _limit(argument: str, value: ArrayLike, size: int) -> Array:
+def _limit(argument: str, value: ArrayLike, size: int) -> checks.Array:
     """Return one limit per joint, read-only, from a number or one per joint."""
     try:
         array = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)))
@@ -263,15 +297,3 @@ def _limit(argument: str, value: ArrayLike, size: int) -> Array:
         raise InvalidInputError(argument, "must not be NaN", value)
     array.setflags(write=False)
     return array
-
-
-def _check_limits(limits: Mapping[str, Array], names: Mapping[str, str]) -> None:
-    """Refuse limits that leave a joint no room, by the names that the caller knows them by."""
-    lower, upper = limits["q_lower"], limits["q_upper"]
-    for i in np.flatnonzero(lower >= upper):
-        problem = f"joint {i + 1}: lower limit {lower[i]:g} is not below upper limit {upper[i]:g}"
-        raise InvalidInputError(names["q_lower"], problem, (lower, upper))
-    for key in _LIMITS[2:]:
-        for i in np.flatnonzero(limits[key] <= 0.0):
-            problem = f"joint {i + 1}: {limits[key][i]:g} is not above 0"
-            raise InvalidInputError(names[key], problem, limits[key])

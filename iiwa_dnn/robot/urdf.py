@@ -14,18 +14,33 @@ from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
+from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
-# Attributes that name a link or a joint, by element.
-_NAMES = {
-    "link": ("name",), "joint": ("name",), "parent": ("link",), "child": ("link",),
-    "mimic": ("joint",),
-}  # fmt: skip
+_NAMING = {"link": "name", "joint": "name", "parent": "link", "child": "link", "mimic": "joint"}
+"""Attribute that names a link or a joint, by element."""
+
+_LIGHT_BODY = """
+<inertial> <mass value="0.1"/>
+<inertia ixx="1e-3" ixy="0" ixz="0" iyy="1e-3" iyz="0" izz="1e-3"/> </inertial>
+"""
+_MOBILE_BASE = f"""<robot>
+<link name="base_floor">{_LIGHT_BODY}</link>
+<link name="base_rail">{_LIGHT_BODY}</link>
+<link name="base_plate">{_LIGHT_BODY}</link>
+<joint name="base_x" type="prismatic"> <parent link="base_floor"/> <child link="base_rail"/>
+<axis xyz="1 0 0"/> <limit effort="1000" velocity="1"/> </joint>
+<joint name="base_y" type="prismatic"> <parent link="base_rail"/> <child link="base_plate"/>
+<axis xyz="0 1 0"/> <limit effort="1000" velocity="1"/> </joint>
+<joint name="base_yaw" type="revolute"> <parent link="base_plate"/> <child link=""/>
+<axis xyz="0 0 1"/> <limit effort="1000" velocity="1"/> </joint>
+</robot>"""
+"""Base that moves in the plane; masses and speeds [m/s, rad/s] are estimates."""
 
 
 class _NoDoctype(ET.TreeBuilder):
@@ -35,17 +50,11 @@ class _NoDoctype(ET.TreeBuilder):
         raise ET.ParseError("a DOCTYPE is not accepted")
 
 
-BASE = ("base_x", "base_y", "base_yaw")
-"""Joints of a mobile base."""
-
-_SPEED, _TURN = 1.0, 1.0  # of a mobile base: estimates [m/s, rad/s]
-
-
 def read(path: Path, mobile: bool = False) -> ET.Element:
     """Read a URDF file as XML; return the element ``<robot>``, which has joints.
 
     A file that ends in ``.xacro`` goes through xacro, one in MuJoCo's MJCF through MuJoCo. A
-    `mobile` robot has the joints ``BASE`` between the world and its first link.
+    `mobile` robot has three joints between the world and its first link.
 
     ``<include file="other.urdf" prefix="left_"/>``, which is no URDF, stands for the links and
     joints of another file, their names with the prefix. A continuous joint becomes a revolute one
@@ -59,45 +68,39 @@ def read(path: Path, mobile: bool = False) -> ET.Element:
     root = _read(path)
     for include in root.findall("include"):
         root.remove(include)
-        other = path.parent / include.get("file", "")
-        part = _read(other)
-        if part.find("include") is not None:
-            raise FileError(other, "is included and includes others")
-        for element in part.iter():
-            for key in _NAMES.get(element.tag, ()):
-                if key in element.attrib:
-                    element.set(key, include.get("prefix", "") + element.get(key, ""))
-        root.extend([*part.findall("link"), *part.findall("joint")])
+        root.extend(_included(path.parent / include.get("file", ""), include.get("prefix", "")))
     for joint in root.findall("joint[@type='continuous']"):
+        joint.set("type", "revolute")
         limit = joint.find("limit")
-        limit = ET.SubElement(joint, "limit", effort="0", velocity="0") if limit is None else limit
+        if limit is None:
+            limit = ET.SubElement(joint, "limit", effort="0", velocity="0")
         for key in ("lower", "upper"):
             limit.attrib.pop(key, None)
-        joint.set("type", "revolute")
     if mobile:
-        _put_on_wheels(root)
+        _add_mobile_base(root)
     return root
 
 
-def _put_on_wheels(root: ET.Element) -> None:
-    """Add the joints of a base that moves in the plane, with light links between them."""
-    children = {joint.find("child").get("link") for joint in root.findall("joint")}  # type: ignore[union-attr]
-    links = [link.get("name", "") for link in root.findall("link")]
-    below = next(name for name in links if name not in children)
-    chain = ["base_floor", "base_rail", "base_plate", below]
-    for name in chain[:3]:
-        inertial = ET.SubElement(ET.SubElement(root, "link", name=name), "inertial")
-        ET.SubElement(inertial, "mass", value="0.1")
-        moments = {key: "1e-3" if key[1] == key[2] else "0" for key in _MOMENTS}
-        ET.SubElement(inertial, "inertia", moments)
-    kinds = (("prismatic", "1 0 0"), ("prismatic", "0 1 0"), ("revolute", "0 0 1"))
-    for name, (kind, axis), parent, child in zip(BASE, kinds, chain, chain[1:], strict=False):
-        joint = ET.SubElement(root, "joint", name=name, type=kind)
-        ET.SubElement(joint, "parent", link=parent)
-        ET.SubElement(joint, "child", link=child)
-        ET.SubElement(joint, "axis", xyz=axis)
-        speed = _SPEED if kind == "prismatic" else _TURN
-        ET.SubElement(joint, "limit", effort="1000", velocity=repr(speed))
+def _included(path: Path, prefix: str) -> list[ET.Element]:
+    """Read the links and joints of a file that another one includes, a prefix on their names."""
+    root = _read(path)
+    if root.find("include") is not None:
+        raise FileError(path, "is included and includes others")
+    for element in root.iter():
+        key = _NAMING.get(element.tag, "")
+        if key in element.attrib:
+            element.set(key, prefix + element.attrib[key])
+    return [*root.findall("link"), *root.findall("joint")]
+
+
+def _add_mobile_base(root: ET.Element) -> None:
+    """Put a base that moves in the plane under the first link that hangs on no joint."""
+    children = {child.get("link") for child in root.iterfind("joint/child")}
+    names = [link.get("name", "") for link in root.findall("link")]
+    base = ET.fromstring(_MOBILE_BASE)
+    for child in base.iterfind("joint/child[@link='']"):
+        child.set("link", next((name for name in names if name not in children), ""))
+    root.extend(base)
 
 
 def mend_inertias(root: ET.Element) -> None:
@@ -165,30 +168,48 @@ def weld(root: ET.Element, posture: Mapping[str, float]) -> None:
     The position of planar and floating joints has to be 0.
     """
     for joint in root.findall("joint"):
-        name, mimic = joint.get("name", ""), joint.find("mimic")
+        name = joint.get("name", "")
+        mimic = joint.find("mimic")
         if mimic is not None and {name, mimic.get("joint")} & posture.keys():
             joint.remove(mimic)
         if posture.get(name):
-            axis = _numbers(joint, "axis", "xyz", "1 0 0")
-            step = posture[name] * axis / np.linalg.norm(axis)
-            slides = joint.get("type") == "prismatic"
-            rpy, xyz = (_numbers(joint, "origin", key, "0 0 0") for key in ("rpy", "xyz"))
-            place = pin.SE3(pin.rpy.rpyToMatrix(rpy), xyz)
-            place *= pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), np.zeros(3))
-            origin = joint.find("origin")
-            origin = ET.SubElement(joint, "origin") if origin is None else origin
-            rpy, xyz = pin.rpy.matrixToRpy(place.rotation), place.translation
-            for key, numbers in (("rpy", rpy), ("xyz", xyz)):
-                origin.set(key, " ".join(map(repr, numbers.tolist())))
+            _move(joint, posture[name])
         if name in posture:
             joint.set("type", "fixed")
 
 
-def _numbers(joint: ET.Element, tag: str, key: str, default: str) -> NDArray[np.float64]:
-    """Read the three numbers of an attribute of a joint's element `tag`."""
-    element = joint.find(tag)
+def _move(joint: ET.Element, position: float) -> None:
+    """Shift a joint's origin to where a joint position [rad or m] puts its child."""
+    axis = _vector(joint.find("axis"), "xyz", "1 0 0")
+    step = position * axis / np.linalg.norm(axis)
+    origin = joint.find("origin")
+    rotation = pin.rpy.rpyToMatrix(_vector(origin, "rpy"))
+    pose = pin.SE3(rotation, _vector(origin, "xyz"))
+    if joint.get("type") == "prismatic":
+        pose *= pin.SE3(np.eye(3), step)
+    else:
+        pose *= pin.SE3(pin.exp3(step), np.zeros(3))
+    set_origin(joint, pose)
+
+
+def _vector(element: ET.Element | None, key: str, default: str = "0 0 0") -> Array:
+    """Read three numbers of an element's attribute."""
     text = default if element is None else element.get(key, default)
-    return np.array([float(word) for word in text.split()])
+    return np.array(text.split(), dtype=float)
+
+
+def set_origin(element: ET.Element, pose: pin.SE3) -> None:
+    """Write a pose as the ``<origin>`` of an element."""
+    origin = element.find("origin")
+    if origin is None:
+        origin = ET.SubElement(element, "origin")
+    origin.set("xyz", words(pose.translation))
+    origin.set("rpy", words(pin.rpy.matrixToRpy(pose.rotation)))
+
+
+def words(vector: ArrayLike) -> str:
+    """Write a vector as an attribute has it, all digits kept."""
+    return " ".join(map(repr, np.asarray(vector, dtype=float).tolist()))
 
 
 def build_model(path: Path, root: ET.Element) -> pin.Model:

@@ -2,15 +2,13 @@
 
 import io
 from collections.abc import Iterator
-from itertools import chain
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.errors import FileError, import_extra
-from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.robot import Robot, file_of, tree_of
+from iiwa_dnn.robot.robot import Robot, file_of, urdf_of
 
 yourdfpy = import_extra("yourdfpy", "pip install 'iiwa-dnn[verify]'")
 
@@ -28,9 +26,8 @@ def verify_robot(robot: Robot) -> None:
         FileError: If the two readers differ, which names the joint or the frame, or the second one
             cannot read the file.
     """
-    path = file_of(robot)
+    text = io.BytesIO(urdf_of(robot).encode())
     try:
-        text = io.BytesIO(urdf.text_of(tree_of(robot)).encode())
         file = yourdfpy.URDF.load(text, build_scene_graph=False, load_meshes=False).robot
         for joint in file.joints:
             joint.mimic = None  # every joint is given its position
@@ -38,16 +35,15 @@ def verify_robot(robot: Robot) -> None:
             link.visuals = []
         reader = yourdfpy.URDF(file, load_meshes=False)
     except Exception as error:  # any that its parsers have
-        raise FileError(path, f"yourdfpy cannot read it: {error!r}") from error
-    parts = (_joint_differences, _limit_differences, _pose_differences)
-    for difference in chain.from_iterable(part(robot, reader) for part in parts):
-        raise FileError(path, f"Pinocchio and yourdfpy differ: {difference}")
+        raise FileError(file_of(robot), f"yourdfpy cannot read it: {error!r}") from error
+    for differences in (_joint_differences, _limit_differences, _pose_differences):
+        for difference in differences(robot, reader):
+            raise FileError(file_of(robot), f"Pinocchio and yourdfpy differ: {difference}")
 
 
 def _joint_differences(robot: Robot, reader: Any) -> Iterator[str]:
-    free = {joint.name for joint in reader.robot.joints if joint.type != "fixed"} - set(
-        robot.locked
-    )
+    movable = {joint.name for joint in reader.robot.joints if joint.type != "fixed"}
+    free = movable - set(robot.locked)
     for name in sorted(free ^ set(robot.joint_names)):
         yield f"joint {name!r} moves for one of them only"
     carriers = {joint.child: joint for joint in reader.robot.joints}
@@ -64,17 +60,16 @@ def _joint_differences(robot: Robot, reader: Any) -> Iterator[str]:
 def _limit_differences(robot: Robot, reader: Any) -> Iterator[str]:
     for i, name in enumerate(robot.joint_names):
         limit = reader.joint_map[name].limit or yourdfpy.Limit()
-        given = limit.lower is not None or limit.upper is not None
-        theirs = {
-            "lower": (limit.lower or 0.0) if given else -np.inf,
-            "upper": (limit.upper or 0.0) if given else np.inf,
-            "velocity": limit.velocity or np.inf,
-            "effort": limit.effort or 0.0,
+        limited = limit.lower is not None or limit.upper is not None
+        pairs = {
+            "lower": (robot.q_lower[i], (limit.lower or 0.0) if limited else -np.inf),
+            "upper": (robot.q_upper[i], (limit.upper or 0.0) if limited else np.inf),
+            "velocity": (robot.dq_max[i], limit.velocity or np.inf),
+            "effort": (robot.model.effortLimit[i], limit.effort or 0.0),
         }
-        ours = (*robot.limits[:, i], robot.model.effortLimit[i])
-        for (kind, value), own in zip(theirs.items(), ours, strict=True):
-            if value != own:
-                yield f"joint {name!r}: {kind} limit {own:g} or {value:g}"
+        for kind, (ours, theirs) in pairs.items():
+            if ours != theirs:
+                yield f"joint {name!r}: {kind} limit {ours:g} or {theirs:g}"
 
 
 def _pose_differences(robot: Robot, reader: Any) -> Iterator[str]:

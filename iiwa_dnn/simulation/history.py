@@ -76,7 +76,7 @@ class History:
         robot = self._controller.robot
         for k in range(first, first + steps):
             if k not in self.stops:
-                conf = Configuration.from_checked(robot, self.q[k])
+                conf = Configuration(robot, self.q[k])
                 self._kinetic_index[k] = scheme.kinetic_index(conf, self.dq[k])
 
     def end(self, steps: int, targets: Matrix) -> None:

@@ -96,17 +96,18 @@ def test_limits_names_and_pickling() -> None:
 
 
 @pytest.mark.parametrize(
-    ("table", "options", "words"),
+    ("table", "options", "argument"),
     [
         (np.zeros((2, 3)), {}, "table"),
-        (np.zeros((0, 4)), {}, "table: has 0 rows"),
-        ([[0, 0, np.nan, 0]], {}, "finite"),
-        ([[0, 0, 1, 0]], {"prismatic": [2]}, r"table: has 1 rows for prismatic joints \[2\]"),
+        (np.zeros((0, 4)), {}, "table"),
+        ([[0, 0, np.nan, 0]], {}, "table"),
+        ([[0, 0, 1, 0]], {"prismatic": [2]}, "prismatic"),
         ([[0, 0, 1, 0]], {"convention": "classic"}, "convention"),
         ([[0, 0, 1, 0]], {"lower": 1, "upper": 0}, "lower"),
         ([[0, 0, 1, 0]], {"velocity": [1, 2]}, "velocity"),
     ],
 )
-def test_bad_tables_are_refused(table: object, options: dict[str, object], words: str) -> None:
-    with pytest.raises(InvalidInputError, match=words):
+def test_bad_tables_are_refused(table: object, options: dict[str, object], argument: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
         robot_from_dh(table, **options)
+    assert caught.value.argument == argument

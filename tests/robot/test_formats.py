@@ -140,7 +140,7 @@ def test_an_mjcf_file_that_does_not_fit_is_told(
 
 def test_a_mobile_base_moves_in_the_plane() -> None:
     fixed, mobile = load_robot("iiwa7"), load_robot("iiwa7", mobile=True)
-    assert mobile.joint_names == (*urdf.BASE, *fixed.joint_names)
+    assert mobile.joint_names == ("base_x", "base_y", "base_yaw", *fixed.joint_names)
     assert np.isinf(mobile.q_upper[:3]).all()
     assert mobile.dq_max[:3].tolist() == [1.0, 1.0, 1.0]
     q = np.array(fixed.start_posture())

@@ -30,8 +30,7 @@ linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a matte
 def test_the_choice(monkeypatch, egl, osmesa, wanted, chosen):
     monkeypatch.delenv("PYOPENGL_PLATFORM", raising=False)
     monkeypatch.setenv("MUJOCO_GL", wanted)
-    monkeypatch.setattr(offscreen, "egl_works", lambda: egl)
-    monkeypatch.setattr(offscreen, "osmesa_works", lambda: osmesa)
+    monkeypatch.setattr(offscreen, "opens", {"egl": egl, "osmesa": osmesa}.__getitem__)
     if chosen is not None:
         assert offscreen.opengl_library() == chosen
         return
@@ -47,13 +46,8 @@ def test_elsewhere_mujoco_chooses(monkeypatch):
 
 
 @linux
-def test_a_library_that_is_not_there_does_not_work(monkeypatch):
-    def nothing(name, *_):
-        raise OSError(f"{name}: cannot open shared object file")
-
-    monkeypatch.setattr(offscreen.ctypes, "CDLL", nothing)
-    assert not offscreen.egl_works()
-    assert not offscreen.osmesa_works()
+def test_a_library_that_is_not_there_does_not_open():
+    assert not offscreen.opens("glfw_of_nobody")
 
 
 def test_without_mujoco_one_line_says_what_to_install(monkeypatch):
@@ -67,7 +61,7 @@ def test_without_mujoco_one_line_says_what_to_install(monkeypatch):
 @linux
 @pytest.mark.parametrize("library", ["egl", "osmesa"])
 def test_each_library_that_is_there_draws(library):
-    if not getattr(offscreen, f"{library}_works")():
+    if not offscreen.opens(library):
         pytest.skip(f"no {library}: on Debian, apt-get install libosmesa6 libegl1 libgl1")
     result = run_python(
         "import sys; sys.path.insert(0, 'tests')\n"

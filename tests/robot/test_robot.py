@@ -15,7 +15,11 @@ from helpers_kinematics import example_urdf, finite_difference
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.collision import make_collision_model
 from iiwa_dnn.robot.loading import package_robots
+from iiwa_dnn.robot.mujoco_model import compile_model
+from iiwa_dnn.robot.shapes import visual_shapes
+from iiwa_dnn.robot.verification import verify_robot
 
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
@@ -319,3 +323,20 @@ def test_pickling_keeps_everything() -> None:
     assert repr(copy) == repr(robot)
     assert (copy.path, copy.tip_id, copy.model) == (robot.path, robot.tip_id, robot.model)
     np.testing.assert_array_equal(copy.q_upper, robot.q_upper)
+
+
+BODY = """<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+</inertial> <visual><geometry><sphere radius="0.1"/></geometry></visual>
+<collision><geometry><cylinder radius="0.1" length="0.4"/></geometry></collision>"""
+
+
+def test_a_robot_does_not_need_its_file_any_more(written) -> None:
+    path = written(one_joint().replace('<link name="b"/>', f'<link name="b">{BODY}</link>'))
+    robot = load_robot(path)
+    path.unlink()
+    for left in (robot, pickle.loads(pickle.dumps(robot))):
+        (capsule,) = make_collision_model(left, samples=1).capsules
+        assert capsule.link == "b"
+        assert [shape.kind for shape in visual_shapes(left)] == ["sphere"]
+        assert compile_model(left, 1e-3).nq == 1
+        verify_robot(left)

@@ -47,9 +47,9 @@ def test_shapes_are_where_yourdfpy_has_them():
         np.testing.assert_allclose(pose, pose2, atol=1e-9)
 
 
-def test_colours_are_the_urdfs():
-    colours = {shape.colour for shape in visual_shapes(load_robot("iiwa7"))}
-    rounded = {tuple(round(part, 3) for part in colour) for colour in colours}
+def test_colors_are_the_urdfs():
+    colors = {shape.color for shape in visual_shapes(load_robot("iiwa7"))}
+    rounded = {tuple(round(part, 3) for part in color) for color in colors}
     assert rounded == {(1.0, 0.4, 0.0), (0.6, 0.6, 0.6)}
 
 

@@ -61,7 +61,7 @@ class Stage:
         """Put a shape on the page, under the frame that its name begins with."""
         scene, place = self.host.scene, {
             "name": name,
-            "color": tuple(round(255 * part) for part in shape.colour),
+            "color": tuple(round(255 * part) for part in shape.color),
             "position": shape.position,
             "wxyz": wxyz(shape.rotation),
             **options,
