@@ -208,7 +208,7 @@ def set_origin(element: ET.Element, pose: pin.SE3) -> None:
 
 
 def words(vector: ArrayLike) -> str:
-    """Write a vector as an attribute has it, all digits kept."""
+    """Write a vector (k,) as an attribute has it, all digits kept."""
     return " ".join(map(repr, np.asarray(vector, dtype=float).tolist()))
 
 
