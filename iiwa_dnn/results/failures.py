@@ -8,14 +8,8 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
-from iiwa_dnn.results.metrics import (
-    compute_metrics,
-    limits,
-    position_error,
-    position_limit_excess,
-    rate_limit_excess,
-    velocity_limit_excess,
-)
+from iiwa_dnn.results.markdown import number
+from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics, limits, position_error
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
@@ -24,9 +18,9 @@ LIMIT_SLACK = 1e-9
 FAR = 1e-3
 """Distance between tip and path at the start of a run [m] from which on it is worth a word."""
 
-_acceleration = partial(rate_limit_excess, order=1)
-_jerk = partial(rate_limit_excess, order=2)
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
+
+_show = partial(number, form=".3g", unknown="not a number")
 
 
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
@@ -53,6 +47,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         *path_completed(metrics),
         *_early_end(metrics),
         *_policies(metrics, record),
+        *_not_finite(metrics),
         *_unsolved(metrics, record),
         *_crosscheck(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),
@@ -72,8 +67,8 @@ def describe(limit: Mapping[str, Any]) -> str:
 
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
     """Say that a path is incomplete, as ``path completed 12.3 %``; no line for a completed one."""
-    share = metrics.get("path_completed", 1.0)  # older metrics do not tell
-    return [f"path completed {percent(share)}"] if share < 1.0 else []
+    fraction = metrics.get("path_completed", 1.0)  # older metrics lack it
+    return [f"path completed {percent(fraction)}"] if fraction < 1.0 else []
 
 
 def _early_end(metrics: Mapping[str, Any]) -> list[str]:
@@ -89,47 +84,65 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     incidents = metrics.get("incidents")
     if incidents is None or incidents["first"] is None:
         return []
-    first, reasons = incidents["first"], []
+    first = incidents["first"]
     at = f", the first at step {first['step']} (t = {first['time_s']:.6g} s)"
     fell_back = first["action"] == "fallback"
+    reasons = []
     if incidents["fallback_steps"]:
-        count, where = _count(incidents["fallback_steps"]), at if fell_back else ""
-        reasons.append(f"{count} answered by the reference: the network did not settle{where}")
-    taken = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
-    if any(taken.values()):
-        did = ", ".join(f"{steps:,} {word}" for word, steps in taken.items() if steps)
-        blocks = [*incidents.get("blocking_rows", ()), *incidents["blocking"]]
-        blocks.sort(key=lambda limit: -limit["steps"])
-        own = " or ".join(metrics["settings"].get("own_tasks", ()))
-        other = f" or {own} against other tasks" if own else ""
-        names = ", ".join(map(describe, blocks[:3])) or f"no bound, a singular pose{other}"
-        count, where = _count(sum(taken.values())), "" if fell_back else at
-        reasons.append(f"{count} without a solution ({did}){where}; in the way: {names}")
-        if record is not None and (far := np.linalg.norm(position_error(record)[0])) > FAR:
-            reasons[-1] += f"; the path begins {_show(float(far))} m from the tip"
+        steps = _count(incidents["fallback_steps"])
+        unsettled = "answered by the reference: the network did not settle"
+        reasons.append(f"{steps} {unsettled}{at if fell_back else ''}")
+    done = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
+    if any(done.values()):
+        counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items() if steps)
+        steps = _count(sum(done.values()))
+        reasons.append(
+            f"{steps} without a solution ({counts}){'' if fell_back else at}; "
+            f"in the way: {_blocking(metrics)}{_far_start(record)}"
+        )
     if incidents["slow_steps"]:
-        reached, asked = _show(incidents["path_time_s"], 6), _show(metrics["duration_s"], 6)
-        reasons.append(f"slowed: path time {reached} s after {asked} s")
+        path_time = number(incidents["path_time_s"])
+        reasons.append(f"slowed: path time {path_time} s after {number(metrics['duration_s'])} s")
     return reasons
+
+
+def _blocking(metrics: Mapping[str, Any]) -> str:
+    """Name the three limits that were longest in the way of a solution."""
+    incidents = metrics["incidents"]
+    blocks = [*incidents.get("blocking_rows", ()), *incidents["blocking"]]
+    blocks.sort(key=lambda limit: -limit["steps"])
+    if blocks:
+        return ", ".join(map(describe, blocks[:3]))
+    own = " or ".join(metrics["settings"].get("own_tasks", ()))
+    return "no bound, a singular pose" + (f" or {own} against other tasks" if own else "")
+
+
+def _far_start(record: Record | None) -> str:
+    """State a distance between tip and path at the start that is worth a word."""
+    distance = 0.0 if record is None else float(np.linalg.norm(position_error(record)[0]))
+    return f"; the path begins {_show(distance)} m from the tip" if distance > FAR else ""
+
+
+def _not_finite(metrics: Mapping[str, Any]) -> list[str]:
+    finite = metrics["max_position_error_m"] is not None
+    return [] if finite else ["the tip position is not finite at every step"]
 
 
 def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
-    reasons = []
-    if metrics["max_position_error_m"] is None:
-        reasons.append("the tip position is not finite at every step")
-    worst, tolerance = metrics["max_kkt_residual"], metrics["settings"]["tol"]
+    worst = metrics["max_kkt_residual"]
+    tolerance = metrics["settings"]["tol"]
     if metrics["settings"]["mode"] != "converged" or not metrics["steps"]:
-        return reasons
+        return []
     if worst is not None and worst <= tolerance:
-        return reasons
+        return []
     if record is None:
-        return [*reasons, f"largest KKT residual {_show(worst)}, tolerance {_show(tolerance)}"]
+        return [f"largest KKT residual {_show(worst)}, tolerance {_show(tolerance)}"]
     steps = np.flatnonzero(~(record.kkt_residual <= tolerance))
-    reasons.append(
-        f"{_at(record, steps[0])}: KKT residual {_show(record.kkt_residual[steps[0]])}, "
-        f"tolerance {_show(tolerance)}; {_count(len(steps))} unsolved in all"
-    )
-    return reasons
+    residual = _show(record.kkt_residual[steps[0]])
+    return [
+        f"{_at(record, steps[0])}: KKT residual {residual}, tolerance {_show(tolerance)}; "
+        f"{_count(len(steps))} unsolved in all"
+    ]
 
 
 def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
@@ -156,21 +169,17 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
 
 def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     reasons = []
-    for kind, key, unit, excess in (
-        ("position", "position_limit_violation_rad", "rad", position_limit_excess),
-        ("velocity", "velocity_limit_violation_rad_s", "rad/s", velocity_limit_excess),
-        ("acceleration", "acceleration_limit_violation_rad_s2", "rad/s^2", _acceleration),
-        ("jerk", "jerk_limit_violation_rad_s3", "rad/s^3", _jerk),
-    ):
-        worst, where = metrics.get(key, 0.0), ""  # few schemes have all of them
+    for limit in JOINT_LIMITS:
+        worst = metrics.get(limit.metric, 0.0)  # few schemes have all of them
         if worst is None:
-            reasons.append(f"a joint {kind} is not finite")
+            reasons.append(f"a joint {limit.kind} is not finite")
         elif worst > LIMIT_SLACK:
+            where = ""
             if record is not None:
-                table = excess(record)
-                step, joint = np.unravel_index(int(table.argmax()), table.shape)
+                excess = limit.excess(record)
+                step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
                 where = f"; joint {joint + 1} at {_at(record, step)}"
-            reasons.append(f"joint {kind} limit broken by {_show(worst)} {unit}{where}")
+            reasons.append(f"joint {limit.kind} limit broken by {_show(worst)} {limit.unit}{where}")
     return reasons
 
 
@@ -187,7 +196,8 @@ def _torques(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
         return []
     if record is None or record.torque is None:
         return [f"a joint torque reached {physics['max_torque_share']:.0%} of its limit"]
-    limit, reasons = limits(record, "torque_max"), []
+    reasons = []
+    limit = limits(record, "torque_max")
     reached = ~(np.abs(record.torque) < limit)
     for joint in np.flatnonzero(reached.any(axis=0)):
         steps = np.flatnonzero(reached[:, joint])
@@ -204,7 +214,3 @@ def _at(record: Record, step: np.integer[Any] | int) -> str:
 
 def _count(steps: int) -> str:
     return f"{steps:,} step" if steps == 1 else f"{steps:,} steps"
-
-
-def _show(value: float | None, digits: int = 3) -> str:
-    return "not a number" if value is None else f"{value:.{digits}g}"

@@ -20,6 +20,11 @@ def save_markdown(folder: str | os.PathLike[str], parts: Iterable[str]) -> Path:
     return path
 
 
+def number(value: float | None, form: str = ".6g", unknown: str = "unknown") -> str:
+    """Write a number in a format, if there is one."""
+    return unknown if value is None else format(value, form)
+
+
 def bullets(lines: Iterable[str]) -> str:
     """Lay out a list in Markdown."""
     return "\n".join(f"- {line}" for line in lines)

@@ -1,8 +1,9 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import partial
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ _AT_LIMIT = 1.0 - 1e-9
 
 BoolArray = NDArray[np.bool_]
 Codes = NDArray[Any]
+Named = tuple[dict[str, Any], Codes]
 
 
 def position_error(record: Record) -> FloatArray:
@@ -52,9 +54,9 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
 
 def position_limit_excess(record: Record) -> FloatArray:
     """Compute the distance of each joint beyond its position limits [rad], (N+1, n); 0 inside."""
-    lower, upper = limits(record, "q_lower", -np.inf), limits(record, "q_upper")
     # np.maximum, unlike max(), lets a NaN through.
-    excess: FloatArray = np.maximum(np.maximum(lower - record.q, record.q - upper), 0.0)
+    below = np.maximum(limits(record, "q_lower", -np.inf) - record.q, 0.0)
+    excess: FloatArray = np.maximum(below, record.q - limits(record, "q_upper"))
     return excess
 
 
@@ -70,12 +72,53 @@ def rate_limit_excess(record: Record, order: int) -> FloatArray:
     Finite differences of the commands, from rest, less the rounding that they carry on; the order
     is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
     """
-    dt, still = record.settings["dt"], np.zeros((order, record.q.shape[1]))
-    rates = np.diff(np.vstack([still, record.dq]), order, axis=0) / dt**order
+    dt = record.settings["dt"]
+    from_rest = np.vstack([np.zeros((order, record.dof)), record.dq])
+    rates = np.diff(from_rest, order, axis=0) / dt**order
     rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
     allowed = limits(record, RATES[order - 1]) + rounding
     excess: FloatArray = np.maximum(np.abs(rates) - allowed, 0.0)
     return excess
+
+
+class JointLimit(NamedTuple):
+    """A limit on every joint that a run is judged by.
+
+    Attributes:
+        kind: Limited quantity.
+        setting: Name of the limit in the settings of a record, which may lack it.
+        metric: Name of the largest excess among the metrics.
+        unit: Unit of the excess.
+        excess: Computes the excess at each step or sample, (N, n) or (N+1, n).
+    """
+
+    kind: str
+    setting: str
+    metric: str
+    unit: str
+    excess: Callable[[Record], FloatArray]
+
+
+JOINT_LIMITS = (
+    JointLimit("position", "q_upper", "position_limit_violation_rad", "rad", position_limit_excess),
+    JointLimit(
+        "velocity", "dq_max", "velocity_limit_violation_rad_s", "rad/s", velocity_limit_excess
+    ),
+    JointLimit(
+        "acceleration",
+        "ddq_max",
+        "acceleration_limit_violation_rad_s2",
+        "rad/s^2",
+        partial(rate_limit_excess, order=1),
+    ),
+    JointLimit(
+        "jerk",
+        "dddq_max",
+        "jerk_limit_violation_rad_s3",
+        "rad/s^3",
+        partial(rate_limit_excess, order=2),
+    ),
+)
 
 
 def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
@@ -99,7 +142,7 @@ def bound_kinds(settings: Mapping[str, Any]) -> tuple[str, str]:
 def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 
-    ``path_completed`` is the share of the asked path time that the reference's clock covered. Below
+    ``path_completed`` is the fraction of the path's time that the reference's clock covered. Below
     1 the errors say little: they are measured against the slowed target. The mean squared error
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
@@ -118,12 +161,14 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         unknown wall time, a maximum over no steps.
     """
     error = position_error(checks.instance("record", record, Record))
+    distance = np.linalg.norm(error, axis=1)
     duration = float(record.t[-1] - record.t[0])
-    wall, settings = record.wall_time_s, record.settings
+    wall = record.wall_time_s
+    settings = record.settings
     metrics: dict[str, Any] = plain(
         {
             "path_completed": record.path_completed,
-            "max_position_error_m": np.linalg.norm(error, axis=1).max(),
+            "max_position_error_m": distance.max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),
             "joint_drift_rad": np.abs(record.q[-1] - record.q[0]).max(),
@@ -133,12 +178,14 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "duration_s": duration,
             "wall_time_s": wall,
             "realtime_factor": duration / wall if wall else None,
-            "position_limit_violation_rad": position_limit_excess(record).max(),
-            "velocity_limit_violation_rad_s": velocity_limit_excess(record).max(initial=0.0),
-            **_rate_limits(record),
+            **{
+                limit.metric: limit.excess(record).max(initial=0.0)
+                for limit in JOINT_LIMITS
+                if limit.setting in settings
+            },
             "max_kkt_residual": _max(record.kkt_residual),
             "crosscheck": _crosscheck(record),
-            **_physics(record, np.linalg.norm(error, axis=1)),
+            **_physics(record, distance),
             **_incidents(record),
             **_frames(record),
             **_collisions(record),
@@ -151,35 +198,24 @@ def compute_metrics(record: Record) -> dict[str, Any]:
 
 def frame_errors(record: Record) -> tuple[FloatArray, FloatArray]:
     """Compute distances [m] and angles [rad] of the f further frames to their targets, (N+1, f)."""
-    place, wanted = record.frame_position, record.frame_position_desired
-    turn, desired = record.frame_rotation, record.frame_rotation_desired
-    if place is None or wanted is None or turn is None or desired is None:
-        return np.zeros((len(record.t), 0)), np.zeros((len(record.t), 0))
-    return np.linalg.norm(place - wanted, axis=2), rotation_angle(turn, desired)
+    offset = record.filled("frame_position") - record.filled("frame_position_desired")
+    rotation = record.filled("frame_rotation")
+    angle = rotation_angle(rotation, record.filled("frame_rotation_desired"))
+    return np.linalg.norm(offset, axis=2), angle
 
 
 def _frames(record: Record) -> dict[str, Any]:
-    """Largest errors of the tracked frames beside the first, and residuals of the levels."""
+    """Sum up the errors of the tracked frames beside the first, and the residuals of the levels."""
     found: dict[str, Any] = {}
     if record.frame_position is not None:
-        worst = (errors.max(axis=0) for errors in frame_errors(record))
+        largest = [errors.max(axis=0) for errors in frame_errors(record)]
         found["frames"] = {
             name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
-            for name, distance, angle in zip(record.settings["frames"], *worst, strict=True)
+            for name, distance, angle in zip(record.settings["frames"], *largest, strict=True)
         }
     if record.level_residual is not None and record.steps:
         found["level_residual"] = record.level_residual.max(axis=0)
     return found
-
-
-def _rate_limits(record: Record) -> dict[str, Any]:
-    """Largest excess over acceleration and jerk limits of a scheme that has them."""
-    names = ("acceleration_limit_violation_rad_s2", "jerk_limit_violation_rad_s3")
-    return {
-        name: rate_limit_excess(record, order).max(initial=0.0)
-        for order, name in enumerate(names, start=1)
-        if RATES[order - 1] in record.settings
-    }
 
 
 def _max(values: FloatArray) -> float | None:
@@ -194,7 +230,8 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     of the others are counted as `reference_failures` and enter no maximum.
     """
     check = record.settings["check"]
-    gap, residual = record.solution_gap, record.reference_residual
+    gap = record.solution_gap
+    residual = record.reference_residual
     # A residual without a gap is an answer too: the network's own was then not a number.
     asked = ~(np.isnan(gap) & np.isnan(residual))
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
@@ -217,16 +254,16 @@ def _crosscheck(record: Record) -> dict[str, Any]:
 
 def _first_disagreement(record: Record, disagrees: BoolArray) -> dict[str, Any] | None:
     """Name the first step that disagrees, and the solver that differs most there."""
-    steps = np.flatnonzero(disagrees.any(axis=1))
-    if not steps.size:
+    if not disagrees.any():
         return None
-    step = int(steps[0])
-    solver = int(np.argmax(np.where(disagrees[step], record.solution_gap[step], -np.inf)))
+    step = int(np.flatnonzero(disagrees.any(axis=1))[0])
+    gap = record.solution_gap[step]
+    solver = int(np.argmax(np.where(disagrees[step], gap, -np.inf)))
     return {
         "step": step,
-        "time_s": float(record.t[step]),
+        "time_s": record.t[step],
         "solver": record.settings["check"]["solvers"][solver],
-        "gap": float(record.solution_gap[step, solver]),
+        "gap": gap[solver],
     }
 
 
@@ -266,83 +303,86 @@ def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
 
 def _incidents(record: Record) -> dict[str, Any]:
     """Count active bounds and rows, clipped commands, and steps that a policy decided."""
-    arrays = (record.bound_multiplier, record.row_multiplier, record.clipped, record.action)
-    if all(array is None for array in arrays):
+    columns = ("bound_multiplier", "row_multiplier", "clipped", "action")
+    if all(getattr(record, name) is None for name in columns):
         return {}
-    action = np.zeros(record.steps, np.int8) if record.action is None else record.action
-    taken, first = np.flatnonzero(action), None
-    if taken.size:
-        name = ACTIONS.get(int(action[taken[0]]), "unknown")
-        first = {"step": int(taken[0]), "time_s": float(record.t[taken[0]]), "action": name}
+    action = record.filled("action")
+    blocking = record.filled("blocking")
     # A bound is the velocity limit itself, or the tighter one near a position limit.
     fast = np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max")
-    blocking, multiplier = record.blocking, record.bound_multiplier
-    blocked = [] if blocking is None else _bounds(record, blocking, np.abs(blocking) == 2)
+    active = _bounds(record, record.filled("bound_multiplier"), fast)
     return {
         "incidents": {
-            "clipped_steps": 0 if record.clipped is None else int(record.clipped.any(axis=1).sum()),
-            **{f"{name}_steps": int((action == code).sum()) for code, name in ACTIONS.items()},
+            "clipped_steps": record.filled("clipped").any(axis=1).sum(),
+            **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
-            "first": first,
-            "blocking": blocked,
-            "blocking_rows": _rows(record, record.blocking_rows),
-            "active_bounds": [] if multiplier is None else _bounds(record, multiplier, fast, True),
-            "active_rows": _rows(record, record.row_multiplier, True),
+            "first": _first_action(record, action),
+            "blocking": _spells(record, _bounds(record, blocking, np.abs(blocking) == 2)),
+            "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
+            "active_bounds": _spells(record, active, sized=True),
+            "active_rows": _spells(record, _rows(record, "row_multiplier"), sized=True),
         }
     }
+
+
+def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:
+    """Name the first step that a policy decided."""
+    if not action.any():
+        return None
+    step = int(np.flatnonzero(action)[0])
+    name = ACTIONS.get(int(action[step]), "unknown")
+    return {"step": step, "time_s": record.t[step], "action": name}
 
 
 def _collisions(record: Record) -> dict[str, Any]:
     """Name the nearest pair of a run, and the distance by which it was too near."""
     if record.distance is None or record.nearest is None:
         return {}
-    least, stated = int(record.distance.argmin()), record.settings["collisions"]
+    least = int(record.distance.argmin())
+    stated = record.settings["collisions"]
     first, second = stated["pairs"][int(record.nearest[least])]
-    distance, allowed = float(record.distance[least]), float(stated["distance"])
-    where = {"first": first, "second": second, "time_s": float(record.t[least])}
-    missing = max(0.0, allowed - distance)
+    distance = float(record.distance[least])
+    allowed = float(stated["distance"])
     return {
         "collisions": {
-            "least_distance_m": distance, **where, "allowed_m": allowed, "missing_m": missing,
+            "least_distance_m": distance,
+            "first": first,
+            "second": second,
+            "time_s": record.t[least],
+            "allowed_m": allowed,
+            "missing_m": max(0.0, allowed - distance),
         }
-    }  # fmt: skip
+    }
 
 
-def _bounds(
-    record: Record, signed: Codes, at_velocity: BoolArray, sized: bool = False
-) -> list[dict[str, Any]]:
-    """List the bounds whose entries are signed: positive at an upper one, negative at a lower."""
-    found = []
-    sides, kinds = (("lower", -1), ("upper", 1)), enumerate(bound_kinds(record.settings))
+def _bounds(record: Record, signed: Codes, at_velocity: BoolArray) -> Iterator[Named]:
+    """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
+    sides = (("lower", -1), ("upper", 1))
+    kinds = enumerate(bound_kinds(record.settings))
     for joint, (side, sign), (fast, limit) in product(range(record.dof), sides, kinds):
-        column = signed[:, joint]
-        at = (np.sign(column) == sign) & (at_velocity[:, joint] == fast)
+        of_kind = at_velocity[:, joint] == fast
         name = {"joint": joint + 1, "side": side, "limit": limit}
-        found += _spell(record, name, at, np.abs(column) if sized else None)
-    return found
+        yield name, np.where(of_kind, sign * signed[:, joint], 0)
 
 
-def _rows(record: Record, values: Codes | None, sized: bool = False) -> list[dict[str, Any]]:
-    """List the inequality rows with a value above zero, (N, m)."""
-    found: list[dict[str, Any]] = []
-    if values is None:
-        return found
-    for row, column in zip(record.settings["rows"], values.T, strict=True):
-        name = {key: row[key] for key in ("part", "row", "about") if key in row}
-        found += _spell(record, name, column > 0, column if sized else None)
-    return found
+def _rows(record: Record, column: str) -> Iterator[Named]:
+    """Name the inequality rows of a column."""
+    rows = record.settings.get("rows") or ()
+    for row, values in zip(rows, record.filled(column).T, strict=True):
+        yield {key: row[key] for key in ("part", "row", "about") if key in row}, values
 
 
-def _spell(
-    record: Record, name: Mapping[str, Any], at: BoolArray, multiplier: Codes | None
-) -> list[dict[str, Any]]:
-    """Count the steps at which a bound or row acted, (N,); an empty list where it never did."""
-    steps = np.flatnonzero(at)
-    if not steps.size:
-        return []
-    time, first = float(record.settings["dt"]) * steps.size, float(record.t[steps[0]])
-    spell = {**name, "steps": int(steps.size), "time_s": time, "first_s": first}
-    if multiplier is not None:
-        held = multiplier[at]
-        spell |= {"max_multiplier": float(held.max()), "mean_multiplier": float(held.mean())}
-    return [spell]
+def _spells(record: Record, named: Iterable[Named], sized: bool = False) -> list[dict[str, Any]]:
+    """Count the steps at which bounds or rows acted, those with an entry above zero."""
+    spells = []
+    for name, values in named:
+        steps = np.flatnonzero(values > 0)
+        if not steps.size:
+            continue
+        time = float(record.settings["dt"]) * steps.size
+        spell = {**name, "steps": steps.size, "time_s": time, "first_s": record.t[steps[0]]}
+        if sized:
+            multiplier = values[steps]
+            spell |= {"max_multiplier": multiplier.max(), "mean_multiplier": multiplier.mean()}
+        spells.append(spell)
+    return spells

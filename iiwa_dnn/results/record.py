@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
 import os
-import sys
 import tokenize
 import warnings
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, get_origin, get_type_hints
@@ -18,6 +16,7 @@ from typing import Annotated, Any, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, percent, plain, write_atomically
 from iiwa_dnn.results.column import Column
@@ -29,11 +28,21 @@ CodeArray = NDArray[np.int8]
 MODES = ("converged", "continuous")
 LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
 
-# Errors of NumPy, zip and JSON on a damaged file; InvalidInputError is a ValueError.
-_DAMAGE = (
-    ValueError, TypeError, EOFError, SyntaxError, MemoryError, zipfile.BadZipFile, zlib.error,
-    NotImplementedError, RuntimeError, OverflowError, tokenize.TokenError,
-)  # fmt: skip
+# Errors of NumPy, zip and JSON on a missing or damaged file; InvalidInputError is a ValueError.
+_UNREADABLE = (
+    OSError,
+    LookupError,
+    ValueError,
+    TypeError,
+    EOFError,
+    SyntaxError,
+    MemoryError,
+    RuntimeError,
+    ArithmeticError,
+    zipfile.BadZipFile,
+    zlib.error,
+    tokenize.TokenError,
+)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -187,12 +196,7 @@ class Record:
             object.__setattr__(self, name, column.check(name, getattr(self, name), sizes))
         if not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        limits = LIMITS if self.torque is None else (*LIMITS, "torque_max")
-        object.__setattr__(self, "settings", _checked(self.settings, limits, sizes))
-        if (self.distance is None) != (self.nearest is None):
-            raise InvalidInputError("distance", "and nearest come together", self.distance)
-        if self.nearest is not None:
-            _check_pairs(self.settings, self.nearest)
+        object.__setattr__(self, "settings", _checked(self, sizes))
         # One solver's NaN does not hide another's answer.
         gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
         gap.flags.writeable = False
@@ -226,15 +230,22 @@ class Record:
     @property
     def path_time(self) -> float:
         """Time of the path that the reference's clock covered [s]."""
-        steps = self.steps if self.fraction is None else self.fraction.sum()
-        return float(self.settings["dt"]) * float(steps)
+        return float(self.settings["dt"]) * float(self.filled("fraction").sum())
 
     @property
     def path_completed(self) -> float:
-        """Share of the asked path time that the reference's clock covered, 0 to 1."""
-        dt, duration = float(self.settings["dt"]), self.settings["duration"]
-        share = self.path_time / (dt * max(1, round(duration / dt)))
-        return float(np.nan_to_num(np.clip(share, 0.0, 1.0)))
+        """Fraction of the path's duration that the reference's clock covered, 0 to 1."""
+        dt = float(self.settings["dt"])
+        fraction = self.path_time / (dt * max(1, round(self.settings["duration"] / dt)))
+        return float(np.nan_to_num(np.clip(fraction, 0.0, 1.0)))
+
+    def filled(self, name: str) -> NDArray[Any]:
+        """Return the column of this name, or if the run lacks it one of its fill values."""
+        array: NDArray[Any] | None = getattr(self, name)
+        if array is not None:
+            return array
+        sizes = {"n": self.dof, "m": len(self.settings.get("rows") or ()), "l": 0, "f": 0}
+        return COLUMNS[name].allocate(self.steps, **sizes)
 
     @property
     def _columns(self) -> dict[str, Column]:
@@ -274,24 +285,18 @@ class Record:
             with Path(path).open("rb") as file, warnings.catch_warnings():
                 # NumPy warns of a slightly wrong head before it gives up.
                 warnings.simplefilter("ignore", UserWarning)
-                arrays = np.load(file, allow_pickle=False)
-                if not isinstance(arrays, np.lib.npyio.NpzFile):
-                    raise FileError(path, "not a record: not an .npz archive")
-                needed = (name for name in COLUMNS if name in arrays or name not in OPTIONAL)
-                stored: dict[str, Any] = {name: arrays[name] for name in needed}
-                stored_gap, text = arrays["crosscheck_gap"], str(arrays["settings"])
-            record = cls(settings=json.loads(text), **stored)
-            same_gap = np.array_equal(stored_gap, record.crosscheck_gap, equal_nan=True)
-        except FileError:
-            raise
-        except OSError as error:
-            raise FileError(path, f"cannot be read ({one_line(error)})") from error
-        except KeyError as error:
-            raise FileError(path, f"not a record: {one_line(error)}") from error
-        except _DAMAGE as error:
-            raise FileError(path, f"not a record, or damaged: {one_line(error)}") from error
-        if not same_gap:
-            raise FileError(path, "crosscheck_gap is not the largest solution_gap of each step")
+                stored = np.load(file, allow_pickle=False)
+                if not isinstance(stored, np.lib.npyio.NpzFile):
+                    raise ValueError("not an .npz archive")
+                names = [name for name in COLUMNS if name in stored or name not in OPTIONAL]
+                arrays: dict[str, Any] = {name: stored[name] for name in (*names, "crosscheck_gap")}
+                settings = json.loads(str(stored["settings"]))
+            gap = arrays.pop("crosscheck_gap")
+            record = cls(settings=settings, **arrays)
+            if not np.array_equal(gap, record.crosscheck_gap, equal_nan=True):
+                raise ValueError("crosscheck_gap is not the largest solution_gap of each step")
+        except _UNREADABLE as error:
+            raise FileError(path, f"cannot be read as a record: {one_line(error)}") from error
         return record
 
 
@@ -324,46 +329,39 @@ def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any
     return ended
 
 
-def _checked(
-    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
-) -> dict[str, Any]:
+def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
     """Return the settings in JSON types after a check of all keys that the metrics need."""
-    if not isinstance(settings, Mapping):
-        raise InvalidInputError("settings", "must be a dict", settings)
     try:
-        checked: dict[str, Any] = plain(settings)
-        _check_lists(checked, limits, sizes)
-        check, times = checked["check"], (checked["dt"], checked["duration"])
-        tolerances = (checked["tol"], check["tolerance"], check["reference_tolerance"])
-        numbers = all(map(_is_number, (*times, *tolerances)))
-        if not (numbers and min(times) > 0 and min(tolerances) >= 0):
-            problem = "dt and duration must be positive, and no tolerance negative"
-            raise InvalidInputError("settings", problem, (*times, *tolerances))
-        if not math.isfinite(checked["duration"] / checked["dt"]):
-            raise InvalidInputError("settings", "duration / dt is not finite", times)
-        texts = all(isinstance(checked[key], str) for key in ("robot", "status"))
-        if checked["mode"] not in MODES or not texts:
-            problem = f"mode must be one of {MODES}, robot and status a text"
-            raise InvalidInputError("settings", problem, checked["mode"])
+        settings: dict[str, Any] = plain(record.settings)
+        _check_limits(settings, LIMITS if record.torque is None else (*LIMITS, "torque_max"), sizes)
+        _check_names(settings, sizes)
+        _check_values(settings)
+        _check_pairs(settings, record)
     except KeyError as error:
-        raise InvalidInputError("settings", f"{error} is missing", settings) from error
-    except TypeError as error:
-        raise InvalidInputError("settings", str(error), settings) from error
-    return checked
+        raise InvalidInputError("settings", f"{error} is missing", record.settings) from error
+    except (TypeError, OverflowError) as error:
+        raise InvalidInputError("settings", str(error), record.settings) from error
+    return settings
 
 
-def _check_lists(
-    settings: Mapping[str, Any], limits: tuple[str, ...], sizes: Mapping[str, int]
+def _check_limits(
+    settings: Mapping[str, Any], keys: Iterable[str], sizes: Mapping[str, int]
 ) -> None:
-    """Check that limits, solvers and rows are as many as the arrays have columns."""
-    for key in limits:
-        values, n = settings[key], sizes["n"]
-        if len(values) != n or not all(value is None or _is_number(value) for value in values):
-            raise InvalidInputError(f"settings[{key!r}]", f"must hold {n} limits", values)
-    names, k = settings["check"]["solvers"], sizes["k"]
-    if len(names) != k or not all(isinstance(name, str) for name in names):
-        problem = f"must name {k} solvers, one for each column of solution_gap"
-        raise InvalidInputError("settings['check']['solvers']", problem, settings["check"])
+    """Check that each limit has a number or None for every joint."""
+    for key in keys:
+        values = settings[key]
+        numbers = [value for value in values if value is not None]
+        if len(values) != sizes["n"] or not np.isfinite(np.array(numbers)).all():
+            problem = f"must hold {sizes['n']} limits"
+            raise InvalidInputError(f"settings[{key!r}]", problem, values)
+
+
+def _check_names(settings: Mapping[str, Any], sizes: Mapping[str, int]) -> None:
+    """Check that the columns of the arrays have as many names of solvers and rows."""
+    solvers = settings["check"]["solvers"]
+    if len(solvers) != sizes["k"] or not all(isinstance(name, str) for name in solvers):
+        problem = f"must name {sizes['k']} solvers, one for each column of solution_gap"
+        raise InvalidInputError("settings['check']['solvers']", problem, solvers)
     rows = settings.get("rows") or []
     named = all(isinstance(row["part"], str) and row["row"] >= 1 for row in rows)
     if not named or len(rows) != sizes.get("m", len(rows)):
@@ -371,20 +369,28 @@ def _check_lists(
         raise InvalidInputError("settings['rows']", problem, rows)
 
 
-def _check_pairs(settings: Mapping[str, Any], nearest: IntArray) -> None:
-    """Check that every index of a pair has a name, and the least distance is stated."""
-    try:
-        pairs, distance = settings["collisions"]["pairs"], settings["collisions"]["distance"]
-        fits = nearest.min() >= 0 and nearest.max() < len(pairs) and _is_number(distance)
-    except (KeyError, TypeError):
-        fits = False
-    if not fits:
-        problem = "must state the distance, and the pairs that the array nearest counts"
-        raise InvalidInputError("settings['collisions']", problem, settings.get("collisions"))
+def _check_values(settings: Mapping[str, Any]) -> None:
+    """Check mode, texts, times and tolerances."""
+    checks.one_of("settings['mode']", settings["mode"], MODES)
+    for key in ("robot", "status"):
+        if not isinstance(settings[key], str):
+            raise InvalidInputError(f"settings[{key!r}]", "must be a text", settings[key])
+    for key in ("dt", "duration"):
+        checks.positive(f"settings[{key!r}]", settings[key])
+    checks.not_negative("settings['tol']", settings["tol"])
+    for key in ("tolerance", "reference_tolerance"):
+        checks.not_negative(f"settings['check'][{key!r}]", settings["check"][key])
+    checks.finite("settings: duration / dt", settings["duration"] / settings["dt"])
 
 
-def _is_number(value: object) -> bool:
-    """Tell whether a value out of JSON is a number within the range of a float."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return abs(value) <= sys.float_info.max
+def _check_pairs(settings: Mapping[str, Any], record: Record) -> None:
+    """Check that every index of a nearest pair has a name, and that the distance is stated."""
+    if (record.distance is None) != (record.nearest is None):
+        raise InvalidInputError("distance", "and nearest come together", record.distance)
+    if record.nearest is None:
+        return
+    collisions = settings["collisions"]
+    checks.finite("settings['collisions']['distance']", collisions["distance"])
+    if not 0 <= record.nearest.min() <= record.nearest.max() < len(collisions["pairs"]):
+        problem = "must name the pairs that the array nearest counts"
+        raise InvalidInputError("settings['collisions']['pairs']", problem, collisions["pairs"])

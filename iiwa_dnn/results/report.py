@@ -3,6 +3,7 @@
 import os
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -318,27 +319,27 @@ def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [(name, _text(value)) for name, value in named.items()]
 
 
-def _number(value: float | str | None) -> str:
-    if value is None or isinstance(value, str):
-        return value or "unknown"
-    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}"
-
-
-def _short(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    return "unknown" if value is None else _text(value)
-
-
-def _text(value: object) -> str:
-    """Put a setting in words: 'name = value' pairs, equal entries of a list said once."""
+def _text(value: object, digits: int = 6, unknown: str = "none") -> str:
+    """Put a value in words: 'name = value' pairs, equal entries of a list said once."""
     if isinstance(value, Mapping):
         return ", ".join(f"{key} = {_text(item)}" for key, item in value.items())
     if isinstance(value, list):
-        if len(value) > 1 and all(item == value[0] for item in value):
-            return f"{_text(value[0])} (all {len(value)})"
-        texts = (f"({_text(v)})" if isinstance(v, Mapping) else _text(v) for v in value)
-        return " ".join(texts) or "none"
-    if isinstance(value, bool) or value is None:
-        return "none" if value is None else str(value).lower()
-    return _number(value) if isinstance(value, int | float) else str(value)
+        return _list_text(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        return f"{value:.{digits}g}"
+    if isinstance(value, int):
+        return f"{value:,}"
+    return unknown if value is None else str(value)
+
+
+def _list_text(values: list[object]) -> str:
+    if len(values) > 1 and all(value == values[0] for value in values):
+        return f"{_text(values[0])} (all {len(values)})"
+    texts = (f"({_text(v)})" if isinstance(v, Mapping) else _text(v) for v in values)
+    return " ".join(texts) or "none"
+
+
+_number = partial(_text, unknown="unknown")
+_short = partial(_text, digits=4, unknown="unknown")

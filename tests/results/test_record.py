@@ -241,7 +241,12 @@ def test_wrong_arrays(name, value, words):
     [
         ({"q_lower": [0.0] * 6}, "7 limits"),
         ({"mode": "fast"}, "mode"),
-        ({"dt": 0.0}, "positive"),
+        ({"dt": 0.0}, "dt"),
+        ({"duration": 1e300, "dt": 1e-300}, "duration"),
+        ({"robot": 3}, "robot"),
+        ({"q_lower": ["a"] * 7}, "settings"),
+        ({"q_lower": [10**400] * 7}, "settings"),
+        ({"dt": 10**400}, "settings"),
         ({"tol": float("nan")}, "settings"),
         ({"seed": {1}}, "JSON"),
         ({"check": {"solvers": [], "tolerance": 1e-6, "reference_tolerance": 1e-8}}, "1 solver"),
