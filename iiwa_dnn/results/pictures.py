@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.record import FloatArray, IntArray, Record
 from iiwa_dnn.results.scenery import SCENERY_GROUP, add_meshes, add_obstacles, add_scenery
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
 from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
@@ -39,13 +39,24 @@ MOMENTS = 5
 FRAME_RATE = 25
 """Pictures in a second of the video, which runs in real time."""
 
-WIDTH, HEIGHT, SIDE = 960, 540, 420  # of the video, and of the path on its right [pixel]
+WIDTH = 960  # of the video [pixel]
+HEIGHT = 540
+SIDE = 420  # width of the path on its right
 _MARGIN = 12
 
-DESIRED_COLOUR = (0.2, 0.25, 0.35, 1.0)
-DRAWN_COLOUR = (0.86, 0.0, 0.1, 1.0)
+_DESIRED = (0.2, 0.25, 0.35, 1.0)
+_DRAWN = (0.86, 0.0, 0.1, 1.0)
 
 _PIECES = 400  # straight ones that a path is drawn with
+_ENCODING: dict[str, Any] = {
+    "fps": FRAME_RATE,
+    "codec": "libx264",
+    "quality": None,
+    "macro_block_size": 2,
+    "ffmpeg_log_level": "error",
+    # Good quality; the index at the front, so that a page can start to play it at once.
+    "output_params": ["-crf", "20", "-preset", "fast", "-movflags", "+faststart"],
+}
 
 
 def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -> list[Path]:
@@ -66,14 +77,14 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     Raises:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
     """
-    samples = [sample_at(record, t) for t in moments(record)]
     figure = new_figure(DOUBLE_COLUMN, 2.0 * DOUBLE_COLUMN / MOMENTS + 0.2)
     layout: Any = figure.get_layout_engine()
     layout.set(w_pad=0.02, h_pad=0.02, wspace=0.0, hspace=0.0)
     views: tuple[View, View] = ("arm", "path")
     for panels, view in zip(figure.subplots(2, MOMENTS), views, strict=True):
         with ArmRenderer(robot, record, pixels, pixels, view) as renderer:
-            for panel, sample in zip(panels, samples, strict=True):
+            for panel, t in zip(panels, moments(record), strict=True):
+                sample = sample_at(record, t)
                 panel.imshow(renderer.draw(sample), interpolation="lanczos")
                 panel.set_axis_off()
                 if view == "arm":
@@ -83,8 +94,7 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
 
 def moments(record: Record) -> list[float]:
     """Return the times that the figure shows [s]."""
-    times: list[float] = np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:].tolist()
-    return times
+    return list(map(float, np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:]))
 
 
 def save_video(
@@ -102,16 +112,10 @@ def save_video(
         FileError: The file cannot be written.
     """
     encoder = import_encoder()
-    options: dict[str, Any] = {
-        "fps": FRAME_RATE, "codec": "libx264", "quality": None, "macro_block_size": 2,
-        "ffmpeg_log_level": "error",
-        # Good quality; the index at the front, so that a page can start to play it at once.
-        "output_params": ["-crf", "20", "-preset", "fast", "-movflags", "+faststart"],
-    }  # fmt: skip
     path = Path(path)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "video.mp4"
-        writer = encoder.write_frames(str(file), (WIDTH, HEIGHT), **options)
+        writer = encoder.write_frames(str(file), (WIDTH, HEIGHT), **_ENCODING)
         try:
             writer.send(None)
             for frame in frames(robot, record):
@@ -138,8 +142,7 @@ def import_encoder() -> Any:
 def frame_times(record: Record) -> list[float]:
     """Return the times of the video's pictures [s], the run's first and last among them."""
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
-    times: list[float] = np.linspace(record.t[0], record.t[-1], count).tolist()
-    return times
+    return list(map(float, np.linspace(record.t[0], record.t[-1], count)))
 
 
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
@@ -187,102 +190,131 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
             MissingDependencyError: MuJoCo or an OpenGL library is not installed.
             InvalidInputError: MuJoCo cannot take the robot.
         """
-        self._mj = mj = import_mujoco()
+        self._mj = import_mujoco()
         opengl_library()  # before the slow part
-        self._record, self._width, self._height, self._view = record, width, height, view
-        # Both paths may have 100,000 samples.
-        self._corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
-        self._paths = [(record.position_desired[self._corners], record.position)]
-        if view == "arm" and record.frame_position is not None:
-            wished, drawn = record.frame_position_desired, record.frame_position
-            assert wished is not None
-            self._paths += [(wished[self._corners, f], drawn[:, f]) for f in range(drawn.shape[1])]
+        self._record = record
+        self._view = view
+        self._paths = _paths(record, view)
         spec = build_spec(robot)
-        spec.visual.global_.offwidth, spec.visual.global_.offheight = width, height
-        spec.visual.quality.offsamples = 4 if smooth else 0
-        spec.visual.quality.shadowsize = 4096 if smooth else 1024
+        add_scenery(self._mj, spec, record)
+        self._obstacles = add_obstacles(self._mj, spec, record)
         if view == "arm":
-            add_meshes(mj, spec, robot)
-        add_scenery(mj, spec, record)
-        self._obstacles = add_obstacles(mj, spec, record)
+            add_meshes(self._mj, spec, robot)
         self._model = spec.compile()
-        self._data = mj.MjData(self._model)
-        self._camera = (_arm_camera if view == "arm" else _path_camera)(mj, record)
+        self._data = self._mj.MjData(self._model)
         if view == "arm":
-            self._show_all()
-        if view == "path":
+            self._data.qpos[:] = record.q[0]
+            self._mj.mj_kinematics(self._model, self._data)
+            top = float(self._data.xpos[:, 2].max())
+            self._camera = _arm_camera(self._mj, record, top)
+        else:
+            self._camera = _path_camera(self._mj, record)
             self._camera.distance *= max(1.0, height / width)  # its angle is that of the height
-        turn, tilt = np.radians([self._camera.azimuth, self._camera.elevation])
-        sight = np.cos(tilt) * np.array([np.cos(turn), np.sin(turn), np.tan(tilt)])
-        self._behind = 2e-3 * self._camera.distance * sight
-        self._options = mj.MjvOption()
-        self._options.geomgroup[:] = 0
-        self._options.geomgroup[SCENERY_GROUP], self._options.sitegroup[:] = 1, 0
-        self._options.geomgroup[VISUAL_GROUP] = view == "arm"
+        self._options = _options(self._mj, view)
         most = self._model.ngeom + 2 * _PIECES * len(self._paths) + 10
-        self._scene = mj.MjvScene(self._model, maxgeom=most)
-        self._scene.flags[mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
-        # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
-        self._opengl = open_context(width, height)
-        self._drawing = mj.MjrContext(self._model, mj.mjtFontScale.mjFONTSCALE_100.value)
-        mj.mjr_setBuffer(mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
-
-    def _show_all(self) -> None:
-        """Step back where parts of the robot are far above the arm's reach: a head, for example."""
-        self._data.qpos[:] = self._record.q[0]
-        self._mj.mj_kinematics(self._model, self._data)
-        top, reach = float(self._data.xpos[:, 2].max()), self._camera.distance / 1.8
-        if top > 1.1 * reach:
-            self._camera.lookat[2] = 0.5 * top
-            self._camera.distance = 1.8 * top
+        self._screen = _Screen(self._model, width, height, smooth)
+        self._scene = self._mj.MjvScene(self._model, maxgeom=most)
+        self._scene.flags[self._mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
 
     def __exit__(self, *_: object) -> None:
+        """Give the OpenGL context back."""
+        self._screen.free()
+
+    def draw(self, sample: int) -> Image:
+        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colors to 255."""
+        mj = self._mj
+        self._data.qpos[:] = self._record.q[sample]
+        for i, obstacle in enumerate(self._obstacles):
+            self._data.mocap_pos[i] = obstacle.shift(float(self._record.t[sample]))
+        mj.mj_kinematics(self._model, self._data)
+        mj.mj_camlight(self._model, self._data)
+        every = mj.mjtCatBit.mjCAT_ALL.value
+        mj.mjv_updateScene(
+            self._model, self._data, self._options, None, self._camera, every, self._scene
+        )
+        width = max(3.0, self._screen.frame.height / 130.0)
+        # A little farther off than what is drawn, so that it never shows through that.
+        behind = 2e-3 * self._camera.distance * self._scene.camera[0].forward
+        corners = _corners(self._record)
+        passed = [*corners[corners < sample], sample]
+        for desired, drawn in self._paths:
+            self._line(desired[corners] + behind, 0.4 * width, _DESIRED)
+            self._line(drawn[passed], width, _DRAWN)
+        if self._view == "path":  # a dot for the tip
+            size = 0.008 * self._camera.distance
+            black = (0.0, 0.0, 0.0, 1.0)
+            self._geom(mj.mjtGeom.mjGEOM_SPHERE, black, size, self._record.position[sample])
+        return self._screen.image(self._scene)
+
+    def _line(self, points: FloatArray, width: float, color: tuple[float, ...]) -> None:
+        """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
+        line = self._mj.mjtGeom.mjGEOM_LINE
+        for start, end in pairwise(points):
+            geom = self._geom(line, color, 0.0, start)
+            self._mj.mjv_connector(geom, line, width, start, end)
+            geom.emission = 1.0  # the color as it is, whatever the light
+
+    def _geom(self, kind: Any, color: tuple[float, ...], size: float, at: FloatArray) -> Any:
+        """Add a shape to the scene."""
+        geom = self._scene.geoms[self._scene.ngeom]
+        rgba = np.array(color, dtype=np.float32)
+        self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
+        self._scene.ngeom += 1
+        return geom
+
+
+class _Screen:
+    """A picture in memory that MuJoCo draws a model into."""
+
+    def __init__(self, model: Any, width: int, height: int, smooth: bool) -> None:
+        self._mj = import_mujoco()
+        self.frame = self._mj.MjrRect(0, 0, width, height)
+        model.vis.global_.offwidth = width
+        model.vis.global_.offheight = height
+        model.vis.quality.offsamples = 4 if smooth else 0
+        model.vis.quality.shadowsize = 4096 if smooth else 1024
+        # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
+        self._opengl = open_context(width, height)
+        self._drawing = self._mj.MjrContext(model, self._mj.mjtFontScale.mjFONTSCALE_100.value)
+        self._mj.mjr_setBuffer(self._mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
+
+    def image(self, scene: Any) -> Image:
+        """Draw a scene, (height, width, 3)."""
+        image: Image = np.empty((self.frame.height, self.frame.width, 3), dtype=np.uint8)
+        self._opengl.make_current()  # another renderer may have drawn since
+        self._mj.mjr_render(self.frame, scene, self._drawing)
+        self._mj.mjr_readPixels(image, None, self.frame, self._drawing)
+        return image[::-1]  # OpenGL counts rows from below
+
+    def free(self) -> None:
         """Give the OpenGL context back."""
         self._opengl.make_current()
         self._drawing.free()
         self._opengl.free()
 
-    def draw(self, sample: int) -> Image:
-        """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colours to 255."""
-        mj = self._mj
-        self._data.qpos[:] = self._record.q[sample]
-        for number, obstacle in enumerate(self._obstacles):
-            self._data.mocap_pos[number] = obstacle.shift(float(self._record.t[sample]))
-        mj.mj_kinematics(self._model, self._data)
-        mj.mj_camlight(self._model, self._data)
-        mj.mjv_updateScene(
-            self._model, self._data, self._options, None, self._camera,
-            mj.mjtCatBit.mjCAT_ALL.value, self._scene,
-        )  # fmt: skip
-        wide = max(3.0, self._height / 130.0)
-        # A little farther off than what is drawn, so that it never shows through that.
-        passed = [*self._corners[self._corners < sample], sample]
-        for desired, drawn in self._paths:
-            self._line(desired + self._behind, 0.4 * wide, DESIRED_COLOUR)
-            self._line(drawn[passed], wide, DRAWN_COLOUR)
-        if self._view == "path":  # a dot for the tip
-            size, at = 0.008 * self._camera.distance, self._record.position[sample]
-            self._geom(mj.mjtGeom.mjGEOM_SPHERE, (0.0, 0.0, 0.0, 1.0), size, at)
-        frame = mj.MjrRect(0, 0, self._width, self._height)
-        image: Image = np.empty((self._height, self._width, 3), dtype=np.uint8)
-        self._opengl.make_current()  # another renderer may have drawn since
-        mj.mjr_render(frame, self._scene, self._drawing)
-        mj.mjr_readPixels(image, None, frame, self._drawing)
-        return image[::-1]  # OpenGL counts rows from below
 
-    def _line(self, points: FloatArray, width: float, colour: tuple[float, ...]) -> None:
-        """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
-        for start, end in pairwise(points):
-            geom = self._geom(self._mj.mjtGeom.mjGEOM_LINE, colour, 0.0, start)
-            self._mj.mjv_connector(geom, self._mj.mjtGeom.mjGEOM_LINE, width, start, end)
-            geom.emission = 1.0  # the colour as it is, whatever the light
+def _corners(record: Record) -> IntArray:
+    """Choose the samples that a path is drawn through; a record may have 100,000."""
+    return np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
 
-    def _geom(self, kind: Any, colour: tuple[float, ...], size: float, at: FloatArray) -> Any:
-        """Add a shape to the scene."""
-        geom, rgba = self._scene.geoms[self._scene.ngeom], np.array(colour, dtype=np.float32)
-        self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
-        self._scene.ngeom += 1
-        return geom
+
+def _paths(record: Record, view: View) -> list[tuple[FloatArray, FloatArray]]:
+    """Return the desired and the drawn path, (N+1, 3) each: the tip's, of the arm all frames'."""
+    paths = [(record.position_desired, record.position)]
+    if view == "arm":
+        desired = record.filled("frame_position_desired").swapaxes(0, 1)
+        paths += zip(desired, record.filled("frame_position").swapaxes(0, 1), strict=True)
+    return paths
+
+
+def _options(mj: Any, view: View) -> Any:
+    """Choose what is drawn: the scenery, and of the arm's view the arm."""
+    options = mj.MjvOption()
+    options.sitegroup[:] = 0
+    options.geomgroup[:] = 0
+    options.geomgroup[SCENERY_GROUP] = 1
+    options.geomgroup[VISUAL_GROUP] = view == "arm"
+    return options
 
 
 def sample_at(record: Record, t: float) -> int:
@@ -290,13 +322,16 @@ def sample_at(record: Record, t: float) -> int:
     return int(np.abs(record.t - t).argmin())
 
 
-def _arm_camera(mj: Any, record: Record) -> Any:
-    """Place a camera that has the whole arm in view, from beside the path."""
+def _arm_camera(mj: Any, record: Record, top: float) -> Any:
+    """Aim a camera at the whole arm, up to its top [m], from beside the path."""
     camera = mj.MjvCamera()
     path = record.position_desired.mean(axis=0)
-    reach = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
-    camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * reach])
-    camera.distance = 1.8 * reach
+    radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
+    camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * radius])
+    camera.distance = 1.8 * radius
+    if top > 1.1 * radius:  # a head, for example
+        camera.lookat[2] = 0.5 * top
+        camera.distance = 1.8 * top
     # MuJoCo's azimuth is the direction of sight.
     camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
     camera.elevation = -38.0
@@ -304,7 +339,7 @@ def _arm_camera(mj: Any, record: Record) -> Any:
 
 
 def _path_camera(mj: Any, record: Record) -> Any:
-    """Place a camera that looks at the path's own plane, from above where it can."""
+    """Aim a camera at the path's own plane, from above where it can."""
     camera = mj.MjvCamera()
     path = record.position_desired
     camera.lookat[:] = 0.5 * (path.min(axis=0) + path.max(axis=0))

@@ -16,23 +16,27 @@ import numpy as np
 
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.results.envelope import BUCKETS, envelope
-from iiwa_dnn.results.metrics import limits, orientation_error, position_error
+from iiwa_dnn.results.metrics import frame_errors, limits, orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLUMN, DOUBLE_COLUMN = 3.5, 7.0  # widths in a two-column journal [in]
+COLUMN = 3.5  # width in a two-column journal [in]
+DOUBLE_COLUMN = 7.0
 STYLE = Path(__file__).with_name("style.mplstyle")
 
-_ROUGH, _COARSE = 40.0, 60  # ups and downs of a rough curve over its largest value; its stretches
+_ROUGH = 40.0  # sum of the ups and downs of a rough curve, over its largest value
+_COARSE = 60  # stretches that a rough curve is drawn in
 
 _JOINTS = {
     "q": (r"$q_{}$", "Joint angle [rad]"),
     "dq": (r"$\dot{{q}}_{}$", "Joint velocity [rad/s]"),
     "torque": (r"$\tau_{}$", "Joint torque [% of its limit]"),
 }
+_COMPONENTS = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
+_LIMIT_LINE: dict[str, Any] = {"color": "0.0", "linewidth": 0.8, "linestyle": (0, (8, 3))}
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
 _TURNS = 1e-9  # change of a desired rotation's entries from which on it is drawn as turning
@@ -44,15 +48,15 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
 
     The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
     ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
-    of a run in physics ``torques`` and of one that avoids collisions ``distance``. The same record
-    gives the same bytes.
+    of a run in physics ``torques``, of one that avoids collisions ``distance`` and of one that
+    tracks several frames ``frames``. The same record gives the same bytes.
     """
-    figures = {name: partial(draw, record) for name, draw in FIGURES.items()}
-    if record.torque is not None:
-        figures["torques"] = partial(_single, draw_joints, record, name="torque")
-    if record.distance is not None:
-        figures["distance"] = partial(_single, draw_distance, record)
-    return write_figures(figures, folder)
+    drawable = {
+        name: partial(draw, record)
+        for name, draw in FIGURES.items()
+        if name not in _COLUMN_OF or getattr(record, _COLUMN_OF[name]) is not None
+    }
+    return write_figures(drawable, folder)
 
 
 def write_figures(
@@ -122,16 +126,33 @@ def convergence_figure(record: Record) -> Figure:
     rows = 2 if record.references else 1
     figure = new_figure(COLUMN, 1.9 * rows)
     panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    check, t = record.settings["check"], record.t[:-1]
+    check = record.settings["check"]
     # In continuous mode both are a lag, which no tolerance is meant for.
     judged = record.settings["mode"] == "converged"
-    tolerances = judged * record.settings["tol"], judged * check["tolerance"]
-    draw_log(panels[0], t, record.kkt_residual[:, None], ["network"], tolerances[0])
+    t = record.t[:-1]
+    tolerance = judged * record.settings["tol"]
+    draw_log(panels[0], t, record.kkt_residual[:, None], ["network"], tolerance)
     panels[0].set_ylabel("KKT residual")
     if record.references:
-        draw_log(panels[1], t, record.solution_gap, check["solvers"], tolerances[1])
+        draw_log(panels[1], t, record.solution_gap, check["solvers"], judged * check["tolerance"])
         panels[1].set_ylabel("Gap to reference [rad/s]")
     time_axis(panels[-1], record)
+    return figure
+
+
+def frames_figure(record: Record) -> Figure:
+    """Draw distance and angle of each tracked frame to its target over time."""
+    figure = new_figure(COLUMN, 3.8)
+    panels = figure.subplots(2, 1, sharex=True)
+    distance, angle = frame_errors(record)
+    tip_distance = np.linalg.norm(position_error(record), axis=1)
+    names = [record.settings["tip"], *record.settings["frames"]]
+    draw_log(panels[0], record.t, np.column_stack([tip_distance, distance]), names)
+    draw_log(panels[1], record.t, np.column_stack([orientation_error(record), angle]), names)
+    panels[0].set_ylabel("Position error [m]")
+    panels[1].set_ylabel("Orientation error [rad]")
+    panels[1].get_legend().remove()
+    time_axis(panels[1], record)
     return figure
 
 
@@ -166,16 +187,15 @@ def draw_path(axes: Any, record: Record) -> None:
     """Draw the desired and the actual path [m], in axes made for the answer of `plane_of`."""
     plane = plane_of(record.position_desired)
     columns = list(plane or (0, 1, 2))
-    desired, actual = record.position_desired[:, columns].T, record.position[:, columns].T
+    actual = record.position[:, columns].T
     # Wide and pale under thin and dark: both stay visible where they coincide.
+    desired = record.position_desired[:, columns].T
     axes.plot(*desired, color="0.72", linewidth=3.2, label="desired")
     axes.plot(*actual, color="0.0", linestyle="--", label="actual")
     axes.plot(*actual[:, :1], color="0.0", marker="o", linestyle="", markersize=4, label="start")
-    labels = [f"${'xyz'[column]}$ [m]" for column in columns]
-    axes.set_xlabel(labels[0])
-    axes.set_ylabel(labels[1])
+    names = ("xlabel", "ylabel", "zlabel")
+    axes.set(**{name: f"${'xyz'[i]}$ [m]" for name, i in zip(names, columns, strict=False)})
     if plane is None:
-        axes.set_zlabel(labels[2])
         spans = [np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())]
         axes.set_box_aspect(spans, zoom=0.8)
         for axis, span in zip("xyz", spans, strict=True):  # a short edge has room for few numbers
@@ -190,39 +210,46 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
     The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them, the
-    third as a share of each joint's limit, linear up to 1 % and logarithmic beyond.
+    third as a fraction of each joint's limit, linear up to 1 % and logarithmic beyond.
     """
     import matplotlib
 
-    values, (label, quantity) = getattr(record, name), _JOINTS[name]
+    label, quantity = _JOINTS[name]
+    values = getattr(record, name)
     if name == "torque":
         values = 100.0 * values / limits(record, "torque_max")
         axes.set_yscale("symlog", linthresh=1.0, subs=(2.0, 5.0))
         axes.yaxis.set_major_formatter("{x:g}")
-    t, joints = record.t[: len(values)], record.dof
-    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, joints))
+    t = record.t[: len(values)]
+    colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     every = max(min(len(t), BUCKETS) // 7, 1)
     for joint, curve in enumerate(values.T):
-        _draw_curve(
-            axes, t, curve, color=colours[joint], linestyle=_DASHES[joint % len(_DASHES)],
-            marker=_MARKERS[joint % len(_MARKERS)],
+        style = {
+            "color": colors[joint],
+            "linestyle": _DASHES[joint % len(_DASHES)],
+            "marker": _MARKERS[joint % len(_MARKERS)],
             # Each joint's markers start elsewhere, lest they lie on top of each other.
-            markevery=(every * joint // joints, every), label=label.format(joint + 1),
-        )  # fmt: skip
+            "markevery": (every * joint // record.dof, every),
+            "label": label.format(joint + 1),
+        }
+        _draw_curve(axes, t, curve, **style)
     time_axis(axes, record)
     if name == "q":
-        _draw_limits(axes, record.settings["q_lower"] + record.settings["q_upper"])
+        _draw_limits(axes, [*limits(record, "q_lower", -np.inf), *limits(record, "q_upper")])
     elif name == "dq":
-        speeds = [speed for speed in record.settings["dq_max"] if speed is not None]
-        _draw_limits(axes, [*speeds, *(-speed for speed in speeds)])
+        _draw_limits(axes, [*-limits(record, "dq_max"), *limits(record, "dq_max")])
     axes.set_ylabel(quantity)
     legend_above(axes, columns=4)
 
 
 def _draw_curve(
-    axes: Axes, t: FloatArray, curve: FloatArray, buckets: int = BUCKETS, band: bool = True,
+    axes: Axes,
+    t: FloatArray,
+    curve: FloatArray,
+    buckets: int = BUCKETS,
+    band: bool = True,
     **line: Any,
-) -> None:  # fmt: skip
+) -> None:
     """Draw the mean of each stretch as a line in a pale band of its extremes.
 
     A band thinner than the line is left out; a noisy curve stays readable among others.
@@ -231,18 +258,16 @@ def _draw_curve(
     times, mean, least, greatest = envelope(t, curve, buckets)
     axes.plot(times, mean, **line)
     if band and len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
-        colour = line["color"]
-        axes.fill_between(times, least, greatest, color=colour, alpha=0.25, linewidth=0.3)
+        axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.3)
 
 
-def _draw_limits(axes: Axes, limits: list[float | None]) -> None:
+def _draw_limits(axes: Axes, values: list[float]) -> None:
     """Draw the limits near the curves; one far off would only flatten them."""
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)
-    near = {x for x in limits if x is not None and low - margin <= x <= high + margin}
-    for number, limit in enumerate(sorted(near)):
-        label = None if number else "limit"
-        axes.axhline(limit, color="0.0", linewidth=0.8, linestyle=(0, (8, 3)), label=label)
+    near = {value for value in values if low - margin <= value <= high + margin}
+    for i, limit in enumerate(sorted(near)):
+        axes.axhline(limit, label=None if i else "limit", **_LIMIT_LINE)
 
 
 def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None:
@@ -254,18 +279,14 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     error = position_error(record)
     norm = np.linalg.norm(error, axis=1)
     size = float(np.nanmax(norm, initial=0.0)) if largest is None else largest
-    fits = (pair for pair in _LENGTH_UNITS if size >= pair[1])
-    unit, scale = next(fits, _LENGTH_UNITS[0] if size == 0.0 else _LENGTH_UNITS[-1])
-    styles = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
-    mean = envelope(record.t, norm)[1]
-    mean = mean[np.isfinite(mean)]
-    rough = bool(np.abs(np.diff(mean)).sum() > _ROUGH * mean.max(initial=0.0))
+    fitting = (pair for pair in _LENGTH_UNITS if size >= pair[1])
+    unit, scale = next(fitting, _LENGTH_UNITS[0] if size == 0.0 else _LENGTH_UNITS[-1])
+    rough = _is_rough(record.t, norm)
     buckets = _COARSE if rough else BUCKETS
-    for (label, colour, dashes), curve in zip(styles, error.T, strict=True):
-        _draw_curve(
-            axes, record.t, curve / scale, buckets, not rough,  # four bands would hide each other
-            color=colour, linestyle=dashes, label=label,
-        )  # fmt: skip
+    for (label, color, dashes), curve in zip(_COMPONENTS, error.T, strict=True):
+        style = {"color": color, "linestyle": dashes, "label": label}
+        # Without bands if rough: four of them would hide each other.
+        _draw_curve(axes, record.t, curve / scale, buckets, band=not rough, **style)
     _draw_curve(axes, record.t, norm / scale, buckets, color="0.0", label=r"$\|e\|$")
     time_axis(axes, record)
     if largest:
@@ -274,14 +295,20 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
     legend_above(axes, columns=4)
 
 
+def _is_rough(t: FloatArray, curve: FloatArray) -> bool:
+    """Test whether the ups and downs of a curve, means of short stretches, dwarf its height."""
+    mean = envelope(t, curve)[1]
+    mean = mean[np.isfinite(mean)]
+    return bool(np.abs(np.diff(mean)).sum() > _ROUGH * mean.max(initial=0.0))
+
+
 def draw_distance(axes: Axes, record: Record) -> None:
     """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
-    if record.distance is not None:
-        # Of each stretch the smallest: that is what counts.
-        times, _, least, _ = envelope(record.t, record.distance)
-        axes.plot(times, least, color="0.0", label="nearest pair")
+    # Of each stretch the smallest: that is what counts.
+    times, _, least, _ = envelope(record.t, record.filled("distance"))
+    axes.plot(times, least, color="0.0", label="nearest pair")
     allowed = record.settings["collisions"]["distance"]
-    axes.axhline(allowed, color="0.0", linewidth=0.8, linestyle=(0, (8, 3)), label="least allowed")
+    axes.axhline(allowed, label="least allowed", **_LIMIT_LINE)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     time_axis(axes, record)
     axes.set_ylabel("Distance [m]")
@@ -297,29 +324,29 @@ def draw_log(
     crosses at the top, a tolerance above zero is a dashed line.
     """
     axes.set_yscale("log")
-    for name, curve, colour in zip(names, values.T, cycle(("0.15", "0.55", "0.35"))):
+    for name, curve, color in zip(names, values.T, cycle(("0.15", "0.55", "0.35"))):
         missing = np.isinf(curve)
-        # A log scale has no place for zero; a residual may well be zero.
+        # A log scale has no point for zero; a residual may well be zero.
         shown = (curve > 0.0) & ~missing
         times, _, least, greatest = envelope(t[shown], curve[shown])
         if times.size:
-            axes.fill_between(times, least, greatest, color=colour, alpha=0.25, linewidth=0.3)
-            _make_room(axes, least.min(), greatest.max())
+            axes.fill_between(times, least, greatest, color=color, alpha=0.25, linewidth=0.3)
+            _widen(axes, least.min(), greatest.max())
         alone = "." if len(times) == 1 else ""
-        axes.plot(times, greatest, color=colour, linewidth=0.8, marker=alone, label=name)
+        axes.plot(times, greatest, color=color, linewidth=0.8, marker=alone, label=name)
         if missing.any():
-            times = t[missing][:: max(int(missing.sum()) // 100, 1)]
+            marks = t[missing][:: max(int(missing.sum()) // 100, 1)]
+            height = np.full_like(marks, 0.96)
             top = axes.get_xaxis_transform()
-            height = np.full_like(times, 0.96)
-            axes.plot(times, height, "x", color="0.0", transform=top, label=f"{name} failed")
+            axes.plot(marks, height, "x", color="0.0", transform=top, label=f"{name} failed")
     if tolerance > 0.0:
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
-        _make_room(axes, tolerance, tolerance)
+        _widen(axes, tolerance, tolerance)
     legend_above(axes, columns=3)
 
 
-def _make_room(axes: Axes, low: float, high: float) -> None:
-    """Leave half a decade around these values, that a single one too has an axis to stand on."""
+def _widen(axes: Axes, low: float, high: float) -> None:
+    """Leave half a decade around these values, so that the axis of a single one has a length."""
     axes.update_datalim([(0.0, low / 3.0), (0.0, high * 3.0)], updatex=False)
 
 
@@ -342,4 +369,10 @@ FIGURES: dict[str, Callable[[Record], Figure]] = {
     "joint_velocities": partial(_single, draw_joints, name="dq"),
     "position_error": partial(_single, draw_error),
     "convergence": convergence_figure,
+    "torques": partial(_single, draw_joints, name="torque"),
+    "distance": partial(_single, draw_distance),
+    "frames": frames_figure,
 }
+"""Figures of a run by the names of their files."""
+
+_COLUMN_OF = {"torques": "torque", "distance": "distance", "frames": "frame_position"}

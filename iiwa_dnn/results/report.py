@@ -9,7 +9,6 @@ from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.results.failures import describe, failures, path_completed
-from iiwa_dnn.results.frames import save_frames
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures
@@ -127,7 +126,7 @@ def save_run(
     record.save(folder / "record.npz")
     metrics = compute_metrics(record)
     write_json(folder / "metrics.json", metrics)
-    figures = [*save_figures(record, folder), *save_frames(record, folder)] if plots else []
+    figures = save_figures(record, folder) if plots else []
     figures += more(record, folder) if more is not None else []
     write_report(record, metrics, folder, figures)
     return metrics

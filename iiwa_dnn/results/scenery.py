@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 SCENERY_GROUP = 2
 OBSTACLE_COLOUR = (0.25, 0.45, 0.75)
+_NO_CONTACT: dict[str, Any] = {"contype": 0, "conaffinity": 0}
 
 
 def obstacles_of(record: Record) -> list[Obstacle]:
@@ -32,70 +33,104 @@ def obstacles_of(record: Record) -> list[Obstacle]:
 def add_obstacles(mj: Any, spec: mujoco.MjSpec, record: Record) -> list[Obstacle]:
     """Add the obstacles of a record, each a mocap body that stands at its displacement."""
     obstacles = obstacles_of(record)
-    for number, obstacle in enumerate(obstacles):
+    for i, obstacle in enumerate(obstacles):
         vertices, faces = outline(obstacle)
-        name = f"obstacle_{number}"
+        name = f"obstacle_{i}"
         spec.add_mesh(name=name, uservert=vertices.ravel(), userface=faces.ravel())
         spec.worldbody.add_body(name=name, mocap=True).add_geom(
-            type=mj.mjtGeom.mjGEOM_MESH, meshname=name, rgba=[*OBSTACLE_COLOUR, 1.0],
-            group=SCENERY_GROUP, contype=0, conaffinity=0,
-        )  # fmt: skip
+            type=mj.mjtGeom.mjGEOM_MESH,
+            meshname=name,
+            rgba=[*OBSTACLE_COLOUR, 1.0],
+            group=SCENERY_GROUP,
+            **_NO_CONTACT,
+        )
     return obstacles
 
 
 def add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
     """Add the meshes of a robot, or sticks where it has no shapes; its primitives are there."""
     joints = {joint.name: joint.parent for joint in spec.joints}
-    drawn = {"group": VISUAL_GROUP, "contype": 0, "conaffinity": 0}
-    for number, shape in enumerate(visual_shapes(robot)):
+    for i, shape in enumerate(visual_shapes(robot)):
         if shape.mesh is None and shape.color != STICK_COLOR:
             continue
-        x, y, z, w = pin.Quaternion(shape.rotation).coeffs()
-        body = joints[robot.model.names[shape.joint]] if shape.joint else spec.worldbody
-        place = {"pos": shape.position, "quat": [w, x, y, z], "rgba": [*shape.color, 1.0], **drawn}
+        form: dict[str, Any]
         if shape.mesh is None:
             radius, length = shape.size
-            kind, size = mj.mjtGeom.mjGEOM_CYLINDER, [radius, 0.5 * length, 0.0]
-            body.add_geom(type=kind, size=size, **place)
-            continue
-        corners, faces = shape.mesh
-        spec.add_mesh(
-            name=f"shape_{number}", uservert=corners.ravel(), userface=faces.ravel(),
-            inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
-        )  # fmt: skip
-        body.add_geom(type=mj.mjtGeom.mjGEOM_MESH, meshname=f"shape_{number}", **place)
+            form = {"type": mj.mjtGeom.mjGEOM_CYLINDER, "size": [radius, 0.5 * length, 0.0]}
+        else:
+            corners, faces = shape.mesh
+            shell = mj.mjtMeshInertia.mjMESH_INERTIA_SHELL
+            form = {"type": mj.mjtGeom.mjGEOM_MESH, "meshname": f"shape_{i}"}
+            spec.add_mesh(
+                name=f"shape_{i}",
+                uservert=corners.ravel(),
+                userface=faces.ravel(),
+                inertia=shell,
+            )
+        x, y, z, w = pin.Quaternion(shape.rotation).coeffs()
+        body = joints[robot.model.names[shape.joint]] if shape.joint else spec.worldbody
+        body.add_geom(
+            pos=shape.position,
+            quat=[w, x, y, z],
+            rgba=[*shape.color, 1.0],
+            group=VISUAL_GROUP,
+            **form,
+            **_NO_CONTACT,
+        )
 
 
 def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
     """Add floor, light and, under a path in a horizontal plane, a sheet of paper."""
-    visual, world = spec.visual, spec.worldbody
-    visual.headlight.ambient[:] = 0.4
-    visual.headlight.diffuse[:] = 0.3
-    visual.headlight.specular[:] = 0.1
-    spec.stat.center, spec.stat.extent = [0.0, 0.0, 0.4], 1.2
+    spec.visual.headlight.ambient[:] = 0.4
+    spec.visual.headlight.diffuse[:] = 0.3
+    spec.visual.headlight.specular[:] = 0.1
+    spec.stat.center = [0.0, 0.0, 0.4]
+    spec.stat.extent = 1.2
     spec.add_texture(
-        name="sky", type=mj.mjtTexture.mjTEXTURE_SKYBOX, builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
-        rgb1=[1.0, 1.0, 1.0], rgb2=[1.0, 1.0, 1.0], width=16, height=16,
-    )  # fmt: skip
-    scenery = {"group": SCENERY_GROUP, "contype": 0, "conaffinity": 0}
+        name="sky",
+        type=mj.mjtTexture.mjTEXTURE_SKYBOX,
+        builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
+        rgb1=[1.0, 1.0, 1.0],
+        rgb2=[1.0, 1.0, 1.0],
+        width=16,
+        height=16,
+    )
     spec.add_texture(
-        name="tiles", type=mj.mjtTexture.mjTEXTURE_2D, builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.90, 0.91, 0.93], rgb2=[0.84, 0.86, 0.89], width=256, height=256,
-    )  # fmt: skip
+        name="tiles",
+        type=mj.mjtTexture.mjTEXTURE_2D,
+        builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=[0.90, 0.91, 0.93],
+        rgb2=[0.84, 0.86, 0.89],
+        width=256,
+        height=256,
+    )
     # A repeat has two tiles a side: they are 0.25 m wide.
     floor = spec.add_material(name="floor", texuniform=True, texrepeat=[2.0, 2.0])
     floor.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
-    world.add_geom(
-        type=mj.mjtGeom.mjGEOM_PLANE, size=[1.25, 1.25, 0.1], material="floor", **scenery
+    spec.worldbody.add_geom(
+        type=mj.mjtGeom.mjGEOM_PLANE,
+        size=[1.25, 1.25, 0.1],
+        material="floor",
+        group=SCENERY_GROUP,
+        **_NO_CONTACT,
     )
-    world.add_light(
-        pos=[0.8, -0.6, 2.6], dir=[-0.25, 0.2, -1.0], diffuse=[0.55, 0.55, 0.55],
-        castshadow=True, type=mj.mjtLightType.mjLIGHT_SPOT, cutoff=60.0, exponent=1.0,
-    )  # fmt: skip
-    low, high = record.position_desired.min(axis=0), record.position_desired.max(axis=0)
+    spec.worldbody.add_light(
+        pos=[0.8, -0.6, 2.6],
+        dir=[-0.25, 0.2, -1.0],
+        diffuse=[0.55, 0.55, 0.55],
+        castshadow=True,
+        type=mj.mjtLightType.mjLIGHT_SPOT,
+        cutoff=60.0,
+        exponent=1.0,
+    )
+    low = record.position_desired.min(axis=0)
+    high = record.position_desired.max(axis=0)
     if high[2] - low[2] < 1e-3 < high[0] - low[0]:
-        size, middle = 0.5 * (high - low)[:2] + 0.03, 0.5 * (high + low)[:2]
-        world.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
-            type=mj.mjtGeom.mjGEOM_BOX, size=[*size, 1e-3], rgba=[1.0, 1.0, 0.97, 1.0],
-            pos=[*middle, low[2] - 3e-3], **scenery,
-        )  # fmt: skip
+        spec.worldbody.add_geom(  # a margin of 3 cm around the path, and 3 mm below it
+            type=mj.mjtGeom.mjGEOM_BOX,
+            size=[*(0.5 * (high - low)[:2] + 0.03), 1e-3],
+            rgba=[1.0, 1.0, 0.97, 1.0],
+            pos=[*(0.5 * (high + low)[:2]), low[2] - 3e-3],
+            group=SCENERY_GROUP,
+            **_NO_CONTACT,
+        )
