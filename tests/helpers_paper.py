@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,14 @@ def choice(run: HeartRun) -> dict[str, Any]:
 def made_up_tables() -> dict[str, dict[str, Any]]:
     """All three tables out of these numbers."""
     return {
-        "table1": table1.tabulate(SCOPE, [by_weight(run) for run in table1.cells(SCOPE)]),
-        "table2": table2.tabulate(SCOPE, [noisy_case(run) for run in table2.cells(SCOPE)]),
-        "ablation": ablation.tabulate(SCOPE, [choice(run) for run in ablation.cells(SCOPE)]),
+        "table1": table_of(table1, by_weight),
+        "table2": table_of(table2, noisy_case),
+        "ablation": table_of(ablation, choice),
     }
+
+
+def table_of(experiment: Any, made_up: Callable[[HeartRun], dict[str, Any]]) -> dict[str, Any]:
+    """The table of an experiment whose runs have made-up numbers."""
+    runs = experiment.cells(SCOPE)
+    table: dict[str, Any] = experiment.tabulate(SCOPE, {k: made_up(r) for k, r in runs.items()})
+    return table

@@ -8,7 +8,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timezone
-from itertools import islice
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +19,8 @@ from iiwa_dnn.files import write_json
 from iiwa_dnn.studies import ablation, paper, table1, table2
 from iiwa_dnn.studies.paper_plots import save_paper_figures
 from iiwa_dnn.studies.paper_report import findings, write_paper_report
-from iiwa_dnn.studies.provenance import fingerprint
 from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, measure
+from iiwa_dnn.studies.sweeps import fingerprint
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 
@@ -31,11 +31,12 @@ def run(options: PaperOptions) -> int:
     scope = _scope(options)
     figures = figure_runs(scope)
     parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
-    cells = [cell.settings() for part in (*parts.values(), figures.values()) for cell in part]
+    runs = [*chain(*(part.values() for part in parts.values())), *figures.values()]
+    cells = [run.settings() for run in runs]
     sweep, results = run_sweep(options, measure, cells, options.dask)
     remaining = iter(results)
     tables = {
-        name: EXPERIMENTS[name].tabulate(scope, list(islice(remaining, len(part))))
+        name: EXPERIMENTS[name].tabulate(scope, dict(zip(part, remaining, strict=False)))
         for name, part in parts.items()
     }
     for name, table in tables.items():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import mujoco
 
 SCENERY_GROUP = 2
-OBSTACLE_COLOUR = (0.25, 0.45, 0.75)
+OBSTACLE_COLOR = (0.25, 0.45, 0.75)
 _NO_CONTACT: dict[str, Any] = {"contype": 0, "conaffinity": 0}
 
 
@@ -40,7 +40,7 @@ def add_obstacles(mj: Any, spec: mujoco.MjSpec, record: Record) -> list[Obstacle
         spec.worldbody.add_body(name=name, mocap=True).add_geom(
             type=mj.mjtGeom.mjGEOM_MESH,
             meshname=name,
-            rgba=[*OBSTACLE_COLOUR, 1.0],
+            rgba=[*OBSTACLE_COLOR, 1.0],
             group=SCENERY_GROUP,
             **_NO_CONTACT,
         )

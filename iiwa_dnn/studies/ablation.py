@@ -1,7 +1,7 @@
 """Choices that the paper leaves open, one against the other: integrator, orientation, noise."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from itertools import product
 from typing import Any, Literal
@@ -13,36 +13,47 @@ from iiwa_dnn.studies.runs import HeartRun, Scope
 
 SUBSTEPS: tuple[int | Literal["implicit"], ...] = (1, 2, 4, 7, 8, 16, "implicit")
 ORIENTATIONS: tuple[Orientation, ...] = ("block", "so3")
-ENTRIES = ("none", *NOISE_ENTRIES)
 
 _MEASURES = (
-    "max_position_error_m", "max_orientation_error_rad", "joint_drift_rad",
-    "total_variation_rad_s", "max_kinetic_index", "amplification", "status",
-)  # fmt: skip
+    "max_position_error_m",
+    "max_orientation_error_rad",
+    "joint_drift_rad",
+    "total_variation_rad_s",
+    "max_kinetic_index",
+    "amplification",
+    "status",
+)
 
 
-def cells(scope: Scope) -> list[HeartRun]:
-    """List every combination, in the paper's mode at the weight of its Table II, with one seed."""
+def cells(scope: Scope) -> dict[Any, HeartRun]:
+    """Make a run of each orientation, entry of the noise and advance of the network.
+
+    All are in the paper's mode at the weight of its Table II, with one seed.
+    """
     base = HeartRun(dt=scope.dt, duration=scope.duration)
-    runs = []
-    for choice in _combinations():
-        silent = choice["noise_at"] == "none"
-        noise = {"noise": 0.0, "noise_at": base.noise_at} if silent else {"noise": paper.NOISE}
-        runs.append(replace(base, **choice | noise))
+    runs: dict[Any, HeartRun] = {}
+    for orientation, substeps in product(ORIENTATIONS, SUBSTEPS):
+        quiet = replace(base, orientation=orientation, substeps=substeps)
+        runs[orientation, "none", substeps] = quiet
+        for entry in NOISE_ENTRIES:
+            noisy = replace(quiet, noise=paper.NOISE, noise_at=entry)
+            runs[orientation, entry, substeps] = noisy
     return runs
 
 
-def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str, Any]:
     """Lay out a row for each combination, and find the closest to the paper's drift.
 
     A row is stable if the network is integrated implicitly, or if no explicit sub-step of its run
-    magnifies an error. The results are those of `cells`, in that order; the table in JSON types.
+    magnifies an error. The results are those of `cells`; the table in JSON types.
     """
     drift = paper.DRIFT[paper.WEIGHTS.index(paper.WEIGHT)]
     rows = []
-    for combination, values in zip(_combinations(), results, strict=True):
-        row = combination | {key: values[key] for key in _MEASURES}
-        growth = row["amplification"]
+    for choice in product(ORIENTATIONS, ("none", *NOISE_ENTRIES), SUBSTEPS):
+        values = results[choice]
+        growth = values["amplification"]
+        row = dict(zip(("orientation", "noise_at", "substeps"), choice, strict=True))
+        row |= {key: values[key] for key in _MEASURES}
         rows.append(row | {"stable": growth is None or growth <= 1.0})
 
     def distance(row: Mapping[str, Any]) -> float:
@@ -58,10 +69,3 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
         "closest_to_the_papers_drift": min(rows, key=distance),
         "closest_stable": min((row for row in rows if row["stable"]), key=distance),
     }
-
-
-def _combinations() -> list[dict[str, Any]]:
-    return [
-        {"orientation": orientation, "noise_at": entry, "substeps": substeps}
-        for orientation, entry, substeps in product(ORIENTATIONS, ENTRIES, SUBSTEPS)
-    ]

@@ -1,20 +1,23 @@
 """Resumable grids of runs, on all cores through joblib or on a Dask cluster.
 
 A cell is one setting of a task, in JSON types. The outcome of a finished cell is one file, named by
-the hash of its settings and of all else that the numbers depend on (`provenance`). A sweep that was
-killed, even by ``kill -9``, finds the finished cells the next time and computes the others; after
-any change there are new cells, and old ones are never taken for them. Only the process that asked
-writes files, each atomically.
+the hash of its settings and of all else that the numbers depend on (`fingerprint`). A sweep that
+was killed, even by ``kill -9``, finds the finished cells the next time and computes the others;
+after any change there are new cells, and old ones are never taken for them. Only the process that
+asked writes files, each atomically.
 
 The answers come in the order of the cells, whatever the number of workers, and each worker keeps
 to one thread, so the same cells give the same numbers on one machine.
 """
 
 import hashlib
+import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +27,11 @@ from tqdm import tqdm
 from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, plain, prepare_folder, write_json
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.studies.provenance import fingerprint
+from iiwa_dnn.robot.loading import robots_folder
 
 Settings = Mapping[str, Any]
 
+_PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
 _PATIENCE = 10.0  # time to look for a scheduler [s]
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -48,6 +52,23 @@ class Outcome:
 
 
 Task = Callable[[Settings], Outcome]
+
+
+@cache
+def fingerprint(task: Task) -> dict[str, Any]:
+    """Collect everything that the numbers of a function depend on besides its arguments.
+
+    That is ``versions`` of the packages that compute, and ``source``, a hash of the function's
+    module, of all modules of this package, and of the robots' URDFs.
+    """
+    package = Path(__file__).parents[1]
+    files = [Path(inspect.getfile(task)), *sorted(package.rglob("*.py"))]
+    files += sorted(robots_folder().rglob("*.urdf"))
+    digest = hashlib.sha256()
+    for path in files:
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    versions = {name: version(name) for name in _PACKAGES}
+    return {"versions": versions, "source": digest.hexdigest()[:24]}
 
 
 @dataclass(frozen=True)
@@ -94,14 +115,17 @@ class Sweep:
         found = {name: self._read(name) for name in names}
         todo = {name: cell for name, cell in zip(names, cells, strict=True) if found[name] is None}
         bar = tqdm(
-            total=len(found), initial=len(found) - len(todo), unit="run", dynamic_ncols=True,
+            total=len(found),
+            initial=len(found) - len(todo),
+            unit="run",
+            dynamic_ncols=True,
             disable=quiet or None,  # None: no bar where standard error is not a terminal
-        )  # fmt: skip
+        )
         with bar:
             for name, outcome in self._outcomes(todo, workers, dask):
                 found[name] = self._write(name, todo[name], outcome)
                 bar.update()
-        return [values for name in names if (values := found[name]) is not None]
+        return [found[name] or {} for name in names]
 
     def record(self, cell: Settings) -> Record:
         """Load the record of a finished cell.
@@ -133,9 +157,9 @@ class Sweep:
     def _write(self, name: str, cell: Settings, outcome: Outcome) -> dict[str, Any]:
         """Write the outcome of a cell; the numbers last, since they say that it is finished."""
         values: dict[str, Any] = plain(outcome.values)
-        kept = outcome.record is not None
         if outcome.record is not None:
             outcome.record.save(self.folder / f"{name}.npz")
+        kept = outcome.record is not None
         content = {"identity": self._identity(cell), "record": kept, "values": values}
         write_json(self.folder / f"{name}.json", content)
         return values
@@ -159,7 +183,8 @@ def _compute(
     name: str, task: Task, cell: Settings, expected: dict[str, Any]
 ) -> tuple[str, Outcome]:
     """Compute a cell in a worker; one with other versions than the asking process refuses."""
-    if (own := fingerprint(task)) != expected:
+    own = fingerprint(task)
+    if own != expected:
         raise IiwaDnnError(f"a worker runs other versions: {own}, expected {expected}")
     try:
         return name, task(cell)

@@ -1,6 +1,6 @@
 """Table I: seven weights without noise, in the paper's way and in ours, and ten laps of drift."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -28,9 +28,15 @@ DRIFTERS: dict[str, HeartRun] = {
 """Runs that draw one heart after another."""
 
 _MEASURES = (
-    "max_position_error_m", "mse_position_error_m2", "joint_drift_rad", "max_kinetic_index",
-    "max_orientation_error_rad", "max_kkt_residual", "total_variation_rad_s", "status",
-)  # fmt: skip
+    "max_position_error_m",
+    "mse_position_error_m2",
+    "joint_drift_rad",
+    "max_kinetic_index",
+    "max_orientation_error_rad",
+    "max_kkt_residual",
+    "total_variation_rad_s",
+    "status",
+)
 _PAPER = {
     "max_position_error_m": paper.MAX_ERROR,
     "joint_drift_rad": paper.DRIFT,
@@ -40,25 +46,24 @@ _PAPER = {
 _JUDGED = _PAPER | {"max_kinetic_index_times_dt": paper.KINETIC_INDEX}
 
 
-def cells(scope: Scope) -> list[HeartRun]:
-    """List the runs of the table, weights of each variant in turn, and then the laps."""
-    weights = [
-        replace(variant, weight=weight, dt=scope.dt, duration=scope.duration)
-        for variant in VARIANTS.values()
+def cells(scope: Scope) -> dict[Any, HeartRun]:
+    """Make the runs of the table by variant and weight, and those of the laps by name."""
+    weights = {
+        (name, weight): replace(variant, weight=weight, dt=scope.dt, duration=scope.duration)
+        for name, variant in VARIANTS.items()
         for weight in paper.WEIGHTS
-    ]
+    }
     length = scope.laps * HeartRun().reference().period
-    laps = [replace(run, dt=scope.laps_dt, duration=length) for run in DRIFTERS.values()]
-    return [*weights, *laps]
+    laps = {name: replace(run, dt=scope.laps_dt, duration=length) for name, run in DRIFTERS.items()}
+    return weights | laps
 
 
-def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str, Any]:
     """Lay the results of `cells` out beside the paper's, with their verdicts, in JSON types."""
-    columns = len(paper.WEIGHTS)
     variants = {}
-    for i, name in enumerate(VARIANTS):
-        part = results[i * columns : (i + 1) * columns]
-        rows: dict[str, list[Any]] = {key: [values[key] for values in part] for key in _MEASURES}
+    for name in VARIANTS:
+        runs = [results[name, weight] for weight in paper.WEIGHTS]
+        rows: dict[str, list[Any]] = {key: [values[key] for values in runs] for key in _MEASURES}
         rows["max_kinetic_index_times_dt"] = [
             None if value is None else value * scope.dt for value in rows["max_kinetic_index"]
         ]
@@ -67,14 +72,11 @@ def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, An
             for key, printed in _JUDGED.items()
         }
         variants[name] = {"rows": rows, "verdicts": verdicts}
-    laps = zip(DRIFTERS, results[len(VARIANTS) * columns :], strict=True)
+    kept = ("lap_drift_rad", "max_position_error_m", "status")
     return {
         "scope": asdict(scope),
         "weights": list(paper.WEIGHTS),
         "paper": {key: list(printed) for key, printed in _PAPER.items()},
         "variants": variants,
-        "laps": {
-            name: {key: values[key] for key in ("lap_drift_rad", "max_position_error_m", "status")}
-            for name, values in laps
-        },
+        "laps": {name: {key: results[name][key] for key in kept} for name in DRIFTERS},
     }

@@ -13,7 +13,7 @@ robot moves by it, :math:`\delta^2` times that (docs/theory.md).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from itertools import islice
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -37,37 +37,40 @@ MEASURES = {"max_position_error_m": paper.CASES_MAX_ERROR, "mse_position_error_m
 """The paper's two measures and its numbers, in the order of `paper.CASES`."""
 
 
-def cells(scope: Scope) -> list[HeartRun]:
-    """List the runs: for each mode two without noise, then for each entry all seeds twice."""
-    runs = []
-    for mode in MODES.values():
+_WINDOWS = (1, paper.WINDOW)
+
+
+def cells(scope: Scope) -> dict[Any, HeartRun]:
+    """Make the runs by mode and window, and if noisy also by entry of the noise and seed."""
+    runs: dict[Any, HeartRun] = {}
+    for name, mode in MODES.items():
         base = replace(mode, dt=scope.dt, duration=scope.duration)
-        runs += [replace(base, filter_window=window) for window in (1, paper.WINDOW)]
-        runs += [
-            replace(base, noise=paper.NOISE, noise_at=entry, filter_window=window, seed=seed)
-            for entry in NOISE_ENTRIES
-            for window in (1, paper.WINDOW)
-            for seed in range(scope.seeds)
-        ]
+        for window in _WINDOWS:
+            quiet = replace(base, filter_window=window)
+            runs[name, window] = quiet
+            for entry, seed in product(NOISE_ENTRIES, range(scope.seeds)):
+                noisy = replace(quiet, noise=paper.NOISE, noise_at=entry, seed=seed)
+                runs[name, window, entry, seed] = noisy
     return runs
 
 
-def tabulate(scope: Scope, results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str, Any]:
     """Lay the results of `cells` out beside the paper's, with their verdicts, in JSON types."""
     modes: dict[str, Any] = {}
     growth: dict[str, float | None] = {}
-    size = len(results) // len(MODES)
-    for i, name in enumerate(MODES):
-        part = results[i * size : (i + 1) * size]
-        growths = [run["amplification"] for run in part if run["amplification"] is not None]
-        growth[name] = max(growths, default=None)
-        left, modes[name] = iter(part), {}
-        quiet = list(islice(left, 2))
+    for name in MODES:
+        growths = [values["amplification"] for key, values in results.items() if key[0] == name]
+        growth[name] = max((g for g in growths if g is not None), default=None)
+        quiet = [results[name, window] for window in _WINDOWS]
+        modes[name] = {}
         for entry in NOISE_ENTRIES:
-            noisy = [list(islice(left, scope.seeds)) for _ in range(2)]
+            noisy = [
+                [results[name, window, entry, seed] for seed in range(scope.seeds)]
+                for window in _WINDOWS
+            ]
             measures = {key: _measure(key, quiet, noisy) for key in MEASURES}
-            theory = {"theory_noise_mse_m2": _theory(entry, quiet[0], scope)}
-            modes[name][entry] = measures | theory
+            theory = _theory(entry, quiet[0], scope)
+            modes[name][entry] = measures | {"theory_noise_mse_m2": theory}
     return {
         "scope": asdict(scope),
         "weight": paper.WEIGHT,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import os
 import signal
@@ -18,7 +17,7 @@ import pytest
 
 from helpers_sweeps import cells, draw
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
-from iiwa_dnn.studies import provenance, sweeps
+from iiwa_dnn.studies import sweeps
 from iiwa_dnn.studies.runs import HeartRun, measure
 from iiwa_dnn.studies.sweeps import Outcome, Sweep
 
@@ -197,48 +196,23 @@ def test_a_scheduler_is_found_by_its_address(tmp_path: Path, log: Path) -> None:
     assert found == expected(3)
 
 
-def test_the_source_of_a_run_is_what_a_run_imports() -> None:
-    package = Path(sweeps.__file__).parents[1]
-    found = provenance.sources(Path(inspect.getfile(measure)))
-    names = {"/".join(path.relative_to(package).with_suffix("").parts) for path in found}
-    # Read from the source, it holds all that a fresh process has loaded after the import, but for
-    # what the package's own __init__ brings in.
-    code = "import sys; import iiwa_dnn.studies.runs; print(*sys.modules)"
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    modules = {name for name in loaded.stdout.split() if name.startswith("iiwa_dnn.")}
-    known = {f"iiwa_dnn.{name.removesuffix('/__init__').replace('/', '.')}" for name in names}
-    later = ("robot.verification", "robot.mjcf")
-    where_asked_for = {f"iiwa_dnn.{name}" for name in later}
-    assert known - where_asked_for <= modules
-    assert {
-        "networks/solver",
-        "simulation/runner",
-        "simulation/noise",
-        "studies/runs",
-    } <= names
-    assert not {"results/plots", "results/report", "app/main", "__init__"} & names
-
-
-def test_a_changed_import_changes_the_source(
+def test_a_changed_file_of_package_or_task_changes_the_source(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package = tmp_path / "iiwa_dnn"
-    (package / "deep").mkdir(parents=True)
-    for name, text in {
-        "task.py": "from iiwa_dnn.one import f",
-        "one.py": "def f():\n    import iiwa_dnn.deep.two",
-        "deep/__init__.py": "",
-        "deep/two.py": "from iiwa_dnn.deep import three",
-        "deep/three.py": "from iiwa_dnn.one import f\nimport numpy",
-        "other.py": "",
-    }.items():
-        (package / name).write_text(text, encoding="utf-8")
-    monkeypatch.setattr(provenance, "__file__", str(package / "deep" / "provenance.py"))
-    found = provenance.sources(package / "task.py")
-    names = [path.relative_to(package).as_posix() for path in found]
-    assert names == ["deep/__init__.py", "deep/three.py", "deep/two.py", "one.py", "task.py"]
+    (package / "studies").mkdir(parents=True)
+    monkeypatch.setattr(sweeps, "__file__", str(package / "studies" / "sweeps.py"))
+    task = tmp_path / "task.py"
+    monkeypatch.setattr(sweeps.inspect, "getfile", lambda function: str(task))
+    seen = set()
+    for path in (task, package / "one.py", package / "studies" / "two.py"):
+        for text in ("x = 1", "x = 2"):
+            task.touch()
+            path.write_text(text, encoding="utf-8")
+            sweeps.fingerprint.cache_clear()
+            seen.add(sweeps.fingerprint(draw)["source"])
+    sweeps.fingerprint.cache_clear()
+    assert len(seen) == 6
 
 
 def test_one_bar_for_the_whole_sweep(

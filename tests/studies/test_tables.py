@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from helpers_paper import SCOPE, by_weight, choice, noisy_case, values
+from helpers_paper import by_weight, choice, noisy_case, table_of, values
 from iiwa_dnn.simulation import NOISE_ENTRIES
 from iiwa_dnn.studies import ablation, paper, table1, table2
 from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun
 
 
 def test_the_papers_own_table1_is_reproduced() -> None:
-    table = table1.tabulate(SCOPE, [by_weight(run) for run in table1.cells(SCOPE)])
+    table = table_of(table1, by_weight)
     for name, variant in table["variants"].items():
         verdicts = {key: verdict["verdict"] for key, verdict in variant["verdicts"].items()}
         assert verdicts == {
@@ -28,8 +28,7 @@ def test_table1_keeps_variants_apart() -> None:
     def error(run: HeartRun) -> float:
         return 7.0 + run.weight + (run.mode == "converged") + 2 * (run.kinetic == "inertia")
 
-    runs = table1.cells(SCOPE)
-    table = table1.tabulate(SCOPE, [values(max_position_error_m=error(run)) for run in runs])
+    table = table_of(table1, lambda run: values(max_position_error_m=error(run)))
     for name, first in (
         ("continuous, block", 7.1),
         ("converged, SO(3)", 8.1),
@@ -41,7 +40,7 @@ def test_table1_keeps_variants_apart() -> None:
 
 
 def test_table2_finds_the_effect_that_was_put_in() -> None:
-    table = table2.tabulate(SCOPE, [noisy_case(run) for run in table2.cells(SCOPE)])
+    table = table_of(table2, noisy_case)
     for mode, entries in table["modes"].items():
         found = {
             entry: measures["mse_position_error_m2"]["changes"]
@@ -71,8 +70,7 @@ def test_table2_keeps_cases_and_entries_apart() -> None:
         case = (run.noise > 0) * 2 + (run.filter_window > 1)
         return 1.0 + case + (run.mode == "converged") * 10 + NOISE_ENTRIES.index(run.noise_at) * 100
 
-    runs = table2.cells(SCOPE)
-    table = table2.tabulate(SCOPE, [values(max_position_error_m=error(run)) for run in runs])
+    table = table_of(table2, lambda run: values(max_position_error_m=error(run)))
     for shift, mode in ((0.0, "continuous, block"), (10.0, "converged, SO(3)")):
         for i, entry in enumerate(NOISE_ENTRIES):
             cases = table["modes"][mode][entry]["max_position_error_m"]["cases"]
@@ -82,7 +80,7 @@ def test_table2_keeps_cases_and_entries_apart() -> None:
 
 
 def test_theory_of_the_noise_worked_by_hand() -> None:
-    table = table2.tabulate(SCOPE, [values() for _ in table2.cells(SCOPE)])
+    table = table_of(table2, lambda run: values())
     entries = table["modes"]["converged, SO(3)"]
     # tr(J J') / 3 = 0.4 m^2, sigma = 0.01 rad/s, dt = 1e-4 s, delta = 10.2 1/s.
     expected = 0.4 * 1e-4 * 1e-4 / 20.4
@@ -92,7 +90,7 @@ def test_theory_of_the_noise_worked_by_hand() -> None:
 
 
 def test_the_ablation_says_which_choice_is_closest_and_whether_it_is_stable() -> None:
-    table = ablation.tabulate(SCOPE, [choice(run) for run in ablation.cells(SCOPE)])
+    table = table_of(ablation, choice)
     closest = table["closest_to_the_papers_drift"]
     assert (closest["substeps"], closest["orientation"], closest["noise_at"]) == (
         2,
@@ -108,11 +106,14 @@ def test_the_ablation_says_which_choice_is_closest_and_whether_it_is_stable() ->
 
 
 def test_a_full_reproduction_is_the_issues_grid() -> None:
-    pairs = {(run.seed, run.noise_at, run.mode) for run in table2.cells(FULL) if run.noise}
-    assert len(pairs) == 100 * 3 * 2
-    assert all(run.duration == 10.0 for run in table2.cells(FULL))
-    assert [run.weight for run in table1.cells(FULL)[:7]] == list(paper.WEIGHTS)
-    assert {run.substeps for run in ablation.cells(FULL)} == {1, 2, 4, 7, 8, 16, "implicit"}
-    lap = [run for run in table1.cells(FULL) if run.baseline]
-    assert {run.duration for run in lap} == {100.0}
-    assert max(run.duration for run in table2.cells(QUICK)) == 1.0
+    grid = {
+        name: list(module.cells(FULL).values())
+        for name, module in (("1", table1), ("2", table2), ("ablation", ablation))
+    }
+    noisy = {(run.seed, run.noise_at, run.mode) for run in grid["2"] if run.noise}
+    assert len(noisy) == 100 * 3 * 2
+    assert all(run.duration == 10.0 for run in grid["2"])
+    assert [run.weight for run in grid["1"][:7]] == list(paper.WEIGHTS)
+    assert {run.substeps for run in grid["ablation"]} == {1, 2, 4, 7, 8, 16, "implicit"}
+    assert {run.duration for run in grid["1"] if run.baseline} == {100.0}
+    assert max(run.duration for run in table2.cells(QUICK).values()) == 1.0

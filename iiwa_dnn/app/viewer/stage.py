@@ -8,7 +8,7 @@ import pinocchio as pin
 
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import FloatArray
-from iiwa_dnn.results.scenery import OBSTACLE_COLOUR
+from iiwa_dnn.results.scenery import OBSTACLE_COLOR
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, outline
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import Shape, joint_poses, visual_shapes
@@ -52,7 +52,7 @@ class Stage:
         """Draw obstacles, all but half-spaces; `show` moves them."""
         for number, obstacle in enumerate(obstacles):
             if not isinstance(obstacle, HalfSpace):
-                colour = tuple(round(255 * part) for part in OBSTACLE_COLOUR)
+                colour = tuple(round(255 * part) for part in OBSTACLE_COLOR)
                 name, outside = f"/obstacle_{number}", outline(obstacle)
                 node = self.host.scene.add_mesh_simple(name, *outside, color=colour)
                 self._obstacles.append((node, obstacle))
