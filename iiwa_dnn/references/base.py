@@ -1,4 +1,4 @@
-"""The base of all references: a path, an origin to start from, and targets along it."""
+"""References: a path, an origin to start from, and targets along it."""
 
 from __future__ import annotations
 
@@ -65,6 +65,7 @@ class Reference(ABC):
             displacement, turns the rotation, sets the twist.
         compiled: `path`; None if a subclass overrides what it computes.
         constants: Constants of `path`, shape (c,).
+        base: Target at the origin, at rest, `Target.data` (18,), read-only.
         origin: Position of displacement 0 [m], shape (3,), read-only.
         orientation: Orientation that the turns begin from, shape (3, 3), read-only.
     """
@@ -73,7 +74,7 @@ class Reference(ABC):
     path: ClassVar[Any] = None
     compiled: ClassVar[Any] = None
     constants: Array = read_only(np.zeros(0))
-    _base: Array = AT_REST
+    base: Array = AT_REST
     _overridden: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls) -> None:
@@ -96,17 +97,12 @@ class Reference(ABC):
             object.__setattr__(self, name, value)
 
     @property
-    def base(self) -> NDArray[np.float64]:
-        """The target at the path's origin, at rest: `Target.data`, (18,)."""
-        return self._base
-
-    @property
     def origin(self) -> Array:  # noqa: D102 - described in the class
-        return read_only(self._base[:3])
+        return read_only(self.base[:3])
 
     @property
     def orientation(self) -> Array:  # noqa: D102
-        return read_only(self._base[3:12].reshape(3, 3))
+        return read_only(self.base[3:12].reshape(3, 3))
 
     @property
     @abstractmethod
@@ -138,7 +134,7 @@ class Reference(ABC):
 
     def _based(self: Self, base: Array) -> Self:
         clone = copy.copy(self)
-        clone._set(_base=read_only(base))
+        clone._set(base=read_only(base))
         return clone
 
     def motion(self, t: float) -> Motion:
@@ -176,7 +172,7 @@ class Reference(ABC):
         Raises:
             InvalidInputError: If ``t`` is not a finite number.
         """
-        target = self._base.copy()
+        target = self.base.copy()
         self.move(finite("t", t), target)
         return Target.from_data(target)
 
@@ -187,7 +183,7 @@ class Reference(ABC):
             InvalidInputError: If ``times`` is not a list of finite numbers.
         """
         checked = finite_array("times", times, (-1,))
-        targets = np.tile(self._base, (checked.size, 1))
+        targets = np.tile(self.base, (checked.size, 1))
         for t, target in zip(checked.tolist(), targets, strict=True):
             self.move(t, target)
         return Targets.from_data(targets)
@@ -284,7 +280,7 @@ class Ahead(Reference):
         """Look at a path one period of dt [s] ahead."""
         self._along = along
         self._dt = dt
-        self._base = along.base
+        self.base = along.base
 
     @property
     def period(self) -> float:

@@ -65,8 +65,8 @@ class MovingTarget(Reference):
 
         Raises:
             InvalidInputError: The pose is not finite, or a limit is not a number above zero; or a
-                jerk is given without an acceleration.
-            MissingDependencyError: An acceleration is given and ruckig is not installed.
+                jerk comes without an acceleration.
+            MissingDependencyError: There is an acceleration limit and ruckig is not installed.
         """
         offers("pose", pose, "position", "rotation")
         self.speed = not_negative("speed", speed)
@@ -136,13 +136,13 @@ class MovingTarget(Reference):
 
     def _straight(self, elapsed: float) -> tuple[Array, Array, Array]:
         """Compute displacement, velocity and acceleration (6,) a time [s] after the start."""
-        way = _difference(self._start, self._end)
-        moved = way.copy()
+        difference = _difference(self._start, self._end)
+        moved = difference.copy()
         velocity = np.zeros(6)
         for part, fastest in ((slice(0, 3), self.speed), (slice(3, 6), self.rate)):
-            length = float(np.linalg.norm(way[part]))
+            length = float(np.linalg.norm(difference[part]))
             if length > max(fastest * elapsed, _ARRIVED):
-                velocity[part] = fastest / length * way[part]
+                velocity[part] = fastest / length * difference[part]
                 moved[part] = elapsed * velocity[part]
         return moved, velocity, np.zeros(6)
 

@@ -71,11 +71,11 @@ class Target(_Data):
             InvalidInputError: An array is not finite, has a wrong shape or is no rotation; it is
                 named.
         """
-        place = finite_array("position", position, (3,))
+        checked = finite_array("position", position, (3,))
         turn = checks.rotation("rotation", rotation).ravel()
         linear = finite_array("linear_velocity", linear_velocity, (3,))
         angular = finite_array("angular_velocity", angular_velocity, (3,))
-        self.data = np.concatenate([place, turn, linear, angular])
+        self.data = np.concatenate([checked, turn, linear, angular])
 
     def __repr__(self) -> str:
         position = np.array2string(self.position, precision=4, separator=", ")

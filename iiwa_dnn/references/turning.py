@@ -175,13 +175,8 @@ def _least_turn(u: Vector3, v: Vector3) -> Vector3:
         return scaled(np.arctan2(sine, cosine) / sine, axis)
     if cosine >= 0.0:
         return axis
-    # Opposite vectors: half a turn about the axis across u and the world axis farthest from it.
-    least = min(abs(u[0]), abs(u[1]), abs(u[2]))
-    other = (0.0, 0.0, 1.0)
-    if abs(u[0]) == least:
-        other = (1.0, 0.0, 0.0)
-    elif abs(u[1]) == least:
-        other = (0.0, 1.0, 0.0)
+    # Opposite vectors: half a turn about an axis across them.
+    other = (1.0, 0.0, 0.0) if abs(u[0]) < 0.9 else (0.0, 1.0, 0.0)
     axis = cross(u, other)
     return scaled(np.pi / np.sqrt(dot(axis, axis)), axis)
 
@@ -196,14 +191,14 @@ class OnSurface(_OnPath):
         displacement = r (exp((n x d) / r) n - n),    turn = exp((n x d) / r)
 
     and in the limit of a plane d and no turn. The path's height above its x-y plane and its own
-    turns are not taken. The tool's z axis points into the surface. A normal that is given is
-    reached first: for `lead` seconds the tool turns where it is.
+    turns are not taken. The tool's z axis points into the surface. If there is a `normal`, the tool
+    first turns to it on the spot, for `lead` seconds.
 
     Attributes:
         along: The path.
         radius: Radius of the sphere [m]; None: a plane.
         normal: Outward normal at the start in the world's frame; None: the tool's -z axis there.
-        lead: Time to turn the tool to a normal that is given [s].
+        lead: Time to turn the tool to `normal` [s].
 
     Raises:
         InvalidInputError: If a parameter is out of range.

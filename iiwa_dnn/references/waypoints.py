@@ -36,6 +36,7 @@ _SCIPY_ENDS = {"clamped": "clamped", "natural": "natural", "closed": "periodic"}
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 _HEADERS = (_COLUMNS[:4], _COLUMNS, _COLUMNS[1:])
 _CLOSED_WITHIN = 1e-9  # [m], and of a quaternion's components
+_NOT_CLOSED = "the last one of a closed path must be the first one"
 _UNIT_WITHIN = 1e-3  # error of a quaternion's length that is taken for rounding
 
 SPEED, RATE = 0.05, 0.5
@@ -48,7 +49,7 @@ SPEED, RATE = 0.05, 0.5
 
 @njit(cache=True, error_model="numpy")
 def _piece(t: float, constants: Array) -> tuple[int, float, float]:
-    """Find the piece at a time, the time since it began, and 0.0 where the path is at rest."""
+    """Find the piece at a time, the time since it began, and 0.0 if the path is at rest, or 1.0."""
     closed = constants[0] != 0.0
     pieces = int(constants[1])
     end = constants[2 + pieces]
@@ -162,11 +163,10 @@ class Waypoints(Reference):
             raise InvalidInputError("quaternions", problem, quaternions)
         unit = quaternions / norms
         if self.ends == "closed" and abs(unit[0] @ unit[-1]) < 1.0 - _CLOSED_WITHIN:
-            problem = "the last one of a closed path must be the first one"
-            raise InvalidInputError("quaternions", problem, quaternions)
+            raise InvalidInputError("quaternions", _NOT_CLOSED, quaternions)
         rotation = Rotation.from_quat(unit[0, [1, 2, 3, 0]]).as_matrix()
         base = np.concatenate([self.points[0], rotation.ravel(), np.zeros(6)])
-        self._set(quaternions=quaternions, _base=read_only(base))
+        self._set(quaternions=quaternions, base=read_only(base))
         return fit_rotations(self.times, unit, self.ends)
 
     def acceleration(self, t: ArrayLike) -> Array:
@@ -198,8 +198,7 @@ class Waypoints(Reference):
             displacements = self.points - self.points[0]
         if self.ends == "closed":
             if np.abs(displacements[-1]).max() > _CLOSED_WITHIN:
-                problem = "the last one of a closed path must be the first one"
-                raise InvalidInputError("points", problem, self.points)
+                raise InvalidInputError("points", _NOT_CLOSED, self.points)
             displacements[-1] = 0.0  # scipy asks for the very same numbers
         with np.errstate(all="ignore"), suppress(ValueError, np.linalg.LinAlgError):
             spline = CubicSpline(times, displacements, bc_type=_SCIPY_ENDS[self.ends])
