@@ -16,7 +16,6 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.networks.base import Flow
-from iiwa_dnn.qp.residuals import kkt_point
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 
@@ -44,10 +43,6 @@ class SaddleNetwork(iiwa_dnn.Network):
             return np.where(((aim > lower) & (aim < upper))[:, None], -H, -np.eye(c.size))
 
         return Flow(rates, jacobian)
-
-    def read(self, qp, state, point):
-        n, m, p = qp.sizes
-        return kkt_point(qp.data, n, m, p, state, point)
 
     def stable_step(self, qp, state=None):
         return 0.0  # no step is known to be stable for explicit Euler

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade
 from iiwa_dnn.control.policies import Policy, Resolution, gave_way, resolve, stopped
-from iiwa_dnn.control.step import FOLLOW, NETWORK, control_step, follow
+from iiwa_dnn.control.step import control_step
 from iiwa_dnn.control.yielding import Yielding
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators.implicit import SETTLE, settle_implicit
+from iiwa_dnn.networks.integrators.base import BUDGET, NETWORK
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.references import Target
@@ -86,7 +86,7 @@ class Plan:
         if layout is None:
             self.kinematics = Kinematics(robot)
             self.sizes = _sizes_of(scheme, Configuration(robot, q))
-            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0, 0, 0], dtype=np.int64)
+            codes = np.array([*self.sizes, dof, 0, robot.tip_id, 0, 0, 0, 0, 0], dtype=np.int64)
         else:
             self.kinematics = Kinematics(robot, layout.frames, layout.needs_inertia)
             self.sizes, codes, constants = layout.sizes, layout.codes, layout.numbers
@@ -106,12 +106,13 @@ class Plan:
         self.expected = Status.SOLVED if converged else Status.ADVANCED
         # A subclass that solves in a way of its own is asked, not bypassed.
         compiled = type(solver) is DNNSolver and not self.accelerates
-        self.network = solver.numbers(0.0 if converged else dt) if compiled else None
+        answer = solver.compiled_answer(self.sizes, 0.0 if converged else dt) if compiled else None
+        self.network = None if answer is None else answer.constants
         self._numbers = self.network
-        network = np.zeros(NETWORK) if self.network is None else self.network.copy()
+        network = np.zeros(NETWORK) if answer is None else answer.constants.copy()
         if layout is not None and layout.restrained:
             # A program that a few systems do not solve most likely has no solution.
-            network[1] = min(network[1], _BUDGET)
+            network[BUDGET] = min(network[BUDGET], _BUDGET)
         head = [1.0 / dt, *np.zeros(3 * dof)]
         n, m, p = self.sizes
         work = np.concatenate([head, network, inertia, constants, np.zeros(3 * n + m + p)])
@@ -119,8 +120,8 @@ class Plan:
         self.last = self.past[:dof]
         self._shown = checks.read_only(self.q), checks.read_only(self.last)  # to parts of one's own
         self._restrain(dt)
-        self.inertia = work[1 + 3 * dof + NETWORK :][: inertia.size]
-        self._constants = work[1 + 3 * dof + NETWORK + inertia.size :][: constants.size]
+        self.inertia = work[1 + 3 * dof + network.size :][: inertia.size]
+        self._constants = work[1 + 3 * dof + network.size + inertia.size :][: constants.size]
         moving = () if layout is None else layout.moving
         self._moving = [(part, self._constants[place]) for part, place in moving]
         self.moves = bool(self._moving)
@@ -128,7 +129,9 @@ class Plan:
         self.compiled = (codes, work, self.kinematics.jacobian, self.kinematics.placements)
         self.shape, self.needs_more = (dof,), bool(self.pinocchio[3] or inertia.size)
         codes[7] = ASSEMBLE.address(assemble)
-        codes[8] = SETTLE.address(settle_implicit) if converged else FOLLOW.address(follow)
+        if answer is not None:
+            codes[8:10] = answer.address, answer.rates
+        codes[10] = network.size
         self.step = self._entrance()
 
     def _restrain(self, dt: float) -> None:

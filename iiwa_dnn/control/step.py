@@ -5,47 +5,17 @@ enters it once a step.
 """
 
 import numpy as np
-from numba import njit, types
+from numba import njit
 
 from iiwa_dnn.control.answers import FIGURES, PLACE
-from iiwa_dnn.networks.integrators.explicit import explicit_euler
-from iiwa_dnn.networks.integrators.implicit import SETTLE, SETTLED
-from iiwa_dnn.networks.projection import field, stable_step
+from iiwa_dnn.networks.integrators.base import DURATION, TOLERANCE, enter_answer
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import VECTOR, Signature
-from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.qp.residuals import kkt_point, within
+from iiwa_dnn.qp.layout import compiled, qp_views
+from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.assembly import ASSEMBLE
 from iiwa_dnn.schemes.parts import Codes
 
-NETWORK = 7
-"""Numbers of a network, `DNNSolver.numbers`."""
-
-
-@compiled
-def follow(
-    data: Vector, n: int, m: int, p: int, state: Vector, point: Vector, network: Vector
-) -> tuple[int, float, float, float, float]:
-    """Advance the network by its time, with explicit steps; `network` (7,) is `control_step`'s.
-
-    Returns:
-        As `settle_implicit`: sub-steps, 0 where none are stable, time, and the residuals.
-    """
-    count, project = int(network[5]), network[4] != 0.0
-    if count == 0:
-        active = np.empty(m + 2 * n)
-        field(data, n, m, p, project, state, np.empty(state.size), active)
-        stable = network[6] * stable_step(data, n, m, p, active)
-        if not stable > 0.0:
-            return 0, 0.0, np.inf, np.inf, np.inf
-        count = max(1, int(np.ceil(network[3] / stable)))
-    explicit_euler(data, n, m, p, project, state, network[3] / count, count, -1.0)
-    primal, dual, gap = kkt_point(data, n, m, p, state, point)
-    return count, network[3], primal, dual, gap
-
-
-FOLLOW = Signature(SETTLED, VECTOR, *3 * [types.int64], VECTOR, VECTOR, VECTOR)
-_enter_assemble, _enter_settle, _enter_follow = ASSEMBLE.enter, SETTLE.enter, FOLLOW.enter
+_enter_assemble = ASSEMBLE.enter
 
 
 @compiled
@@ -60,11 +30,9 @@ def control_step(
         index: Number of the row.
         codes: `Layout.codes`, with the addresses of `assemble` and of the answering function.
         work: ``[1 / dt | last command (dof) | the one before (dof) | joint positions (dof) |
-            network (7) | inertia matrix (dof dof, or none) | constants | room for a state]``: the
-            commands are written; the network's numbers are those of `DNNSolver.numbers` (tolerance,
-            budget and first step of the implicit integrator, time to advance (0: settle), whether x
-            is projected, explicit sub-steps (0: as many as stability needs), share of the stable
-            step that is used); the constants are `Layout.numbers`.
+            network | inertia matrix (dof dof, or none) | constants | room for a state]``: the
+            commands are written; the network's constants are those of `CompiledAnswer`; the others
+            are `Layout.numbers`.
         jacobian: `Kinematics.jacobian`, (dof, 6).
         placements: `Kinematics.placements`, (frames, 12).
         state: The network's state, (size,), advanced.
@@ -81,8 +49,8 @@ def control_step(
     at_figures = at_point + 2 * n + m + p
     data, point, figures = row[:at_point], row[at_point:at_figures], row[at_figures:]
     at_network = 1 + 3 * dof
-    q, network = work[1 + 2 * dof : at_network], work[at_network : at_network + NETWORK]
-    inertia, before = work[at_network + NETWORK : -state.size], work[-state.size :]
+    q, network = work[1 + 2 * dof : at_network], work[at_network : at_network + codes[10]]
+    inertia, before = work[at_network + codes[10] : -state.size], work[-state.size :]
     if not built:
         targets = figures[FIGURES + PLACE + dof :]
         constants = inertia[dof * dof :] if codes[6] != 0 else inertia
@@ -93,16 +61,13 @@ def control_step(
         )  # fmt: skip
     for i in range(state.size):
         before[i] = state[i]
-    if network[3] > 0.0:
-        iterations, time, primal, dual, gap = _enter_follow(
-            codes[8], data, n, m, p, state, point, network
-        )
+    iterations, time, primal, dual, gap = enter_answer(
+        codes[8], qp_views(data, n, m, p), codes[9], network, state, point
+    )
+    if network[DURATION] > 0.0:
         succeeded = primal + dual + gap < np.inf
     else:
-        iterations, time, primal, dual, gap = _enter_settle(
-            codes[8], data, n, m, p, state, point, network[0], int(network[1]), network[2]
-        )
-        succeeded = within(primal, dual, gap, network[0])
+        succeeded = within(primal, dual, gap, network[TOLERANCE])
     if not succeeded:
         for i in range(state.size):
             state[i] = before[i]

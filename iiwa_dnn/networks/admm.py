@@ -15,7 +15,7 @@ from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Sizes
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Solution, Status
+from iiwa_dnn.qp.solution import Solution
 
 
 class AdmmSolver(DNNSolver):
@@ -59,12 +59,7 @@ class AdmmSolver(DNNSolver):
         solver.update(**changes)
         result = solver.solve(raise_error=False)
         state[:] = np.concatenate([result.x, result.y[: p + m]])
-        point = np.empty(2 * n + m + p)
-        residuals = self.network.read(qp, state, point)
-        status = Status.ADVANCED if np.isfinite(sum(residuals)) else Status.NOT_FINITE
-        if status is Status.ADVANCED:
-            self._kept.append((self.network, sizes, state))
-        return Solution(point, sizes, status, self.substeps, 0.0, *residuals)
+        return self._advanced(qp, state, self.substeps, 0.0)
 
 
 def _prepared(n: int, rows: int, iterations: int) -> Any:

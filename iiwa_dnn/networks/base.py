@@ -1,16 +1,30 @@
 """Dynamic neural network: an ODE for one quadratic program, and the reading of its state."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numba import types
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size
+from iiwa_dnn.qp.compiling import VECTOR, Signature
+from iiwa_dnn.qp.layout import (
+    QP_VIEWS,
+    Matrix,
+    QPViews,
+    Sizes,
+    Triple,
+    Vector,
+    check_size,
+    compiled,
+    qp_views,
+)
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import point_of_state
 
 
 class Flow(NamedTuple):
@@ -26,14 +40,30 @@ class Flow(NamedTuple):
     jacobian: Callable[[Vector], Matrix]
 
 
-class CompiledForm(NamedTuple):
-    """The compiled loops of the projection network, which stand in for a network's methods.
+_STOOD_IN_FOR = frozenset({"state_size", "flow", "moving_flow", "read", "stable_step"})
 
-    Attributes:
-        project: True if x goes through its bounds.
-    """
+Rates = Callable[[QPViews, Vector, Vector, Vector], None]
+"""Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
 
-    project: bool
+RATES = Signature(types.void, QP_VIEWS, VECTOR, VECTOR, VECTOR)
+"""Types of a network's compiled function."""
+
+enter_rates = RATES.enter
+
+
+@compiled
+def evaluate_rates(
+    data: Vector,
+    n: int,
+    m: int,
+    p: int,
+    address: int,
+    constants: Vector,
+    state: Vector,
+    rates: Vector,
+) -> None:
+    """Write the rates of the network whose compiled function is at the address."""
+    enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
 @dataclass(frozen=True)
@@ -43,10 +73,12 @@ class Network(ABC):
     Attributes:
         rho: Time constant [s].
         carries_x: True if the state begins with x; otherwise x is computed from it.
+        compiled_rates: The right-hand side as a static compiled function (`Rates`), if it has one.
     """
 
     rho: float = 9e-5
     carries_x: ClassVar[bool] = True
+    compiled_rates: ClassVar[staticmethod[[QPViews, Vector, Vector, Vector], None] | None] = None
 
     def __post_init__(self) -> None:
         """Check the time constant."""
@@ -56,9 +88,29 @@ class Network(ABC):
     def state_size(self, qp: QP) -> int:
         """Count the states."""
 
-    @abstractmethod
+    def constants(self, sizes: Sizes) -> Vector:
+        """Return the constants of `compiled_rates` for programs of these sizes (n, m, p)."""
+        return np.empty(0)
+
     def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
+        """Make the right-hand side and its derivative for this program.
+
+        By default the rates are those of `compiled_rates`, differentiated numerically.
+        """
+        function = type(self).compiled_rates
+        if function is None:
+            raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
+        address = RATES.address(function)
+        constants = self.constants(qp.sizes)
+        size = self.state_size(qp)
+
+        def rates(state: Vector) -> Vector:
+            check_size("state", state, size)
+            result = np.empty(size)
+            evaluate_rates(qp.data, *qp.sizes, address, constants, state, result)
+            return result
+
+        return Flow(rates, lambda state: difference_jacobian(rates, state))
 
     def moving_flow(self, qp: QP, rate: QP) -> Flow:
         """Make the right-hand side for this program while it changes.
@@ -70,13 +122,15 @@ class Network(ABC):
         """
         return self.flow(qp)
 
-    @abstractmethod
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point ``[x | y | z | z_box]`` of a state (state_size,) into `point`.
+
+        By default the state begins with ``[x | y | z]``.
 
         Returns:
             Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
         """
+        return read_point(qp, state, point, self.state_size(qp))
 
     @abstractmethod
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
@@ -87,9 +141,13 @@ class Network(ABC):
             state: A state, (state_size,), around which the bound has to hold; None: everywhere.
         """
 
-    @property
-    def compiled(self) -> CompiledForm | None:
-        """Compiled loops that integrate exactly this network; None where there are none."""
+    def rates_function(self) -> Rates | None:
+        """Return `compiled_rates`, unless a subclass has overridden what it stands in for."""
+        for cls in type(self).__mro__:
+            if "compiled_rates" in vars(cls):
+                return cls.compiled_rates  # type: ignore[attr-defined,no-any-return]
+            if not _STOOD_IN_FOR.isdisjoint(vars(cls)):
+                return None
         return None
 
     def initial_state(self, qp: QP) -> Vector:
@@ -110,7 +168,7 @@ def read_point(qp: QP, state: Vector, point: Vector, size: int) -> Triple:
     n, m, p = qp.sizes
     check_size("state", state, size)
     check_size("point", point, 2 * n + m + p)
-    return kkt_point(qp.data, n, m, p, state, point)
+    return point_of_state(qp.data, n, m, p, state, point)
 
 
 def difference_jacobian(rates: Callable[[Vector], Vector], state: Vector) -> Matrix:

@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numba
@@ -11,24 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
-from iiwa_dnn.networks.integrators.implicit import SETTLE, ImplicitEuler, settle_implicit
-from iiwa_dnn.networks.integrators.side_by_side import LANES, ROUNDS, free_steps
+from iiwa_dnn.networks.integrators.base import enter_answer
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_address
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, compiled, released
-from iiwa_dnn.qp.program import FIELDS, QP, numbers, require_pairs
-from iiwa_dnn.qp.residuals import point_residuals, within
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, field_shapes, qp_views, released
+from iiwa_dnn.qp.program import FIELDS, QP, absent_fields, real_array, require_pairs
 
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""
 
-SMALL = 32
-"""Variables up to which first steps are taken side by side."""
-
 BARRIER = 50
 """Budget of linear systems, on top, of a program that starts again through the barrier."""
-
-_enter = SETTLE.enter
-_AXES = {name: 2 if name in "PGA" else 1 for name in FIELDS}
 
 
 class BatchSolution(NamedTuple):
@@ -54,6 +48,37 @@ class BatchSolution(NamedTuple):
     residuals: Matrix
     iterations: NDArray[np.int64]
     faults: dict[int, InvalidInputError]
+
+
+@dataclass(frozen=True)
+class _Stack:
+    """Programs of one shape, field by field.
+
+    Attributes:
+        fields: One row for each program, or one that all share, of each field's numbers.
+        sizes: ``(n, m, p)``.
+        count: Number of programs.
+    """
+
+    fields: list[Matrix]
+    sizes: Sizes
+    count: int
+
+    def rows(self, first: int, last: int) -> Matrix:
+        """Copy the programs from `first` up to `last`, one `QP.data` a row."""
+        return np.hstack(
+            [
+                np.broadcast_to(
+                    field if len(field) == 1 else field[first:last],
+                    (last - first, field.shape[1]),
+                )
+                for field in self.fields
+            ]
+        )
+
+    def program(self, k: int) -> QP:
+        """Copy program k."""
+        return QP.from_data(self.rows(k, k + 1)[0], self.sizes)
 
 
 def solve_batch(
@@ -92,171 +117,120 @@ def solve_batch(
             that spoils them all (`QP.check_values`). The message names the argument.
     """
     checks.positive("tol", tol)
-    given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
-    arrays = {name: numbers(name, value) for name, value in given if value is not None}
+    arguments = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+    arrays = {name: real_array(name, value) for name, value in arguments if value is not None}
     require_pairs([arrays.get(name) for name in FIELDS])
-    parts, (n, m, p), count = _stacked(arrays)
-    points, residuals = np.full((count, 2 * n + m + p), np.nan), np.empty((count, 3))
-    iterations = np.zeros(count, dtype=np.int64)
-    _settle_all(parts, (n, m, p), tol, points, residuals, iterations)
-    unsolved = np.flatnonzero(~np.all(residuals <= tol, axis=1))
-    faults = _faults(parts, (n, m, p), unsolved)
-    for k in unsolved.tolist():
-        if k not in faults and iterations[k]:
-            qp, state, point = (
-                _member(parts, (n, m, p), k),
-                np.zeros(3 * n + m + p),
-                points[k].copy(),
-            )
-            systems, _, *again = barrier.settle(qp, state, point, tol, BARRIER)
-            iterations[k] += systems
-            if max(again) < residuals[k].max():
-                points[k], residuals[k] = point, again
-    found = np.all(residuals <= tol, axis=1)
-    if len(faults) == count and arrays[faults[0].argument].ndim == _AXES[faults[0].argument]:
-        raise faults[0]
-    for k in faults:
-        points[k], residuals[k], iterations[k] = np.nan, np.inf, 0
+    stack = _stacked(arrays)
+    n, m, p = stack.sizes
+    points = np.full((stack.count, 2 * n + m + p), np.nan)
+    figures = np.full((stack.count, 4), np.inf)
+    _settle_all(stack, tol, points, figures)
+    residuals = figures[:, :3]
+    iterations = figures[:, 3]
+    faults = {}
+    for k in np.flatnonzero(~np.all(residuals <= tol, axis=1)).tolist():
+        qp = stack.program(k)
+        try:
+            qp.check_values()
+        except InvalidInputError as error:
+            faults[k] = error
+            points[k] = np.nan
+            figures[k] = (np.inf, np.inf, np.inf, 0.0)
+            continue
+        point = points[k].copy()
+        systems, _, *again = barrier.settle(qp, np.zeros(3 * n + m + p), point, tol, BARRIER)
+        iterations[k] += systems
+        if max(again) < residuals[k].max():
+            points[k] = point
+            residuals[k] = again
+    if len(faults) == stack.count:
+        field = FIELDS.index(faults[0].argument)
+        if len(stack.fields[field]) == 1:  # shared by all
+            raise faults[0]
     x, y, z, z_box = np.split(points, [n, n + p, n + p + m], axis=1)
-    return BatchSolution(x, y, z, z_box, found, residuals, iterations, faults)
+    found = np.all(residuals <= tol, axis=1)
+    return BatchSolution(x, y, z, z_box, found, residuals, iterations.astype(np.int64), faults)
 
 
-def _stacked(arrays: dict[str, NDArray[np.float64]]) -> tuple[list[Matrix], Sizes, int]:
-    """Check the shapes; returns the eight parts with a row for each program or one for all."""
-    n = arrays["q"].shape[-1] if "q" in arrays and arrays["q"].ndim else 0
-    if n == 0:
+def _stacked(arrays: dict[str, NDArray[np.float64]]) -> _Stack:
+    """Check the shapes and count the programs; raises InvalidInputError naming the argument."""
+    if "q" not in arrays or arrays["q"].ndim == 0 or arrays["q"].shape[-1] == 0:
         raise InvalidInputError("q", "is empty")
     if "P" not in arrays:
         raise InvalidInputError("P", "is missing")
+    n = arrays["q"].shape[-1]
     # Rows decide on m and p, so that a right-hand side that does not fit is the one named.
     m, p = (arrays[k].shape[-2] if k in arrays and arrays[k].ndim > 1 else 0 for k in "GA")
-    shapes = ((n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,))
-    unbounded = {"lb": np.full(n, -np.inf), "ub": np.full(n, np.inf)}
-    parts: list[Matrix] = []
-    count, counted_by = 1, ""
-    for name, shape in zip(FIELDS, shapes, strict=True):
-        array = arrays.get(name, unbounded.get(name, np.empty(shape)))
+    fields: list[Matrix] = []
+    counts = {}
+    shapes = field_shapes((n, m, p))
+    for name, shape, absent in zip(FIELDS, shapes, absent_fields(n), strict=True):
+        array = arrays.get(name, absent)
         leading = array.shape[: array.ndim - len(shape)]
         if array.shape != (*leading, *shape) or len(leading) > 1:
             problem = f"has shape {array.shape}, not {shape} with or without a leading axis"
             raise InvalidInputError(name, problem)
-        if leading == (0,):
-            raise InvalidInputError(name, "holds no program")
-        if leading and counted_by and leading != (count,):
-            problem = f"holds {leading[0]} programs, but {counted_by} holds {count}"
-            raise InvalidInputError(name, problem)
         if leading:
-            count, counted_by = leading[0], name
-        # Writable, since numba compiles each kind anew.
-        flat: Matrix = np.require(array, requirements=("C", "W"))
-        parts.append(flat.reshape(math.prod(leading), math.prod(shape)))
-    return parts, (n, m, p), count
+            counts[name] = leading[0]
+        fields.append(array.reshape(math.prod(leading), math.prod(shape)))
+    first, count = next(iter(counts.items()), ("", 1))
+    for name, other in counts.items():
+        if other == 0:
+            raise InvalidInputError(name, "holds no program")
+        if other != count:
+            raise InvalidInputError(name, f"holds {other} programs, but {first} holds {count}")
+    return _Stack(fields, (n, m, p), count)
 
 
-def _member(parts: list[Matrix], sizes: Sizes, k: int) -> QP:
-    """Copy program k."""
-    data = np.concatenate([part[k if len(part) > 1 else 0] for part in parts])
-    return QP.from_data(data, sizes)
-
-
-def _faults(
-    parts: list[Matrix], sizes: Sizes, unsolved: NDArray[np.intp]
-) -> dict[int, InvalidInputError]:
-    """Check the values of the programs that were not solved; returns the errors by number."""
-    faults = {}
-    for k in unsolved.tolist():
-        try:
-            _member(parts, sizes, k).check_values()
-        except InvalidInputError as error:
-            faults[k] = error
-    return faults
-
-
-def _settle_all(
-    parts: list[Matrix], sizes: Sizes, tol: float, points: Matrix,
-    residuals: Matrix, iterations: NDArray[np.int64],
-) -> None:  # fmt: skip
-    """Settle one program for each row of `points`, over all cores."""
-    settler, count, address = ImplicitEuler(), len(points), SETTLE.address(settle_implicit)
+def _settle_all(stack: _Stack, tol: float, points: Matrix, figures: Matrix) -> None:
+    """Settle every program, over all cores."""
+    settler = ImplicitEuler()
+    constants = np.array([tol, settler.max_steps, settler.long_step])
+    address = settle_address()
+    shared_cost = len(stack.fields[0]) == 1
 
     def settle(first: int) -> None:
+        rows = stack.rows(first, min(first + CHUNK, stack.count))
+        last = first + len(rows)
         _settle_rows(
-            first, min(first + CHUNK, count), tuple(parts), sizes, tol, settler.max_steps,
-            settler.long_step, points, residuals, iterations, address,
+            rows, stack.sizes, shared_cost, address, constants,
+            points[first:last], figures[first:last],
         )  # fmt: skip
 
-    # Not numba's own threads: those end the process where two callers use them at once.
+    # Not numba's own threads: those end the process if two callers use them at once.
     threads: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(settle, range(0, count, CHUNK)))
+        list(pool.map(settle, range(0, stack.count, CHUNK)))
 
 
 @released
 def _settle_rows(
-    first: int, last: int, parts: tuple[Matrix, ...], sizes: Sizes, tol: float,
-    max_systems: int, long_step: float, points: Matrix, residuals: Matrix,
-    iterations: NDArray[np.int64], address: int,
-) -> None:  # fmt: skip
-    """Settle the programs from `first` up to `last`, each from a cold start.
+    rows: Matrix,
+    sizes: Sizes,
+    shared_cost: bool,
+    address: int,
+    constants: Vector,
+    points: Matrix,
+    figures: Matrix,
+) -> None:
+    """Settle programs, one `QP.data` a row, each from a cold start.
 
-    A part has one row, which all programs share, or one for each program. The residuals are
-    infinite where the cost is not convex. First steps of small programs are taken side by side.
+    Point and ``[primal, dual, gap, linear systems]`` of those whose cost is convex are written.
     """
     n, m, p = sizes
-    size, beside, convex = (n + m + p) * (n + 1) + 2 * n, n <= SMALL, False
-    block, lanes, K = np.empty((LANES, size)), np.empty(size * LANES), np.empty(n * n)
-    state, point = np.empty(3 * n + m + p), np.empty(2 * n + m + p)
-    steps: Vector = np.empty(0)
-    for start in range(first, last, LANES):
-        count = min(LANES, last - start)
-        for k in range(count):
-            _gather(parts, start + k, block[k])
-        if beside:
-            steps = _free_points(block, count, n, m, p, long_step, lanes)
-        for k in range(count):
-            row, data = start + k, block[k]
-            for i in range(3):
-                residuals[row, i] = np.inf
-            if row == first or parts[0].shape[0] > 1:
-                convex = is_convex(data, n, K)
-            if not convex:
-                continue
-            systems, primal, dual, gap = ROUNDS, np.inf, np.inf, np.inf
-            for i in range(point.size):
-                point[i] = steps[i * LANES + k] if beside and i < n + p else 0.0
-            if beside:
-                primal, dual, gap = point_residuals(data, n, m, p, point)
-            if not within(primal, dual, gap, tol):
-                for i in range(state.size):
-                    state[i] = 0.0
-                systems, _, primal, dual, gap = _enter(
-                    address, data, n, m, p, state, point, tol, max_systems, long_step
-                )
-            for i in range(point.size):
-                points[row, i] = point[i]
-            iterations[row] = systems
-            residuals[row, 0], residuals[row, 1], residuals[row, 2] = primal, dual, gap
-
-
-@compiled
-def _gather(parts: tuple[Matrix, ...], row: int, data: Vector) -> None:
-    """Write the parts of a program one after another into `data`."""
-    at = 0
-    for part in parts:
-        source = row if part.shape[0] > 1 else 0
-        for i in range(part.shape[1]):
-            data[at + i] = part[source, i]
-        at += part.shape[1]
-
-
-@compiled
-def _free_points(
-    block: Matrix, count: int, n: int, m: int, p: int, step: float, lanes: Vector
-) -> Vector:
-    """Return x and y, ((n + p) LANES,), of the programs of a block after steps without limits."""
-    for i in range(block.shape[1]):
-        for k in range(LANES):
-            lanes[i * LANES + k] = block[min(k, count - 1), i]
-    result = np.empty((n + p) * LANES)
-    free_steps(lanes, n, m, p, step, result[: n * LANES], result[n * LANES :])
-    return result
+    K = np.empty((n, n))
+    state = np.empty(3 * n + m + p)
+    convex = False
+    for k in range(rows.shape[0]):
+        qp = qp_views(rows[k], n, m, p)
+        if k == 0 or not shared_cost:
+            convex = is_convex(qp.P, K)
+        if not convex:
+            continue
+        for i in range(state.size):
+            state[i] = 0.0
+        systems, _, primal, dual, gap = enter_answer(address, qp, 0, constants, state, points[k])
+        figures[k, 0] = primal
+        figures[k, 1] = dual
+        figures[k, 2] = gap
+        figures[k, 3] = systems

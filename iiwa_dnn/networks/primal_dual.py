@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network, read_point
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -57,10 +57,6 @@ class PrimalDualNetwork(Network):
             return result
 
         return Flow(rates, jacobian)
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        return read_point(qp, state, point, self.state_size(qp))
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""

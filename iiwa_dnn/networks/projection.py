@@ -22,17 +22,116 @@ section III, its slips corrected (docs/errata.md).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 
-from iiwa_dnn.networks.base import CompiledForm, Flow, Network, read_point
-from iiwa_dnn.qp.dense import add_scaled, dot, extreme_eigenvalues
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector, check_size, compiled, larger, offsets
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
+from iiwa_dnn.qp.layout import (
+    Matrix,
+    QPViews,
+    Sizes,
+    Vector,
+    compiled,
+    larger,
+    qp_views,
+)
 from iiwa_dnn.qp.program import QP
 
-_PROJECTED, _FREE = CompiledForm(project=True), CompiledForm(project=False)
-_METHODS = ("state_size", "flow", "read", "stable_step")
-"""Methods that the compiled loops stand in for."""
+
+@compiled
+def field(qp: QPViews, project: bool, s: Vector, rates: Vector) -> float:
+    """Write the network's rates rho ds/dt; with `project`, x goes through its bounds.
+
+    Returns:
+        The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
+    """
+    n = qp.q.size
+    p = qp.b.size
+    at_z = n + p
+    at_u = at_z + qp.h.size
+    at_l = at_u + n
+    largest = 0.0
+    for i in range(n):  # the gradient, for now
+        rates[i] = qp.q[i] + s[at_u + i] - s[at_l + i] + row_dot(qp.P, i, s)
+    for j in range(p):
+        add_row(rates, s[n + j], qp.A, j)
+        rate = row_dot(qp.A, j, s) - qp.b[j]
+        rates[n + j] = rate
+        largest = larger(largest, abs(rate))
+    for j in range(qp.h.size):
+        z = s[at_z + j]
+        if z != 0.0:
+            add_row(rates, z, qp.G, j)
+        rate = _inequality_rate(z, row_dot(qp.G, j, s) - qp.h[j])
+        rates[at_z + j] = rate
+        largest = larger(largest, abs(rate))
+    for i in range(n):
+        rate = -rates[i]
+        if project:
+            rate = min(max(s[i] + rate, qp.lb[i]), qp.ub[i]) - s[i]
+        rates[i] = rate
+        upper = _inequality_rate(s[at_u + i], s[i] - qp.ub[i])
+        lower = _inequality_rate(s[at_l + i], qp.lb[i] - s[i])
+        rates[at_u + i] = upper
+        rates[at_l + i] = lower
+        largest = larger(larger(larger(largest, abs(rate)), abs(upper)), abs(lower))
+    return largest
+
+
+@compiled
+def _inequality_rate(multiplier: float, slack: float) -> float:
+    """Return -mu + [mu + Omega x - chi]_+ of one row."""
+    return slack if multiplier + slack > 0.0 else -multiplier
+
+
+@compiled
+def mark_active(s: Vector, rates: Vector, active: Vector) -> None:
+    """Mark the inequalities [G; I; -I] with mu + Omega x - chi > 0 by 1, the others by 0.
+
+    A multiplier that is not active decays: it and its rate add up to zero exactly.
+    """
+    first = s.size - active.size
+    for k in range(active.size):
+        active[k] = 1.0 if s[first + k] + rates[first + k] > 0.0 else 0.0
+
+
+@compiled
+def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
+    """Write the rates; `constants` is [1] if x goes through its bounds, else [0]."""
+    field(qp, constants[0] != 0.0, state, rates)
+
+
+@compiled
+def stable_step(qp: QPViews, active: Vector) -> float:
+    """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
+    n = qp.q.size
+    m = qp.h.size
+    K = np.zeros((n, n))
+    for j in range(qp.b.size):
+        add_outer(K, 1.0, qp.A, j)
+    for j in range(m):
+        if active[j] != 0.0:
+            add_outer(K, 1.0, qp.G, j)
+    for i in range(n):
+        K[i, i] += active[m + i] + active[m + n + i]
+        for k in range(i):
+            K[k, i] = K[i, k]
+    _, coupling = extreme_eigenvalues(K)
+    for i in range(n):
+        for k in range(n):
+            K[i, k] = qp.P[i, k]
+    smallest, largest = extreme_eigenvalues(K)
+    # Passive multipliers and clipped variables decay at rate one: never more than 2.
+    bound = 2.0 / max(largest, 1.0)
+    return min(bound, max(smallest, 0.0) / coupling) if coupling > 0.0 else bound
+
+
+@compiled
+def stable_step_of(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
+    """Compute `stable_step` for a program's flat array, `QP.data`."""
+    return stable_step(qp_views(data, n, m, p), active)
 
 
 @dataclass(frozen=True)
@@ -48,16 +147,11 @@ class ProjectionNetwork(Network):
     """
 
     primal_projection: bool = True
+    compiled_rates = staticmethod(projection_rates)
 
-    @property
-    def compiled(self) -> CompiledForm | None:
-        """The compiled loops, unless a subclass overrides a method that they stand in for."""
-        own = type(self)
-        if own is not ProjectionNetwork and any(
-            getattr(own, name) is not getattr(ProjectionNetwork, name) for name in _METHODS
-        ):
-            return None
-        return _PROJECTED if self.primal_projection else _FREE
+    def constants(self, sizes: Sizes) -> Vector:
+        """Return whether x goes through its bounds, as 1 or 0, (1,)."""
+        return np.array([float(self.primal_projection)])
 
     def state_size(self, qp: QP) -> int:
         """Count the states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
@@ -66,17 +160,8 @@ class ProjectionNetwork(Network):
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""
-
-        def rates(state: Vector) -> Vector:
-            result = np.empty(state.size)
-            self._field(qp, state, result)
-            return result
-
-        return Flow(rates, lambda state: self._jacobian(qp, state))
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        return read_point(qp, state, point, self.state_size(qp))
+        rates = super().flow(qp).rates
+        return Flow(rates, lambda state: self._jacobian(qp, state, rates(state)))
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.
@@ -101,17 +186,20 @@ class ProjectionNetwork(Network):
             bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
             active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
         else:
-            active = self._field(qp, state, np.empty(state.size))
-        return stable_step(qp.data, n, m, p, active)
+            active = np.empty(m + 2 * n)
+            mark_active(state, self.rates(qp, state), active)
+        return stable_step_of(qp.data, n, m, p, active)
 
-    def _jacobian(self, qp: QP, state: Vector) -> Matrix:
+    def _jacobian(self, qp: QP, state: Vector, rates: Vector) -> Matrix:
         """Differentiate the rates, (state_size, state_size)."""
-        n, _, p = qp.sizes
+        n, m, p = qp.sizes
         rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
-        active = self._field(qp, state, np.empty(state.size)) > 0.0
-        follows = np.concatenate([np.ones(p, dtype=bool), active])
+        active = np.empty(m + 2 * n)
+        mark_active(state, rates, active)
+        follows = np.concatenate([np.ones(p), active]) > 0.0
         jacobian = np.zeros((state.size, state.size))
-        jacobian[:n, :n], jacobian[:n, n:] = -qp.P, -rows.T
+        jacobian[:n, :n] = -qp.P
+        jacobian[:n, n:] = -rows.T
         jacobian[n:, :n] = np.where(follows[:, None], rows, 0.0)
         jacobian[n:, n:] = -np.diag(np.where(follows, 0.0, 1.0))
         if self.primal_projection:
@@ -121,83 +209,7 @@ class ProjectionNetwork(Network):
             jacobian[outside, outside] = -1.0
         return jacobian
 
-    def _field(self, qp: QP, state: Vector, rates: Vector) -> Vector:
-        """Write the rates; returns which multipliers are active, 1 or 0, of shape (m + 2n,)."""
-        n, m, p = qp.sizes
-        check_size("state", state, 3 * n + m + p)
-        active = np.empty(m + 2 * n)
-        field(qp.data, n, m, p, self.primal_projection, state, rates, active)
-        return active
 
-
-@compiled
-def field(
-    data: Vector, n: int, m: int, p: int, project: bool, s: Vector, rates: Vector,
-    active: Vector,
-) -> float:  # fmt: skip
-    """Write the network's rates rho ds/dt; with `project`, x goes through its bounds.
-
-    `active` (m + 2n,) becomes 1 for the multipliers with mu + Omega x - chi > 0, else 0.
-
-    Returns:
-        The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
-    """
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
-    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    at_z, at_u = n + p, n + p + m
-    largest = 0.0
-    for i in range(n):  # the gradient, for now
-        rates[i] = data[at_q + i] + s[at_u + i] - s[at_u + n + i] + dot(data, i * n, s, n)
-    for j in range(p):
-        row = at_A + j * n
-        add_scaled(rates, s[n + j], data, row, n)
-        rate = dot(data, row, s, n) - data[at_b + j]
-        rates[n + j] = rate
-        largest = larger(largest, abs(rate))
-    for j in range(m):
-        row, z = at_G + j * n, s[at_z + j]
-        if z != 0.0:
-            add_scaled(rates, z, data, row, n)
-        slack = dot(data, row, s, n) - data[at_h + j]
-        is_active = z + slack > 0.0
-        rate = slack if is_active else -z
-        active[j] = is_active
-        rates[at_z + j] = rate
-        largest = larger(largest, abs(rate))
-    for i in range(n):
-        rate = -rates[i]
-        if project:
-            rate = min(max(s[i] + rate, data[at_lb + i]), data[at_ub + i]) - s[i]
-        rates[i] = rate
-        largest = larger(largest, abs(rate))
-        for side in range(2):
-            slack = s[i] - data[at_ub + i] if side == 0 else data[at_lb + i] - s[i]
-            multiplier = s[at_u + side * n + i]
-            is_active = multiplier + slack > 0.0
-            rate = slack if is_active else -multiplier
-            active[m + side * n + i] = is_active
-            rates[at_u + side * n + i] = rate
-            largest = larger(largest, abs(rate))
-    return largest
-
-
-@compiled
-def stable_step(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
-    """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
-    _, at_G, at_A, _ = offsets(n, m, p)
-    K = np.zeros(n * n)
-    for j in range(p + m):
-        row = at_A + j * n if j < p else at_G + (j - p) * n
-        if j < p or active[j - p] != 0.0:
-            for i in range(n):
-                for k in range(n):
-                    K[i * n + k] += data[row + i] * data[row + k]
-    for i in range(n):
-        K[i * n + i] += active[m + i] + active[m + n + i]
-    _, coupling = extreme_eigenvalues(K, n)
-    for k in range(n * n):
-        K[k] = data[k]
-    smallest, largest = extreme_eigenvalues(K, n)
-    # Passive multipliers and clipped variables decay at rate one: never more than 2.
-    bound = 2.0 / max(largest, 1.0)
-    return min(bound, max(smallest, 0.0) / coupling) if coupling > 0.0 else bound
+def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
+    """Check that the compiled loops for the projection network integrate exactly this network."""
+    return network.rates_function() is projection_rates

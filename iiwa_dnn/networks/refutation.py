@@ -11,7 +11,7 @@ verifies the result.
 
 import numpy as np
 
-from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_implicit
+from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_program
 from iiwa_dnn.qp.certificates import (
     RADIUS,
     infeasibility_radius,
@@ -20,7 +20,7 @@ from iiwa_dnn.qp.certificates import (
 )
 from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import point_of_state
 from iiwa_dnn.qp.solution import Status
 
 ROUNDS = 3
@@ -56,7 +56,7 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
         if advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
             break
         before, after = after, before
-        kkt_point(qp.data, n, m, p, state, after)
+        point_of_state(qp.data, n, m, p, state, after)
         if not np.isfinite(after).all():
             break
         if count:
@@ -108,7 +108,7 @@ def _settled(qp: QP) -> Vector:
     """Solve a program that has a solution, with the default integrator's settings."""
     n, m, p = qp.sizes
     state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-    settle_implicit(qp.data, n, m, p, state, point, 1e-10, 1000, 1e7)
+    settle_program(qp, state, point, 1e-10, 1000, 1e7)
     return point[:n]
 
 

@@ -4,45 +4,37 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network
-from iiwa_dnn.networks.integrators import (
-    SAFETY,
-    ExplicitEuler,
-    ImplicitEuler,
-    Integrator,
-    barrier,
-    closing,
+from iiwa_dnn.networks.base import RATES, Network
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator, barrier
+from iiwa_dnn.networks.integrators.base import ANSWER, CompiledAnswer, Settled, answer_program
+from iiwa_dnn.networks.integrators.explicit import follow
+from iiwa_dnn.networks.integrators.implicit import (
+    settle_address,
+    settle_program,
+    sharpen_implicit,
 )
-from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.implicit import settle_implicit, sharpen_implicit
-from iiwa_dnn.networks.projection import ProjectionNetwork
+from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.networks.refutation import find_certificate
 from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
-if TYPE_CHECKING:
-    pass
-
-LARGE, HUGE = 150, 400
-"""Variables from which on the barrier comes before the search for a certificate, and from which on
-a cold start goes through it at once."""
-SPARSE = 0.1
-"""Share of numbers that are not zero below which a large program goes through the barrier first."""
+LARGE = 150
+"""Variables from which on a cold start goes through the barrier first."""
 SHARPENING = 5
 """Linear systems of `DNNSolver.sharpen`."""
-WORK = 20_000
-"""Linear systems times variables of a first try: the rest of the budget is for the second."""
 
-_NETWORK, _SETTLER, _FOLLOWER = ProjectionNetwork(), ImplicitEuler(), ExplicitEuler()
-_PARTS = ("network", "tol", "settler", "follower")
+_NETWORK = ProjectionNetwork()
+_SETTLER = ImplicitEuler()
+_FOLLOWER = ExplicitEuler()
+_SETTINGS = ("network", "tol", "settler", "follower")
 
 
 class DNNSolver:
@@ -50,15 +42,16 @@ class DNNSolver:
 
     The network's state is carried from one program to the next as long as their shapes agree, as a
     control loop wants it. Threads may share a solver: a call takes the state away while it works on
-    it, and one that finds none starts from the network's initial state.
+    it, and one that finds none starts from the network's initial state. A copy has a warm start of
+    its own.
 
     Attributes:
         network: The ODE.
         tol: Absolute tolerance on the primal residual, the dual residual and the duality gap.
         settler: Integrator of `solve`, which runs until the residuals are below `tol`.
         follower: Integrator of `advance`, which runs for a given time.
-        version: Number of times that one of these was set anew: `numbers` of an older version are
-            out of date.
+        version: Number of times that one of these was set anew: a `compiled_answer` of an older
+            version is out of date.
     """
 
     network: Network
@@ -79,36 +72,35 @@ class DNNSolver:
         Raises:
             InvalidInputError: `tol` is not a positive number, or `network` is not a network.
         """
-        checks.positive("tol", tol)
-        given: object = network
-        if not (given is None or isinstance(given, Network)):
-            problem = f"must be an object of a Network's class, not {network!r}"
-            raise InvalidInputError("network", problem, network)
-        network = _NETWORK if network is None else network
-        settler = _SETTLER if settler is None else settler
-        self._kept: deque[tuple[Network, Sizes, Vector]]
-        self._quick: tuple[int, float] | None
-        self.__dict__.update(  # not through __setattr__, which counts
-            _kept=deque(maxlen=1),
-            version=0,
-            network=network,
-            tol=tol,
-            settler=settler,
-            follower=_FOLLOWER if follower is None else follower,
-            _quick=_budget(network, settler),
-        )
+        self._kept: deque[tuple[Network, Sizes, Vector]] = deque(maxlen=1)
+        self.tol = tol
+        self.settler = _SETTLER if settler is None else settler
+        self.follower = _FOLLOWER if follower is None else follower
+        self.network = _NETWORK if network is None else network
+        self._first_try = self._first_constants()
+        self.version = 0
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "tol":
             checks.positive("tol", value)
+        if name == "network" and not isinstance(value, Network):
+            problem = f"must be an object of a Network's class, not {value!r}"
+            raise InvalidInputError("network", problem, value)
         super().__setattr__(name, value)
-        if name in _PARTS:
-            self.__dict__["_quick"] = _budget(self.network, self.settler)
+        if name in _SETTINGS and hasattr(self, "version"):
+            self._first_try = self._first_constants()
             self.version += 1
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = [(network, sizes, state.copy()) for network, sizes, state in tuple(self._kept)]
+        return {**self.__dict__, "_kept": deque(kept, maxlen=1)}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
 
     @property
     def state(self) -> Vector:
-        """The network's state (size,), a copy; empty where the next call has no warm start."""
+        """The network's state (size,), a copy; empty if the next call has no warm start."""
         warm = self._warm()
         return np.empty(0) if warm is None else warm[2].copy()
 
@@ -133,34 +125,44 @@ class DNNSolver:
 
     def warm_state(self, sizes: Sizes) -> Vector | None:
         """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
-        try:
-            owner, last, state = self._kept[-1]
-        except IndexError:  # another thread has it, or there was no call yet
+        warm = self._warm()
+        if warm is None or warm[0] is not self.network or warm[1] != sizes:
             return None
-        return state if last == sizes and owner is self.network else None
+        return warm[2]
 
-    def numbers(self, duration: float = 0.0) -> Vector | None:
-        """Collect the numbers that a compiled control step needs to stand in for this solver.
+    def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
+        """Return the compiled function that answers programs of these sizes as this solver does.
 
         Args:
-            duration: Time to advance [s]; 0 stands for `solve`.
+            sizes: ``(n, m, p)`` of the programs.
+            duration: Time to advance [s]; 0 stands for `solve`, by its first try.
 
         Returns:
-            ``[tol, budget of linear systems, long step, time to advance [rho], whether x is
-            projected, sub-steps or 0, SAFETY]``, (7,), or None where network or integrator has no
-            compiled form.
+            The function's address and its arguments; None if network or integrator has none.
         """
-        form, settler, follower = self.network.compiled, self.settler, self.follower
-        if form is None:
+        network = self.network
+        settler = self.settler
+        follower = self.follower
+        rates = network.rates_function()
+        if rates is None or type(network).read is not Network.read:
             return None
-        # A subclass may integrate in a way of its own.
-        if duration > 0.0 and type(follower) is ExplicitEuler:
-            ahead, substeps = duration / self.network.rho, follower.substeps or 0
-            return np.array([self.tol, 0.0, 0.0, ahead, form.project, substeps, SAFETY])
-        if duration == 0.0 and type(settler) is ImplicitEuler:
-            budget, long_step = settler.max_steps, settler.long_step
-            return np.array([self.tol, budget, long_step, 0.0, form.project, 0.0, SAFETY])
-        return None
+        builtin = is_projection(network)
+        budget = 0
+        long_step = 0.0
+        substeps = 0
+        # A subclass may integrate in its own way.
+        if duration == 0.0 and builtin and type(settler) is ImplicitEuler:
+            address = settle_address()
+            budget = settler.max_steps
+            long_step = settler.long_step
+        elif duration > 0.0 and type(follower) is ExplicitEuler and (follower.substeps or builtin):
+            address = ANSWER.address(follow)
+            substeps = follower.substeps or 0
+        else:
+            return None
+        ahead = duration / network.rho
+        constants = [self.tol, budget, long_step, ahead, substeps, *network.constants(sizes)]
+        return CompiledAnswer(address, RATES.address(rates), np.array(constants))
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
@@ -169,123 +171,67 @@ class DNNSolver:
             qp: The program; its values are taken as checked (`QP.check_values`).
 
         Returns:
-            The solution; `found` only where every residual is at most `tol`.
+            The solution; `found` only if every residual is at most `tol`.
         """
-        network, tol, sizes = self.network, self.tol, qp.sizes
-        n, m, p = sizes
-        state, point = self._take(network, qp), np.empty(2 * n + m + p)
-        if self._quick and n < LARGE:
-            half, long_step = self._quick
-            budget = half if half * n <= WORK else WORK // n + 1
-            settled = settle_implicit(qp.data, n, m, p, state, point, tol, budget, long_step)
+        n, m, p = sizes = qp.sizes
+        network = self.network
+        state = self._take(network, qp)
+        point = np.empty(2 * n + m + p)
+        if self._first_try is None:
+            settled = self.settler.settle(network, qp, state, point, self.tol)
+        elif n >= LARGE and not state.any():
+            settled = barrier.settle(qp, state, point, self.tol, int(self._first_try[1]))
         else:
-            settled = self._settle(network, qp, state, point)
-        systems, time, primal, dual, gap = settled
-        if primal + dual + gap <= 0.1 * tol:  # nothing is in doubt
-            self._kept.append((network, sizes, state))
-            # A named tuple's own way costs as much as a fifth of the call.
-            found = (point, sizes, Status.SOLVED, systems, time, primal, dual, gap, None)
-            return tuple.__new__(Solution, found)
-        doubtful = 0.1 * tol < primal + dual + gap <= 3.0 * tol
-        if doubtful and point.dot(point) > (1e13 * tol) ** 2:  # rounding may decide: try for better
-            worse = closing.worse(qp, point, (primal, dual, gap))
-            if not within(*worse, tol):
-                again = self._second_try(network, qp, state, point, (*settled[:2], *worse))
-                settled = (again[0], *settled[1:]) if again[2:] == worse else again
-                primal, dual, gap = settled[2:]
-        # The state is not kept without a solution: the multipliers grow without bound then, or are
-        # no numbers any more, and would spoil every later call.
-        if not (primal <= tol and dual <= tol and gap <= tol):
-            if not math.isfinite(primal + dual + gap):
+            settled = answer_program(
+                qp.data, n, m, p, settle_address(), self._first_try, state, point
+            )
+        if not within(*settled[2:], self.tol):
+            # The state is not kept without a solution: the multipliers grow without bound then, or
+            # are no numbers any more, and would spoil every later call.
+            if not math.isfinite(sum(settled[2:])):
                 return Solution(point, sizes, Status.NOT_FINITE, *settled)
-            if n >= LARGE:
-                settled = self._second_try(network, qp, state, point, settled)
-            # Almost there: rounding is in the way, not the lack of a solution.
-            far = n < LARGE or max(settled[2:]) > 1e-3
-            proof = find_certificate(qp, point) if far else None
-            if proof is not None:
-                return Solution(point, sizes, proof[0], *settled, proof[1])
-            if n < LARGE:
-                settled = self._second_try(network, qp, state, point, settled)
-            if not within(*settled[2:], tol):
+            certificate = find_certificate(qp, point)
+            if certificate is not None:
+                return Solution(point, sizes, certificate[0], *settled, certificate[1])
+            settled = self._second_try(qp, state, point, settled)
+            if not within(*settled[2:], self.tol):
                 return Solution(point, sizes, Status.NOT_SETTLED, *settled)
         self._kept.append((network, sizes, state))
-        return Solution(point, sizes, Status.SOLVED, *settled)
+        # A named tuple's own constructor costs as much as a fifth of the call.
+        return tuple.__new__(Solution, (point, sizes, Status.SOLVED, *settled, None))
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on for a few long steps from the state that the last call left, as far as it helps.
 
-        Where the cost has small eigenvalues, x is known to the residuals over these only.
+        If the cost has small eigenvalues, x is known to the residuals over these only.
 
         Args:
             qp: The program of the last call.
             solution: Its solution.
 
         Returns:
-            A solution with smaller residuals, or the same where no step had any.
+            A solution with smaller residuals, or the same if no step had any.
         """
         settler = self.settler
-        if type(settler) is not ImplicitEuler or not (self._quick and solution.found):
+        warm = self.warm_state(qp.sizes)
+        if warm is None or self._first_try is None or not isinstance(settler, ImplicitEuler):
             return solution
-        if solution.sizes != qp.sizes:
+        if not solution.found or solution.sizes != qp.sizes:
             return solution
         x = solution.x
-        size = np.abs(qp.q).dot(np.abs(x)) + np.abs(x.dot(qp.P.dot(x)))
-        if not 1e-14 * size < self.tol:  # rounding of the cost is near the tolerance already
+        cost = np.abs(qp.q).dot(np.abs(x)) + np.abs(x.dot(qp.P.dot(x)))
+        if not 1e-14 * cost < self.tol:  # rounding of the cost is near the tolerance already
             return solution
-        try:
-            owner, sizes, state = self._kept.pop()  # nobody else has it now
-        except IndexError:
+        state = warm.copy()
+        point = solution.point.copy()
+        step = settler.long_step
+        residuals = sharpen_implicit(qp.data, *qp.sizes, state, point, step, SHARPENING)
+        if not max(residuals) < solution.residuals.largest:
             return solution
-        if owner is self.network and sizes == qp.sizes:
-            point, count, step = solution.point.copy(), SHARPENING, settler.long_step
-            residuals = sharpen_implicit(qp.data, *sizes, state, point, step, count)
-            if max(residuals) < solution.residuals.largest:
-                systems, time = solution.iterations + count, solution.network_time + count * step
-                solution = Solution(point, sizes, solution.status, systems, time, *residuals)
-        self._kept.append((owner, sizes, state))
-        return solution
-
-    def _settle(self, network: Network, qp: QP, state: Vector, point: Vector) -> Settled:
-        """Settle with the settler; a large program from a cold start, through the barrier."""
-        settler = self.settler
-        if type(settler) is not ImplicitEuler or self._quick is None:
-            return settler.settle(network, qp, state, point, self.tol)
-        if self._through_barrier(qp) and not state.any():
-            return barrier.settle(qp, state, point, self.tol, settler.max_steps)
-        budget = min((settler.max_steps + 1) // 2, WORK // qp.sizes[0] + 1)
-        return settle_implicit(
-            qp.data, *qp.sizes, state, point, self.tol, budget, settler.long_step
-        )
-
-    @staticmethod
-    def _through_barrier(qp: QP) -> bool:
-        """Tell whether a cold start goes through the barrier at once."""
-        n = qp.sizes[0]
-        return n >= HUGE or (n >= LARGE and np.count_nonzero(qp.data) < SPARSE * qp.data.size)
-
-    def _second_try(
-        self, network: Network, qp: QP, state: Vector, point: Vector, settled: Settled
-    ) -> Settled:
-        """Start again the other way, with the rest of the budget; take the better point."""
-        settler, n = self.settler, qp.sizes[0]
-        if type(settler) is not ImplicitEuler or self._quick is None or n >= HUGE:
-            return settled
-        left = settler.max_steps - settled[0]
-        if left <= 0:
-            return settled
-        other = point.copy()
-        if self._through_barrier(qp):
-            state[:], left = 0.0, min(left, WORK // n + 1)
-            again: Settled = settle_implicit(
-                qp.data, *qp.sizes, state, other, self.tol, left, settler.long_step
-            )
-        else:
-            again = barrier.settle(qp, state, other, self.tol, left)
-        if not max(again[2:]) < max(settled[2:]):
-            return again[0] + settled[0], *settled[1:]
-        point[:] = other
-        return again[0] + settled[0], again[1] + settled[1], *again[2:]
+        self._kept.append((self.network, qp.sizes, state))
+        systems = solution.iterations + SHARPENING
+        time = solution.network_time + SHARPENING * step
+        return Solution(point, qp.sizes, solution.status, systems, time, *residuals)
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration`, settled or not.
@@ -297,19 +243,54 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        n, m, p = qp.sizes
-        network, point = self.network, np.empty(2 * n + m + p)
-        state, time = self._take(network, qp), duration / network.rho
-        iterations = self.follower.advance(network, qp, state, time)
-        residuals = network.read(qp, state, point)
+        state = self._take(self.network, qp)
+        time = duration / self.network.rho
+        iterations = self.follower.advance(self.network, qp, state, time)
+        return self._advanced(qp, state, iterations, time)
+
+    def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:
+        """Judge the point of a state that was advanced by a time [rho], and keep the state."""
+        n, m, p = sizes = qp.sizes
+        point = np.empty(2 * n + m + p)
+        residuals = self.network.read(qp, state, point)
         status = Status.NOT_FINITE
         if math.isfinite(sum(residuals)):
             status = Status.ADVANCED
-            self._kept.append((network, qp.sizes, state))
-        return Solution(point, qp.sizes, status, iterations, time, *residuals)
+            self._kept.append((self.network, sizes, state))
+        return Solution(point, sizes, status, iterations, time, *residuals)
+
+    def _first_constants(self) -> Vector | None:
+        """Return the constants of a first try by compiled code, with half of the budget.
+
+        None if the network or the integrator has no compiled code that settles it.
+        """
+        if type(self.settler) is not ImplicitEuler or not is_projection(self.network):
+            return None
+        half = (self.settler.max_steps + 1) // 2
+        return np.array([self.tol, half, self.settler.long_step])
+
+    def _second_try(self, qp: QP, state: Vector, point: Vector, settled: Settled) -> Settled:
+        """Settle from a cold start, by the barrier if it was not the first; keep what is better."""
+        settler = self.settler
+        if self._first_try is None or not isinstance(settler, ImplicitEuler):
+            return settled
+        left = settler.max_steps - settled[0]
+        if left <= 0:
+            return settled
+        other = point.copy()
+        if qp.sizes[0] < LARGE:
+            again = barrier.settle(qp, state, other, self.tol, left)
+        else:
+            state[:] = 0.0
+            again = settle_program(qp, state, other, self.tol, left, settler.long_step)
+        systems = settled[0] + again[0]
+        if not max(again[2:]) < max(settled[2:]):
+            return systems, *settled[1:]
+        point[:] = other
+        return systems, settled[1] + again[1], *again[2:]
 
     def _warm(self) -> tuple[Network, Sizes, Vector] | None:
-        """Return the last network, sizes and state; None where a call has them or none was."""
+        """Return the last network, sizes and state; None while another call has them."""
         try:
             return self._kept[-1]
         except IndexError:
@@ -317,23 +298,12 @@ class DNNSolver:
 
     def _take(self, network: Network, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is put back."""
-        if self._kept:
-            try:
-                owner, sizes, state = self._kept.pop()
-                if owner is network and sizes == qp.sizes:
-                    return state
-            except IndexError:  # another thread was quicker
-                pass
-        if type(network) is ProjectionNetwork:  # its own state, without a copy and a check
-            n, m, p = qp.sizes
-            return np.zeros(3 * n + m + p)
+        try:
+            owner, sizes, state = self._kept.pop()
+            if owner is network and sizes == qp.sizes:
+                return state
+        except IndexError:  # no call yet, or another thread was quicker
+            pass
         state = np.array(network.initial_state(qp), dtype=np.float64)
         check_size("network", state, network.state_size(qp))
         return state
-
-
-def _budget(network: Network, settler: Integrator) -> tuple[int, float] | None:
-    """Return the linear systems of a first try and the long step; None without compiled loops."""
-    if type(settler) is ImplicitEuler and network.compiled is not None:
-        return (settler.max_steps + 1) // 2, settler.long_step
-    return None

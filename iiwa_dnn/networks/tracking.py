@@ -23,7 +23,7 @@ from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Solution, Status
+from iiwa_dnn.qp.solution import Solution
 
 
 class Formula(NamedTuple):
@@ -103,23 +103,18 @@ class TrackingSolver(DNNSolver):
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        n, m, p = sizes = qp.sizes
-        network, point = self.network, np.empty(2 * n + m + p)
+        sizes = qp.sizes
         if self.warm_state(sizes) is None:
             self.reset()
-        state, steps = self._take(network, qp), 0
+        state = self._take(self.network, qp)
+        steps = 0
         if self._programs:
             self._follow(state, QP.from_data(self._programs[0], sizes), duration)
             steps = self.substeps
         self._programs = [qp.data.copy(), *self._programs[: self.formula.order - 1]]
         self.rate = self._difference(duration) if rate is None else rate
         check_size("rate", self.rate, qp.data.size)
-        residuals = network.read(qp, state, point)
-        status = Status.NOT_FINITE
-        if np.isfinite(sum(residuals)):
-            status = Status.ADVANCED
-            self._kept.append((network, sizes, state))
-        return Solution(point, sizes, status, steps, duration / network.rho, *residuals)
+        return self._advanced(qp, state, steps, duration / self.network.rho)
 
     def _difference(self, duration: float) -> Vector:
         """Estimate the rate of change of the program [1/s] at the newest one."""

@@ -30,9 +30,9 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
-from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point, settings_of
+from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, settings_of
 from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
-from iiwa_dnn.qp.layout import Triple, Vector, check_size
+from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -99,11 +99,6 @@ class ZeroingNetwork(Network):
             # Exact at rest; elsewhere it makes of a long implicit step Newton's.
             return Flow(rates, lambda state: -np.eye(size))
         return Flow(rates, lambda state: difference_jacobian(rates, state))
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        check_size("state", state, self.state_size(qp))
-        return read_point(qp, state, point, state.size)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known."""

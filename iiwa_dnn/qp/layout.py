@@ -11,6 +11,7 @@ view of an array, since numba counts its references.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
@@ -57,6 +58,13 @@ def offsets(n: int, m: int, p: int) -> tuple[int, int, int, int]:
     at_G = at_q + n
     at_A = at_G + m * n + m
     return at_q, at_G, at_A, at_A + p * n + p
+
+
+@lru_cache
+def field_shapes(sizes: Sizes) -> list[tuple[int, ...]]:
+    """Return the shape of each of the eight fields of a program, in their order."""
+    n, m, p = sizes
+    return [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
 
 
 class QPViews(NamedTuple):

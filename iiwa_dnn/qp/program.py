@@ -24,8 +24,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.dense import ROUNDING, all_finite, is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, offsets
-from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, field_shapes, qp_views
+from iiwa_dnn.qp.residuals import residuals_of
 from iiwa_dnn.qp.solution import Residuals
 
 if TYPE_CHECKING:
@@ -40,16 +40,9 @@ FIELDS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
 
 @lru_cache
-def _shapes(sizes: Sizes) -> list[tuple[int, ...]]:
-    """Shape of each field."""
-    n, m, p = sizes
-    return [(n, n), (n,), (m, n), (m,), (p, n), (p,), (n,), (n,)]
-
-
-@lru_cache
 def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
     """Place and shape of each field in `QP.data`."""
-    shapes = _shapes(sizes)
+    shapes = field_shapes(sizes)
     ends = np.cumsum([math.prod(shape) for shape in shapes]).tolist()
     return tuple(
         (slice(start, end), shape)
@@ -58,9 +51,11 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
 
 
 @lru_cache
-def _absent(n: int) -> list[NDArray[np.float64]]:
+def absent_fields(n: int) -> list[NDArray[np.float64]]:
     """Return what stands for each field that is left out."""
-    no_rows, nothing, free = np.empty((0, n)), np.empty(0), np.full(n, np.inf)
+    no_rows = np.empty((0, n))
+    nothing = np.empty(0)
+    free = np.full(n, np.inf)
     return [nothing, nothing, no_rows, nothing, no_rows, nothing, -free, free]
 
 
@@ -121,16 +116,13 @@ class QP:
             InvalidInputError: An array has the wrong shape; the message names it.
         """
         n = q.size if type(q) is np.ndarray else np.size(q)
+        arguments = (P, q, G, h, A, b, lb, ub)
         arrays = [
-            absent
-            if v is None
-            else v
-            if type(v) is np.ndarray and v.dtype is _FLOAT  # the rest is converted
-            else numbers(name, v)
-            for name, v, absent in zip(FIELDS, (P, q, G, h, A, b, lb, ub), _absent(n), strict=True)
+            absent if argument is None else real_array(name, argument)
+            for name, argument, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
         ]
         self.sizes = sizes = n, arrays[3].size, arrays[5].size
-        if n == 0 or [v.shape for v in arrays] != _shapes(sizes):  # rarely
+        if n == 0 or [v.shape for v in arrays] != field_shapes(sizes):  # rarely
             self.sizes = _check_shapes((P, q, G, h, A, b), arrays)
         try:  # a quarter of the time of numpy's own, for arrays stored row by row
             self.data = np.frombuffer(bytearray().join(arrays))  # type: ignore[arg-type]
@@ -214,7 +206,7 @@ class QP:
             if part is not None:
                 point[at : at + size] = part
             at += size
-        return Residuals(*point_residuals(self.data, n, m, p, point))
+        return Residuals(*residuals_of(self.data, n, m, p, point))
 
     def check_values(self) -> None:
         """Check for values that no convex solver could make sense of.
@@ -252,18 +244,20 @@ class QP:
 
 @compiled
 def _well_formed(data: Vector, n: int, m: int, p: int) -> bool:
-    """Tell whether `QP.check_values` would find nothing, in one pass over the numbers."""
-    _, at_G, at_A, at_lb = offsets(n, m, p)
-    at_h = at_G + m * n
+    """Check in one pass over the numbers that `QP.check_values` would find nothing."""
+    at_h = n * n + n + m * n
+    at_A = at_h + m
+    at_lb = data.size - 2 * n
     if not (all_finite(data, 0, at_h) and all_finite(data, at_A, at_lb)):
         return False
-    for k in range(at_h, at_A):
-        if not data[k] > -np.inf:
+    qp = qp_views(data, n, m, p)
+    for j in range(m):
+        if not qp.h[j] > -np.inf:
             return False
-    for i in range(at_lb, at_lb + n):
-        if not (data[i] <= data[i + n] and data[i] < np.inf and data[i + n] > -np.inf):
+    for i in range(n):
+        if not (qp.lb[i] <= qp.ub[i] and qp.lb[i] < np.inf and qp.ub[i] > -np.inf):
             return False
-    return is_convex(data, n, np.empty(n * n))
+    return is_convex(qp.P, np.empty((n, n)))
 
 
 def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]) -> Sizes:
@@ -273,14 +267,16 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
         raise InvalidInputError("q", "is empty", given[1])
     require_pairs(given)
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
-    for name, array, shape in zip(FIELDS, arrays, _shapes((n, m, p)), strict=True):
+    for name, array, shape in zip(FIELDS, arrays, field_shapes((n, m, p)), strict=True):
         if array.size != math.prod(shape):
             raise InvalidInputError(name, f"has shape {array.shape}, not {shape}")
     return n, m, p
 
 
-def numbers(name: str, value: Any) -> NDArray[np.float64]:
+def real_array(name: str, value: Any) -> NDArray[np.float64]:
     """Convert an argument, dense or sparse, to a dense array of floats of its own shape."""
+    if type(value) is np.ndarray and value.dtype is _FLOAT:
+        return value
     if hasattr(value, "toarray"):  # scipy's sparse matrices
         value = value.toarray()
     if np.iscomplexobj(value):

@@ -5,84 +5,65 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.qp.dense import add_scaled, dot
-from iiwa_dnn.qp.layout import Matrix, Triple, Vector, compiled, larger, offsets
+from iiwa_dnn.qp.dense import add_row, row_dot
+from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, compiled, larger, qp_views
 
 LONG = 64
-"""Variables from which on the gap, a long sum, is computed accurately."""
+"""Variables from which on the rounding of the gap's sum is added to it: in another order, as
+qpsolvers sums, it would be another number."""
+
+_EPS = float(np.finfo(float).eps)
 
 
 @compiled
-def point_residuals(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
+def point_residuals(qp: QPViews, point: Vector) -> Triple:
     """Compute ``(primal, dual, gap)`` of [x | y | z | z_box], as qpsolvers defines them."""
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
-    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    at_z, at_box = n + p, n + p + m
-    primal, dual, gap, gradient = 0.0, 0.0, 0.0, np.empty(n)
+    n = qp.q.size
+    p = qp.b.size
+    at_z = n + p
+    at_box = at_z + qp.h.size
+    primal = 0.0
+    dual = 0.0
+    gap = 0.0
+    terms = 0.0
+    gradient = np.empty(n)
     for i in range(n):
-        x, lb, ub, multiplier = point[i], data[at_lb + i], data[at_ub + i], point[at_box + i]
-        primal = larger(primal, x - ub)
-        primal = larger(primal, lb - x)
-        value = data[at_q + i] + dot(data, i * n, point, n)
+        x = point[i]
+        multiplier = point[at_box + i]
+        primal = larger(primal, x - qp.ub[i])
+        primal = larger(primal, qp.lb[i] - x)
+        value = qp.q[i] + row_dot(qp.P, i, point)
         gap += x * value
+        terms += abs(x * value)
         gradient[i] = value + multiplier
-        if multiplier > 0.0 and ub < np.inf:
-            gap += ub * multiplier
-        elif multiplier < 0.0 and lb > -np.inf:
-            gap += lb * multiplier
+        if multiplier > 0.0 and qp.ub[i] < np.inf:
+            gap += qp.ub[i] * multiplier
+        elif multiplier < 0.0 and qp.lb[i] > -np.inf:
+            gap += qp.lb[i] * multiplier
     for j in range(p):
-        row, y = at_A + j * n, point[n + j]
-        primal = larger(primal, abs(dot(data, row, point, n) - data[at_b + j]))
-        gap += data[at_b + j] * y
-        add_scaled(gradient, y, data, row, n)
-    for j in range(m):
-        row, z = at_G + j * n, point[at_z + j]
-        primal = larger(primal, dot(data, row, point, n) - data[at_h + j])
+        y = point[n + j]
+        primal = larger(primal, abs(row_dot(qp.A, j, point) - qp.b[j]))
+        gap += qp.b[j] * y
+        terms += abs(qp.b[j] * y)
+        add_row(gradient, y, qp.A, j)
+    for j in range(qp.h.size):
+        z = point[at_z + j]
+        primal = larger(primal, row_dot(qp.G, j, point) - qp.h[j])
         if z != 0.0:
-            gap += data[at_h + j] * z
-            add_scaled(gradient, z, data, row, n)
+            gap += qp.h[j] * z
+            terms += abs(qp.h[j] * z)
+            add_row(gradient, z, qp.G, j)
     for i in range(n):
         dual = larger(dual, abs(gradient[i]))
-    return primal, dual, abs(gap if n < LONG else accurate_gap(data, n, m, p, point))
+    if n >= LONG:
+        gap = abs(gap) + _EPS * terms
+    return primal, dual, abs(gap)
 
 
 @compiled
-def _add_product(total: float, rest: float, a: float, b: float) -> tuple[float, float]:
-    """Add a b to a sum; the roundings of product and sum go to `rest`.
-
-    Source: T. Ogita, S. M. Rump, S. Oishi, "Accurate sum and dot product", SIAM J. Sci. Comput. 26
-    (2005).
-    """
-    value, far, wide = a * b, 134217729.0 * a, 134217729.0 * b
-    a_high, b_high = far - (far - a), wide - (wide - b)
-    a_low, b_low = a - a_high, b - b_high
-    lost = a_low * b_low - (((value - a_high * b_high) - a_low * b_high) - a_high * b_low)
-    new = total + value
-    part = new - total
-    return new, rest + (((total - (new - part)) + (value - part)) + lost)
-
-
-@compiled
-def accurate_gap(data: Vector, n: int, m: int, p: int, point: Vector) -> float:
-    """Compute the duality gap of [x | y | z | z_box] with its sign, as if in twice the digits."""
-    at_q, at_G, _, at_lb = offsets(n, m, p)
-    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    gap, rest = 0.0, 0.0
-    for i in range(n):
-        row, row_rest, x, multiplier = data[at_q + i], 0.0, point[i], point[n + p + m + i]
-        for k in range(n):
-            if data[i * n + k] != 0.0:
-                row, row_rest = _add_product(row, row_rest, data[i * n + k], point[k])
-        gap, rest = _add_product(gap, rest + row_rest * x, row, x)
-        end = data[at_ub + i] if multiplier > 0.0 else data[at_lb + i]
-        if abs(end) < np.inf:
-            gap, rest = _add_product(gap, rest, end, multiplier)
-    for j in range(p):
-        gap, rest = _add_product(gap, rest, data[at_b + j], point[n + j])
-    for j in range(m):
-        if point[n + p + j] != 0.0:
-            gap, rest = _add_product(gap, rest, data[at_h + j], point[n + p + j])
-    return gap + rest
+def residuals_of(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
+    """Compute `point_residuals` for a program's flat array, `QP.data`."""
+    return point_residuals(qp_views(data, n, m, p), point)
 
 
 @compiled
@@ -91,19 +72,19 @@ def largest_residuals(
 ) -> None:
     """Write the largest residual of each point (N, k, size) into `out` (N, k).
 
-    It is infinite where the first entry of a point is NaN, which stands for no point.
+    It is infinite if the first entry of a point is NaN, which stands for no point.
     """
-    count, k, _ = points.shape
-    for i in range(count):
-        for j in range(k):
+    for i in range(points.shape[0]):
+        qp = qp_views(programs[i], n, m, p)
+        for j in range(points.shape[1]):
             out[i, j] = np.inf
             if points[i, j, 0] == points[i, j, 0]:
-                primal, dual, gap = point_residuals(programs[i], n, m, p, points[i, j])
+                primal, dual, gap = point_residuals(qp, points[i, j])
                 out[i, j] = larger(larger(primal, dual), gap)
 
 
 @compiled
-def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
+def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
     """Write the point [x | y | z | z_box] of a state [x | y | z | ...] into `point`.
 
     x is put inside its bounds and z made nonnegative. z_box is the part of x minus the gradient
@@ -113,32 +94,45 @@ def kkt_point(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) ->
     Returns:
         ``(primal, dual, gap)`` of the point as it is handed out.
     """
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
-    at_ub, at_z = at_lb + n, n + p
+    n = qp.q.size
+    p = qp.b.size
+    m = qp.h.size
+    at_z = n + p
+    at_box = at_z + m
     for i in range(n):
-        point[i] = min(max(s[i], data[at_lb + i]), data[at_ub + i])
+        point[i] = min(max(s[i], qp.lb[i]), qp.ub[i])
     for j in range(p):
         point[n + j] = s[n + j]
     for j in range(m):
         point[at_z + j] = max(s[at_z + j], 0.0)
-    falls = point[at_z + m :]
+    descent = point[at_box:]
     for i in range(n):
-        falls[i] = -data[at_q + i] - dot(data, i * n, point, n)
+        descent[i] = -qp.q[i] - row_dot(qp.P, i, point)
     for j in range(p):
-        add_scaled(falls, -point[n + j], data, at_A + j * n, n)
+        add_row(descent, -point[n + j], qp.A, j)
     for j in range(m):
         if point[at_z + j] != 0.0:
-            add_scaled(falls, -point[at_z + j], data, at_G + j * n, n)
+            add_row(descent, -point[at_z + j], qp.G, j)
     for i in range(n):
-        fall = falls[i]
-        # The distance to the bound first: at a bound it is zero, and the rest is not rounded.
-        above = point[i] - data[at_ub + i] + fall
-        below = point[i] - data[at_lb + i] + fall
-        falls[i] = above if above > 0.0 else (below if below < 0.0 else 0.0)
-    return point_residuals(data, n, m, p, point)
+        # The distance to the bound first: at a bound it is zero, and the sum is not rounded.
+        above = point[i] - qp.ub[i] + descent[i]
+        below = point[i] - qp.lb[i] + descent[i]
+        if above > 0.0:
+            descent[i] = above
+        elif below < 0.0:
+            descent[i] = below
+        else:
+            descent[i] = 0.0
+    return point_residuals(qp, point)
+
+
+@compiled
+def point_of_state(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
+    """Write the `kkt_point` of a state for a program's flat array, `QP.data`."""
+    return kkt_point(qp_views(data, n, m, p), s, point)
 
 
 @compiled
 def within(primal: float, dual: float, gap: float, tol: float) -> bool:
-    """Tell whether no residual is above the tolerance, and none NaN."""
+    """Check that no residual is above the tolerance, and none NaN."""
     return primal <= tol and dual <= tol and gap <= tol

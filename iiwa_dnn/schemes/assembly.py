@@ -38,8 +38,8 @@ from iiwa_dnn.schemes.tasks import (
     so3_rows,
 )
 
-HEADER, BLOCK = 9, 8
-"""Entries of the codes' head (n, m, p, joints, blocks, frame, inertia; two addresses that
+HEADER, BLOCK = 11, 8
+"""Entries of the codes' head (n, m, p, joints, blocks, frame, inertia; four entries that
 `control.plan` fills in) and of each block (the last is the address of its function, or 0)."""
 
 _COLLISION = Signature(
@@ -179,7 +179,7 @@ class Layout:
         dof, count = self.robot.dof, len(compiled)
         kinematics = Kinematics(self.robot, self.frames)
         first = self.robot.frame_id(self.target_frames[0])
-        head = [*self.sizes, dof, count, first, int(self.needs_inertia), 0, 0]
+        head = [*self.sizes, dof, count, first, int(self.needs_inertia), 0, 0, 0, 0]
         blocks: list[int] = []
         for block, at in zip(compiled, starts, strict=False):
             name = block.part.frame_name(self.robot)

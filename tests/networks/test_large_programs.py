@@ -1,17 +1,12 @@
 """Large sparse programs, and those in which rounding alone is left of the gap."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 import scipy.sparse as spa
 
 import iiwa_dnn
 from iiwa_dnn import QP
-from iiwa_dnn.networks.integrators import barrier
-from iiwa_dnn.networks.integrators.closing import closings
 from iiwa_dnn.networks.integrators.eliminations import Augmented, Condensed, elimination
-from iiwa_dnn.qp.residuals import accurate_gap, kkt_point
 
 
 def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
@@ -85,41 +80,3 @@ def test_a_warm_start_from_the_barriers_state_is_at_rest() -> None:
     solver = iiwa_dnn.DNNSolver()
     assert solver.solve(qp).found
     assert solver.solve(qp).iterations <= 2
-
-
-def test_the_accurate_gap_is_that_of_fractions() -> None:
-    qp, _ = blend(2, 80, size=1e4)
-    n, m, p = qp.sizes
-    state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-    barrier.settle(qp, state, point, 1e-6, 100)
-    x, y, z, z_box = (
-        [Fraction(v) for v in part] for part in np.split(point, [n, n + p, n + p + m])
-    )
-    P, q, h, b = (np.vectorize(Fraction, otypes=[object])(v) for v in (qp.P, qp.q, qp.h, qp.b))
-    gap = sum(x[i] * (q[i] + sum(P[i] * x)) for i in range(n)) + sum(b * y) + sum(h * z)
-    for i in range(n):
-        end = qp.ub[i] if z_box[i] > 0 else qp.lb[i]
-        gap += Fraction(end) * z_box[i] if np.isfinite(end) else 0
-    assert accurate_gap(qp.data, n, m, p, point) == pytest.approx(float(gap), rel=1e-9, abs=1e-20)
-    residuals = qp.residuals(point[:n], point[n : n + p], point[n + p : n + p + m], point[-n:])
-    assert residuals.gap == abs(accurate_gap(qp.data, n, m, p, point))
-
-
-def test_gaps_of_rounding_are_closed() -> None:
-    closed = 0
-    for seed in range(6):
-        qp, x = blend(seed, 80, size=300.0)
-        n, m, p = qp.sizes
-        state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-        # Terms of 1e9: a rounding of one is 1e-7.
-        barrier.settle(qp, state, point, 1e-5, 1000)
-        before = state.copy()
-        dual = kkt_point(qp.data, n, m, p, state, point)[1]
-        for s in closings(qp, state, 1e-8 - dual):
-            found = kkt_point(qp.data, n, m, p, s, point)
-            np.testing.assert_allclose(point[:n], x, rtol=1e-9, atol=1e-4)
-            if max(found) <= 1e-8:
-                closed += 1
-                break
-        np.testing.assert_array_equal(state, before)
-    assert closed >= 5

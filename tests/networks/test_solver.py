@@ -23,6 +23,7 @@ from iiwa_dnn import (
     ProjectionNetwork,
     Status,
 )
+from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
 
 REFERENCES = CrossCheck(("proxqp", "osqp"))
 
@@ -219,23 +220,29 @@ def test_what_is_set_later_is_used_by_the_next_call() -> None:
     solver = DNNSolver(tol=1e-3)
     assert solver.version == 0
     assert solver.solve(qp).residuals.largest > 1e-9
-    before = solver.numbers()
+    before = solver.compiled_answer(qp.sizes)
     solver.tol = 1e-12
     assert solver.version == 1
     assert solver.solve(qp).residuals.largest <= 1e-12
-    assert solver.numbers()[0] == 1e-12 != before[0]
+    after = solver.compiled_answer(qp.sizes)
+    assert before is not None
+    assert after is not None
+    assert after.constants[TOLERANCE] == 1e-12 != before.constants[TOLERANCE]
     solver.settler = ImplicitEuler(max_steps=7)
     solver.follower = ExplicitEuler(substeps=9)
     assert solver.version == 3
-    assert solver.numbers()[1] == 7
-    assert solver.numbers(1e-4)[5] == 9
+    settling, following = solver.compiled_answer(qp.sizes), solver.compiled_answer(qp.sizes, 1e-4)
+    assert settling is not None
+    assert following is not None
+    assert settling.constants[BUDGET] == 7
+    assert following.constants[SUBSTEPS] == 9
     # Another network has other states, for programs of the same sizes too.
     for network in (DualNetwork(), ProjectionNetwork(), PrimalDualNetwork()):
         solver.network, solver.settler = network, ImplicitEuler()
         assert np.abs(solver.solve(qp).x - x).max() < 1e-6
         assert solver.state.size == network.state_size(qp)
     assert solver.version == 9
-    assert solver.numbers() is None
+    assert solver.compiled_answer(qp.sizes) is None
     with pytest.raises(InvalidInputError, match="tol"):
         solver.tol = -1.0
     assert (solver.tol, solver.version) == (1e-12, 9)

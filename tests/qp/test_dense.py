@@ -12,12 +12,12 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
     for n in (1, 2, 3, 4, 5, 7, 8, 16, 30, 51):
         root = rng.standard_normal((n, n))
         matrix, rhs, out = root @ root.T + np.eye(n), rng.standard_normal(n), np.empty(n)
-        factor = matrix.ravel().copy()
-        assert dense.cholesky_factor(factor, n)
-        dense.factor_solve(factor, n, rhs, out)
+        factor = matrix.copy()
+        assert dense.cholesky_factor(factor)
+        dense.factor_solve(factor, rhs, out)
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-8, atol=1e-11)
         matrix[-1, -1] = -1.0
-        assert not dense.cholesky_factor(matrix.ravel().copy(), n)
+        assert not dense.cholesky_factor(matrix.copy())
 
 
 def test_the_larger_of_two_keeps_a_nan() -> None:
@@ -31,18 +31,18 @@ def test_products_are_numpys() -> None:
     rng = np.random.default_rng(2)
     for n in (1, 2, 3, 4, 5, 7, 8, 16, 30, 51):
         matrix, vector = rng.standard_normal((n, n)), rng.standard_normal(n)
-        flat = matrix.ravel().copy()
-        assert dense.dot(flat, n * (n - 1), vector, n) == pytest.approx(matrix[-1] @ vector)
+        assert dense.row_dot(matrix, n - 1, vector) == pytest.approx(matrix[-1] @ vector)
         out = np.full(n + 3, 9.0)
-        dense.rows_dot(np.concatenate([[9.0], flat]), 1, n, n, vector, out, 2)
+        dense.rows_dot(matrix, vector, out, 2)
         np.testing.assert_allclose(out[2 : n + 2], matrix @ vector, rtol=1e-12, atol=1e-13)
         assert out[0] == out[1] == out[-1] == 9.0
         total = vector.copy()
-        dense.add_scaled(total, -2.0, flat, n * (n - 1), n)
+        dense.add_row(total, -2.0, matrix, n - 1)
         np.testing.assert_allclose(total, vector - 2.0 * matrix[-1], rtol=1e-12, atol=1e-13)
-        dense.add_outer(flat, -2.0, np.concatenate([[9.0], vector]), 1, n)
+        result = matrix.copy()
+        dense.add_outer(result, -2.0, np.stack([np.ones(n), vector]), 1)
         expected = np.tril(matrix - 2.0 * np.outer(vector, vector)) + np.triu(matrix, 1)
-        np.testing.assert_allclose(flat.reshape(n, n), expected, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(result, expected, rtol=1e-12, atol=1e-13)
 
 
 def test_extreme_eigenvalues_are_numpys() -> None:
@@ -51,7 +51,7 @@ def test_extreme_eigenvalues_are_numpys() -> None:
         root = rng.standard_normal((n, n))
         matrix = root + root.T
         expected = np.linalg.eigvalsh(matrix)
-        smallest, largest = dense.extreme_eigenvalues(matrix.ravel().copy(), n)
+        smallest, largest = dense.extreme_eigenvalues(matrix.copy())
         np.testing.assert_allclose([smallest, largest], expected[[0, -1]], rtol=0, atol=1e-12 * n)
 
 
@@ -81,4 +81,4 @@ def test_a_convex_cost_is_symmetric_and_positive_semidefinite() -> None:
         (-np.eye(2), False),
     ):
         n = len(matrix)
-        assert dense.is_convex(matrix.ravel(), n, np.empty(n * n)) is convex
+        assert dense.is_convex(matrix, np.empty((n, n))) is convex

@@ -10,7 +10,7 @@ import scipy.sparse as spa
 
 from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, InvalidInputError, Residuals, Status, solve_problem
-from iiwa_dnn.qp.residuals import kkt_point
+from iiwa_dnn.qp.residuals import point_of_state
 
 
 def test_missing_parts_become_empty_rows_and_infinite_bounds() -> None:
@@ -149,7 +149,7 @@ def test_residuals_are_those_of_qpsolvers() -> None:
         n, p, m = 6, 2, 4
         state = rng.standard_normal(n + p + m + 2 * n)  # nothing like a solution
         point = np.empty(n + p + m + n)
-        ours = kkt_point(qp.data, *qp.sizes, state, point)
+        ours = point_of_state(qp.data, *qp.sizes, state, point)
         judged = qpsolvers.Solution(
             qp.to_qpsolvers(),
             found=True,
@@ -180,7 +180,7 @@ def test_the_point_of_a_state_in_numpy() -> None:
         q, h, b = rng.standard_normal(n), rng.standard_normal(m), rng.standard_normal(p)
         qp = QP(root @ root.T, q, G, h, A, b, lb=-rng.random(n), ub=rng.random(n))
         state, point = 2.0 * rng.standard_normal(n + p + m), np.empty(n + p + m + n)
-        kkt_point(qp.data, *qp.sizes, state, point)
+        point_of_state(qp.data, *qp.sizes, state, point)
         x, y, z = np.clip(state[:n], qp.lb, qp.ub), state[n : n + p], np.maximum(state[n + p :], 0)
         aim = x - (qp.P @ x + q + A.T @ y + G.T @ z)
         expected = np.concatenate([x, y, z, aim - np.clip(aim, qp.lb, qp.ub)])

@@ -19,9 +19,6 @@ moves to that of the projection network. From there on linearly implicit steps o
 network itself settle what is left, on the rows that are active. Each step's linear system is that
 of `iiwa_dnn.networks.integrators.eliminations`; variables whose bounds meet take no part.
 
-**Rounding.** Where rounding is all that is left of the gap, `iiwa_dnn.networks.integrators.closing`
-picks other multipliers within the tolerance. This is no step of a flow.
-
 Sources: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
 RAL-TR-2001-034; S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM
 J. Optim. 2 (1992), for the choice of :math:`\nu` and the start; R. Schwan, Y. Jiang, D. Kuhn, C. N.
@@ -35,11 +32,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.closing import closings, worse
 from iiwa_dnn.networks.integrators.eliminations import elimination
 from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import LONG, kkt_point
+from iiwa_dnn.qp.residuals import point_of_state
 
 ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2), (1e-9, 0.9, 0.0))
 """Inverse of the steps' length [1/rho], share of the way to the boundary that is gone, and
@@ -56,8 +52,6 @@ MOST = 150
 """Systems of one attempt."""
 STALLED = 25
 """Steps without a better point before an attempt is given up."""
-WIDE = 1e-3
-"""Largest gap that is taken for rounding where the other residuals are small."""
 NETWORK_STEPS = 10
 """Linearly implicit steps of the projection network after an attempt."""
 
@@ -66,11 +60,10 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
     """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s.
 
     Works in numpy, LAPACK and SuperLU: it is meant for large programs and for those left over.
-    From n = 64 on the residuals are the larger of those of two orders of the sums.
     """
     if (qp.lb == qp.ub).all():  # nothing is left to choose
         state[:], state[: qp.q.size] = 0.0, qp.lb
-        return 0, 0.0, *kkt_point(qp.data, *qp.sizes, state, point)
+        return 0, 0.0, *point_of_state(qp.data, *qp.sizes, state, point)
     run = _Run(qp, state, point, tol)
     run.limit = max_systems
     # Overflows end an attempt: they show in its residuals.
@@ -78,12 +71,10 @@ def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -
         for attempt in ATTEMPTS:
             if run.systems >= max_systems or run.attempt(*attempt):
                 break
-    residuals, fixed = kkt_point(qp.data, *qp.sizes, state, point), qp.lb == qp.ub
+    residuals, fixed = point_of_state(qp.data, *qp.sizes, state, point), qp.lb == qp.ub
     z_box, bounds = point[-qp.q.size :], state[-2 * qp.q.size :].reshape(2, -1)
     bounds[:, fixed] = np.maximum(z_box[fixed], 0.0), np.maximum(-z_box[fixed], 0.0)
-    # Few terms: one order of the sum is as good as another.
-    long = qp.q.size >= LONG and run.best < np.inf
-    return run.systems, run.time, *(run.residuals if long else residuals)
+    return run.systems, run.time, *residuals
 
 
 class _Run:
@@ -187,8 +178,7 @@ class _Run:
 
     def keep(self, s: Vector) -> float:
         """Keep the state s if it is the best so far; returns its largest residual."""
-        found = kkt_point(self.qp.data, *self.qp.sizes, s, self.point)
-        residuals = worse(self.qp, self.point, found)
+        residuals = point_of_state(self.qp.data, *self.qp.sizes, s, self.point)
         largest = max(residuals) if sum(residuals) < np.inf else np.inf
         if largest < self.best:
             self.best, self.residuals = largest, residuals
@@ -267,9 +257,6 @@ class _Run:
             if value <= 0.5 * self.tol or (value > 0.5 * last and (active == before).all()):
                 break
             mu, last = np.where(active, mu, 0.0), value
-        if self.best > self.tol >= 1.1 * max(self.residuals[:2]) and self.best <= WIDE:
-            states = closings(self.qp, self.state.copy(), self.tol - self.residuals[1])
-            return any(self.keep(s) <= self.tol for s in states)
         return self.best <= self.tol
 
 

@@ -1,9 +1,12 @@
 """Integrator of a network: it advances a state by a time, or until the network has settled."""
 
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
+
+from numba import types
 
 from iiwa_dnn.networks.base import Network, settings_of
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.compiling import VECTOR, Signature
+from iiwa_dnn.qp.layout import QP_VIEWS, Vector, qp_views, released
 from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
@@ -13,6 +16,60 @@ Settled = tuple[int, float, float, float, float]
 (explicit), the time that passed in units of rho, and qpsolvers' three residuals. A plain tuple,
 since a control loop asks for it at every step.
 """
+
+TOLERANCE = 0
+"""Index, in a compiled answer's constants, of the tolerance of the residuals;"""
+BUDGET = 1
+"""of the budget of linear systems;"""
+LONG_STEP = 2
+"""of the linearly implicit step that is tried first [rho];"""
+DURATION = 3
+"""of the time to advance [rho];"""
+SUBSTEPS = 4
+"""of the number of explicit sub-steps, 0 for as many as stability needs;"""
+NETWORK = 5
+"""and of the first of the network's own constants."""
+
+ANSWER = Signature(
+    types.Tuple([types.int64, *4 * [types.float64]]), QP_VIEWS, types.int64, VECTOR, VECTOR, VECTOR
+)
+"""Types of a compiled answer: ``(qp, address of the rates, constants, state, point)``.
+
+It advances the state, by a time or until it has settled, writes the point that it stands for, and
+returns what `Settled` holds.
+"""
+
+enter_answer = ANSWER.enter
+
+
+class CompiledAnswer(NamedTuple):
+    """A compiled function that answers programs of one shape, and its arguments.
+
+    Attributes:
+        address: Address of a function of the type `ANSWER`.
+        rates: Address of the network's compiled function.
+        constants: ``[tolerance, budget, long step, duration, sub-steps, network's own ...]``.
+    """
+
+    address: int
+    rates: int
+    constants: Vector
+
+
+@released
+def answer_program(
+    data: Vector,
+    n: int,
+    m: int,
+    p: int,
+    address: int,
+    constants: Vector,
+    state: Vector,
+    point: Vector,
+) -> Settled:
+    """Enter a compiled answer that does not use the network's own function."""
+    settled: Settled = enter_answer(address, qp_views(data, n, m, p), 0, constants, state, point)
+    return settled
 
 
 class Integrator(Protocol):

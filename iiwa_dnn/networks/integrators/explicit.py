@@ -8,12 +8,12 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network
-from iiwa_dnn.networks.integrators.base import Integrator, Settled
-from iiwa_dnn.networks.projection import field
-from iiwa_dnn.qp.layout import Vector, check_size, compiled
+from iiwa_dnn.networks.base import RATES, Network, enter_rates
+from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
+from iiwa_dnn.networks.projection import mark_active, stable_step
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size, compiled, larger, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.qp.residuals import kkt_point, within
 
 SAFETY = 0.95
 """Share of the computed stable step that is used: the bound itself is only marginally stable."""
@@ -85,12 +85,13 @@ class ExplicitEuler(Integrator):
 
 def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol: float) -> int:
     """Take up to `count` steps, until the largest rate is at most `tol`; returns how many."""
-    form = network.compiled
-    if form is not None:
-        n, m, p = qp.sizes
-        check_size("state", state, 3 * n + m + p)
-        taken, _ = explicit_euler(qp.data, n, m, p, form.project, state, step, count, tol)
-        return taken
+    function = network.rates_function()
+    if function is not None:
+        check_size("state", state, network.state_size(qp))
+        constants = network.constants(qp.sizes)
+        limits = np.array([step, count, tol])
+        address = RATES.address(function)
+        return explicit_program(qp.data, *qp.sizes, address, constants, state, limits)
     flow = network.flow(qp)
     for done in range(count):
         rates = flow.rates(state)
@@ -101,23 +102,71 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
 
 
 @compiled
-def explicit_euler(
-    data: Vector, n: int, m: int, p: int, project: bool, s: Vector, step: float, count: int,
-    tol: float,
-) -> tuple[int, float]:  # fmt: skip
-    """Advance `s` in place by up to `count` explicit Euler steps.
+def explicit_program(
+    data: Vector,
+    n: int,
+    m: int,
+    p: int,
+    rates: int,
+    constants: Vector,
+    state: Vector,
+    limits: Vector,
+) -> int:
+    """Take explicit Euler steps; `limits` is their length [rho], their number and a tolerance."""
+    qp = qp_views(data, n, m, p)
+    return explicit_euler(qp, rates, constants, state, limits[0], int(limits[1]), limits[2])
 
-    Stops early once the largest rate is at most `tol`.
+
+@compiled
+def explicit_euler(
+    qp: QPViews,
+    rates: int,
+    constants: Vector,
+    state: Vector,
+    step: float,
+    count: int,
+    tol: float,
+) -> int:
+    """Advance the state in place by up to `count` explicit Euler steps of one length [rho].
+
+    `rates` is the address of the network's compiled function and `constants` are its own. The steps
+    end early once the largest rate is at most `tol`.
 
     Returns:
-        ``(steps, rate)``: steps taken, and the largest rate at the last point evaluated.
+        Steps taken.
     """
-    rates, active = np.empty(s.size), np.empty(m + 2 * n)
-    rate = np.inf
+    values = np.empty(state.size)
     for done in range(count):
-        rate = field(data, n, m, p, project, s, rates, active)
-        if not rate > tol:
-            return done, rate
-        for i in range(s.size):
-            s[i] += step * rates[i]
-    return count, rate
+        enter_rates(rates, qp, constants, state, values)
+        largest = 0.0
+        for i in range(state.size):
+            largest = larger(largest, abs(values[i]))
+        if not largest > tol:
+            return done
+        for i in range(state.size):
+            state[i] += step * values[i]
+    return count
+
+
+@compiled
+def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Settled:
+    """Advance the network by its time with explicit steps; a compiled answer (`ANSWER`).
+
+    Returns:
+        Sub-steps, 0 if none are stable; time [rho]; and the residuals of the point.
+    """
+    duration = constants[DURATION]
+    count = int(constants[SUBSTEPS])
+    own = constants[NETWORK:]
+    if count == 0:
+        values = np.empty(state.size)
+        active = np.empty(qp.h.size + 2 * qp.q.size)
+        enter_rates(rates, qp, own, state, values)
+        mark_active(state, values, active)
+        stable = SAFETY * stable_step(qp, active)
+        if not stable > 0.0:
+            return 0, 0.0, np.inf, np.inf, np.inf
+        count = max(1, int(np.ceil(duration / stable)))
+    explicit_euler(qp, rates, own, state, duration / count, count, -1.0)
+    primal, dual, gap = kkt_point(qp, state, point)
+    return count, duration, primal, dual, gap

@@ -18,26 +18,55 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numba import types
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
-from iiwa_dnn.networks.integrators.base import Integrator, Settled
-from iiwa_dnn.networks.integrators.implicit_steps import backward_euler, begin_gram, linear_step
-from iiwa_dnn.networks.integrators.pseudo_transient import near, next_step, progress
-from iiwa_dnn.networks.projection import field
-from iiwa_dnn.qp.compiling import VECTOR, Signature
-from iiwa_dnn.qp.layout import Vector, check_size, compiled, released
+from iiwa_dnn.networks.integrators.base import (
+    ANSWER,
+    BUDGET,
+    LONG_STEP,
+    TOLERANCE,
+    Integrator,
+    Settled,
+    answer_program,
+)
+from iiwa_dnn.networks.integrators.implicit_steps import (
+    backward_euler,
+    condensed,
+    copy_into,
+    linear_step,
+)
+from iiwa_dnn.networks.integrators.pseudo_transient import (
+    STALLED,
+    TRAVELLING,
+    TRIALS,
+    near,
+    next_step,
+    progress,
+)
+from iiwa_dnn.networks.projection import field, is_projection, mark_active
+from iiwa_dnn.qp.layout import (
+    QPViews,
+    Triple,
+    Vector,
+    check_size,
+    compiled,
+    qp_views,
+    released,
+)
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
-FIRST_STEP, GROWTH = 30.0, 10.0
-"""Length of the first backward Euler step [rho], and its growth from round to round."""
+FIRST_STEP = 30.0
+"""Length of the first backward Euler step [rho]."""
+GROWTH = 10.0
+"""Growth of that length from round to round."""
 MAX_NEWTON = 50
 """Newton iterations of one backward Euler step of `settle`, half as many as one of `advance`."""
 
@@ -73,11 +102,10 @@ class ImplicitEuler(Integrator):
             NoSolutionError: A step could not be solved to working precision.
         """
         count = max(1, math.ceil(duration / self.step))
-        length, form = duration / count, network.compiled
-        if form is not None and not form.project:
-            n, m, p = qp.sizes
-            check_size("state", state, 3 * n + m + p)
-            systems = advance_implicit(qp.data, n, m, p, state, length, count, 1e-12)
+        length = duration / count
+        if is_projection(network) and not network.primal_projection:
+            check_size("state", state, network.state_size(qp))
+            systems = advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
         else:
             systems = pseudo_transient.advance(network.flow(qp), state, length, count, 1e-12)
         if systems < 0:
@@ -89,14 +117,10 @@ class ImplicitEuler(Integrator):
 
         The projection network is integrated without its primal projection.
         """
-        if network.compiled is None:
-            return pseudo_transient.settle(
-                network, qp, state, point, tol, self.max_steps, self.long_step
-            )
-        n, m, p = qp.sizes
-        check_size("state", state, 3 * n + m + p)
-        check_size("point", point, 2 * n + m + p)
-        return settle_implicit(qp.data, n, m, p, state, point, tol, self.max_steps, self.long_step)
+        budget = self.max_steps
+        if is_projection(network):
+            return settle_program(qp, state, point, tol, budget, self.long_step)
+        return pseudo_transient.settle(network, qp, state, point, tol, budget, self.long_step)
 
 
 @compiled
@@ -106,139 +130,166 @@ def advance_implicit(
     """Advance `s` (size,) in place by `count` backward Euler steps of one length, solved to `tol`.
 
     Returns:
-        Linear systems solved, or -1 where one could not be.
+        Linear systems solved, or -1 if one could not be.
     """
-    counted, gram, K, new = np.empty(m), np.empty(n * n), np.empty(n * n), s.copy()
-    begin_gram(data, n, m, p, counted, gram)
-    total, most = 0, 2 * MAX_NEWTON
+    qp = qp_views(data, n, m, p)
+    matrix = condensed(qp)
+    new = s.copy()
+    total = 0
     for _ in range(count):
-        systems = backward_euler(data, n, m, p, s, step, new, tol, most, counted, gram, K)
+        systems = backward_euler(qp, s, step, new, tol, 2 * MAX_NEWTON, matrix)
         if systems < 0:
             return -1
         total += systems
-        for i in range(s.size):
-            s[i] = new[i]
+        copy_into(s, new)
     return total
 
 
 @compiled
 def _any(values: Vector) -> bool:
-    """Tell whether a value is not zero, with less to compile than numpy's own."""
+    """Check that a value is not zero, with less to compile than numpy's own."""
     k = 0
     while k < values.size and values[k] == 0.0:
         k += 1
     return k < values.size
 
 
-@released
-def settle_implicit(
-    data: Vector, n: int, m: int, p: int, s: Vector, point: Vector, tol: float,
-    max_systems: int, long_step: float,
-) -> tuple[int, float, float, float, float]:  # fmt: skip
-    """Advance `s` (size,) in place until the residuals of `point` (size,) are at most `tol`.
+@compiled
+def _same(values: Vector, others: Vector) -> bool:
+    """Check that all values (k,) equal the first entries of the others."""
+    k = 0
+    while k < values.size and values[k] == others[k]:
+        k += 1
+    return k == values.size
+
+
+@compiled
+def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Settled:
+    """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
+
+    A compiled answer (`ANSWER`), of the projection network alone: `rates` is not used.
 
     Returns:
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
-    size, flags, project = s.size, m + 2 * n, tol < 0.0  # False; a literal is compiled apart
-    work = np.empty(3 * (size + flags) + 2 * n * n + p + m)  # several would take as long as a step
-    rates, new_rates, new = work[:size], work[size : 2 * size], work[2 * size : 3 * size]
-    rest = work[3 * size :]
-    active, new_active = rest[:flags], rest[flags : 2 * flags]
-    rhs, counted = rest[2 * flags : 3 * flags + p], rest[3 * flags + p : 3 * flags + p + m]
-    rest = rest[3 * flags + p + m :]
-    gram, K = rest[: n * n], rest[n * n :]
-    begin_gram(data, n, m, p, counted, gram)
-    step, systems, time, factored = FIRST_STEP, 0, 0.0, project
-    trial, stalled, travelling = 0, 0, 0
-    rate = field(data, n, m, p, project, s, rates, active)
+    tol = constants[TOLERANCE]
+    max_systems = int(constants[BUDGET])
+    long_step = constants[LONG_STEP]
+    matrix = condensed(qp)
+    states = np.empty((4, s.size))
+    now = states[0]
+    new_rates = states[1]
+    new = states[2]
+    before = states[3]
+    project = tol < 0.0  # False; a literal is compiled once more
+    step = FIRST_STEP
+    systems = 0
+    time = 0.0
+    factored = project
+    trial = 0
+    stalled = 0
+    travelling = 0
+    rate = field(qp, project, s, now)
+    mark_active(s, now, matrix.active)
     # A cold start that breaks limits: the long step would hold them all, and be refused.
-    far = not _any(s) and _any(active)
-    while systems < max_systems and travelling < pseudo_transient.TRAVELLING:
+    refused = not _any(s) and _any(matrix.active)
+    while systems < max_systems and travelling < TRAVELLING and stalled <= STALLED:
         if not rate > tol:
-            primal, dual, gap = kkt_point(data, n, m, p, s, point)
+            primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
                 return systems, time, primal, dual, gap
             stalled += 1
-            if stalled > pseudo_transient.STALLED or rate != rate:
-                break
-        systems, length = systems + (not far), long_step * pseudo_transient.TRIALS[trial]
-        if not far and linear_step(
-            data, n, m, p, s, rates, active, length, factored, counted, gram, K, rhs, new
-        ):
-            new_rate = field(data, n, m, p, project, new, new_rates, new_active)
+        if not refused:
+            systems += 1
+            length = long_step * TRIALS[trial]
+            new_rate = np.nan
+            if linear_step(qp, s, now, length, factored, matrix, new):
+                new_rate = field(qp, project, new, new_rates)
             if progress(rate, new_rate, tol):
-                factored = new_rate <= 0.5 * rate
-                if factored:
+                halved = new_rate <= 0.5 * rate
+                if halved:
                     travelling = 0
                 else:
-                    trial = (trial + 1) % pseudo_transient.TRIALS.size
+                    trial = (trial + 1) % TRIALS.size
+                copy_into(s, new)
+                now, new_rates = new_rates, now
+                copy_into(before, matrix.active)
+                mark_active(s, now, matrix.active)
                 # The same rows active and the same length: the same matrix once more.
-                for k in range(flags):
-                    factored = factored and active[k] == new_active[k]
-                for i in range(size):
-                    s[i] = new[i]
-                rates, new_rates = new_rates, rates
-                active, new_active = new_active, active
-                rate, time = new_rate, time + length
+                factored = halved and _same(matrix.active, before)
+                rate = new_rate
+                time += length
                 continue
-        factored = far = False
-        if near(rate, tol) and trial + 1 < pseudo_transient.TRIALS.size:
+        factored = False
+        refused = False
+        if near(rate, tol) and trial + 1 < TRIALS.size:
             trial += 1
+            mark_active(s, now, matrix.active)
             continue
-        count, before = min(MAX_NEWTON, max_systems - systems), rate
-        for i in range(size):
-            new[i] = s[i]
-        solved_in = backward_euler(data, n, m, p, s, step, new, 0.1 * rate, count, counted, gram, K)
+        copy_into(new, s)
+        count = min(MAX_NEWTON, max_systems - systems)
+        solved_in = backward_euler(qp, s, step, new, 0.1 * rate, count, matrix)
         if solved_in < 0:
             step *= 0.1
-            continue
-        for i in range(size):
-            s[i] = new[i]
-        rate = field(data, n, m, p, project, s, rates, active)
-        systems, trial, time = systems + solved_in, 0, time + step
-        travelling, step = next_step(step, GROWTH, before, rate, tol, travelling)
-    primal, dual, gap = kkt_point(data, n, m, p, s, point)
+        else:
+            copy_into(s, new)
+            last_rate = rate
+            rate = field(qp, project, s, now)
+            systems += solved_in
+            trial = 0
+            time += step
+            travelling, step = next_step(step, GROWTH, last_rate, rate, tol, travelling)
+        mark_active(s, now, matrix.active)
+    primal, dual, gap = kkt_point(qp, s, point)
     return systems, time, primal, dual, gap
+
+
+@lru_cache
+def settle_address() -> int:
+    """Compile `settle`, or read it from disk, and return its address."""
+    return ANSWER.address(settle)
+
+
+def settle_program(
+    qp: QP, state: Vector, point: Vector, tol: float, max_systems: int, long_step: float
+) -> Settled:
+    """Settle the projection network from `state` (size,); see `settle`."""
+    n, m, p = qp.sizes
+    check_size("state", state, 3 * n + m + p)
+    check_size("point", point, 2 * n + m + p)
+    constants = np.array([tol, max_systems, long_step])
+    return answer_program(qp.data, n, m, p, settle_address(), constants, state, point)
 
 
 @released
 def sharpen_implicit(
     data: Vector, n: int, m: int, p: int, s: Vector, point: Vector, step: float, count: int
-) -> tuple[float, float, float]:
+) -> Triple:
     """Take `count` linearly implicit steps from an equilibrium; keep the state that is nearest one.
 
-    Unlike in `settle_implicit`, the rates may grow on the way: a step in a direction that costs
+    Unlike in `settle`, the rates may grow on the way: a step in a direction that costs
     next to nothing can reach a limit that the next step then holds.
 
     Returns:
         ``(primal, dual, gap)`` of `point`, that of the state which `s` holds in the end.
     """
-    size, flags = s.size, m + 2 * n
-    rates, active, rhs = np.empty(size), np.empty(flags), np.empty(flags + p)
-    counted, gram, K = np.empty(m), np.empty(n * n), np.empty(n * n)
-    new, other = s.copy(), np.empty(point.size)
-    begin_gram(data, n, m, p, counted, gram)
-    primal, dual, gap = kkt_point(data, n, m, p, s, point)
+    qp = qp_views(data, n, m, p)
+    matrix = condensed(qp)
+    rates = np.empty(s.size)
+    new = s.copy()
+    old = np.empty(s.size)
+    other = np.empty(point.size)
+    primal, dual, gap = kkt_point(qp, s, point)
     for _ in range(count):
-        old = new.copy()
-        field(data, n, m, p, step < 0.0, old, rates, active)
-        if not linear_step(
-            data, n, m, p, old, rates, active, step, step < 0.0, counted, gram, K, rhs, new
-        ):
+        copy_into(old, new)
+        field(qp, step < 0.0, old, rates)
+        mark_active(old, rates, matrix.active)
+        if not linear_step(qp, old, rates, step, step < 0.0, matrix, new):
             break
-        first, second, third = kkt_point(data, n, m, p, new, other)
+        first, second, third = kkt_point(qp, new, other)
         if max(first, second, third) < max(primal, dual, gap):
             primal, dual, gap = first, second, third
-            for k in range(size):
-                s[k] = new[k]
-            for k in range(point.size):
-                point[k] = other[k]
+            copy_into(s, new)
+            copy_into(point, other)
     return primal, dual, gap
-
-
-SETTLED = types.Tuple([types.int64, *4 * [types.float64]])
-SETTLE = Signature(
-    SETTLED, VECTOR, *3 * [types.int64], VECTOR, VECTOR, types.float64, types.int64, types.float64
-)

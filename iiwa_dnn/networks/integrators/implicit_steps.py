@@ -31,144 +31,195 @@ which is his method of multipliers.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from iiwa_dnn.qp.dense import (
     SUMS,
     add_outer,
-    add_scaled,
+    add_row,
     cholesky_factor,
-    dot,
     factor_solve,
+    row_dot,
     rows_dot,
 )
-from iiwa_dnn.qp.layout import ONE, Vector, compiled, larger, offsets
+from iiwa_dnn.qp.layout import ONE, Matrix, QPViews, Vector, compiled, larger
 
-LOOSE, EXACT, LOOSE_NEWTON = 0.3, 1e-3, 20
-"""Slope at which a line search may end, relative to that at its start; in the first iterations,
-which need no more, and after so many of them."""
+LOOSE = 0.3
+EXACT = 1e-3
+"""Slope at which a line search may end, relative to that at its start, in the first
+`LOOSE_NEWTON` iterations and afterwards."""
+LOOSE_NEWTON = 20
+
+
+class Condensed(NamedTuple):
+    """Condensed matrix of a program, and scratch of the steps that solve with it.
+
+    Attributes:
+        active: 1 for each inequality of [G; I; -I] that is active, else 0, (m + 2n,).
+        counted: 1 for each row of G whose product is in `gram`, (m,).
+        gram: A^T A and the products of the counted rows, (n, n).
+        K: Lower half of the condensed matrix, or its factor, (n, n).
+        values: Values of all rows [A; G; I; -I], (p + m + 2n,).
+    """
+
+    active: Vector
+    counted: Vector
+    gram: Matrix
+    K: Matrix
+    values: Vector
+
+
+@compiled
+def condensed(qp: QPViews) -> Condensed:
+    """Allocate the arrays of a program, with A^T A in `gram`."""
+    n = qp.q.size
+    m = qp.h.size
+    rows = qp.b.size + m + 2 * n
+    square = np.zeros((2, n, n))  # few arrays: each takes as long as some rows
+    flags = np.zeros(2 * m + 2 * n + rows)
+    at_counted = m + 2 * n
+    matrix = Condensed(
+        flags[:at_counted],
+        flags[at_counted : at_counted + m],
+        square[0],
+        square[1],
+        flags[at_counted + m :],
+    )
+    for j in range(qp.b.size):
+        add_outer(matrix.gram, 1.0, qp.A, j)
+    return matrix
+
+
+@compiled
+def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
+    """Write the condensed matrix of the active set for a step [rho] into `matrix.K`.
+
+    Between two steps few rows become active or cease to be, so `gram` is kept from call to call.
+    """
+    n = qp.q.size
+    m = qp.h.size
+    for j in range(m):
+        if matrix.active[j] != matrix.counted[j]:
+            add_outer(matrix.gram, matrix.active[j] - matrix.counted[j], qp.G, j)
+            matrix.counted[j] = matrix.active[j]
+    for i in range(np.uint64(n)):
+        for k in range(i + ONE):
+            matrix.K[i, k] = qp.P[i, k] + step * matrix.gram[i, k]
+    for i in range(n):
+        bounds = matrix.active[m + i] + matrix.active[m + n + i]
+        matrix.K[i, i] += 1.0 / step + step * bounds
 
 
 @compiled
 def linear_step(
-    data: Vector, n: int, m: int, p: int, s: Vector, rates: Vector, active: Vector, step: float,
-    factored: bool, counted: Vector, gram: Vector, K: Vector, rhs: Vector, new: Vector,
-) -> bool:  # fmt: skip
-    """Write the state after a linearly implicit step into `new`, like `s` of size 3n + m + p.
+    qp: QPViews,
+    s: Vector,
+    rates: Vector,
+    step: float,
+    factored: bool,
+    matrix: Condensed,
+    new: Vector,
+) -> bool:
+    """Write the state after a linearly implicit step [rho] into `new`, like `s` (3n + m + p,).
 
-    `rates` and `active` are those of `field` at s. With `factored`, K holds the factor that the
-    last call left, for the same step and active set. K, `rhs` and the others are scratch of the
-    sizes that `condensed_matrix` states, `rhs` of size p + m + 2n.
+    `rates` and `matrix.active` are those at s. If `factored`, `matrix.K` holds the factor that the
+    last call left, for the same step and active set.
 
     Returns:
         False if K is not positive definite to working precision; `new` is then meaningless.
     """
+    n = qp.q.size
+    p = qp.b.size
+    active = matrix.active
+    values = matrix.values
     if not factored:
-        condensed_matrix(data, n, m, p, step, active, counted, gram, K)
-        if not cholesky_factor(K, n):
+        build_condensed(qp, step, matrix)
+        if not cholesky_factor(matrix.K):
             return False
-    # The changes of the multipliers for an x that stands still, and what they leave of its rates.
+    # The changes of the multipliers while x stays, and what they leave of its rates.
     decay = step / (1.0 + step)
     for i in range(n):
-        rhs[i] = rates[i]
+        values[i] = rates[i]
     for j in range(p):
         new[n + j] = step * rates[n + j]
-    for k in range(m + 2 * n):
+    for k in range(active.size):
         new[n + p + k] = rates[n + p + k] * (step if active[k] != 0.0 else decay)
-    add_transposed(data, n, m, p, -1.0, new, rhs)
-    factor_solve(K, n, rhs, new)
-    rows_times(data, n, m, p, new, rhs)
+    add_transposed(qp, -1.0, new, values)
+    factor_solve(matrix.K, values, new)
+    rows_times(qp, new, values)
     for j in range(p):
-        new[n + j] += step * rhs[j]
-    for k in range(m + 2 * n):
-        new[n + p + k] += step * active[k] * rhs[p + k]
+        new[n + j] += step * values[j]
+    for k in range(active.size):
+        new[n + p + k] += step * active[k] * values[p + k]
     for k in range(s.size):
         new[k] += s[k]
     return True
 
 
 @compiled
-def begin_gram(data: Vector, n: int, m: int, p: int, counted: Vector, gram: Vector) -> None:
-    """Write A^T A into `gram` (n n,); no row of G is counted in it, so `counted` (m,) is zero."""
-    _, _, at_A, _ = offsets(n, m, p)
-    for j in range(m):
-        counted[j] = 0.0
-    for k in range(n * n):
-        gram[k] = 0.0
-    for j in range(p):
-        add_outer(gram, 1.0, data, at_A + j * n, n)
-
-
-@compiled
-def condensed_matrix(
-    data: Vector, n: int, m: int, p: int, step: float, active: Vector, counted: Vector,
-    gram: Vector, K: Vector,
-) -> None:  # fmt: skip
-    """Write the lower half of the condensed matrix of an active set (m + 2n,) into K (n n,).
-
-    `gram` (n n,), A^T A and the products of the rows of G in `counted` (m,), is kept from call to
-    call: between two steps few rows become active or cease to be.
-    """
-    _, at_G, _, _ = offsets(n, m, p)
-    for j in range(m):
-        if active[j] != counted[j]:
-            add_outer(gram, active[j] - counted[j], data, at_G + j * n, n)
-            counted[j] = active[j]
-    size = np.uint64(n)
-    for i in range(size):
-        for k in range(i + ONE):
-            K[i * size + k] = data[i * size + k] + step * gram[i * size + k]
-    for i in range(n):
-        K[i * n + i] += 1.0 / step + step * (active[m + i] + active[m + n + i])
-
-
-@compiled
-def rows_times(data: Vector, n: int, m: int, p: int, x: Vector, values: Vector) -> None:
+def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
     """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
-    _, at_G, at_A, _ = offsets(n, m, p)
+    n = qp.q.size
+    p = qp.b.size
+    first = p + qp.h.size
     for j in range(p):
-        values[j] = dot(data, at_A + j * n, x, n)
-    if m > 0:
-        rows_dot(data, at_G, m, n, x, values, p)
+        values[j] = row_dot(qp.A, j, x)
+    rows_dot(qp.G, x, values, p)
     for i in range(n):
-        values[p + m + i] = x[i]
-        values[p + m + n + i] = -x[i]
+        values[first + i] = x[i]
+        values[first + n + i] = -x[i]
 
 
 @compiled
-def add_transposed(
-    data: Vector, n: int, m: int, p: int, factor: float, s: Vector, out: Vector
-) -> None:
+def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
     """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
-    _, at_G, at_A, _ = offsets(n, m, p)
-    at_z, at_u = n + p, n + p + m
+    n = qp.q.size
+    p = qp.b.size
+    at_z = n + p
+    at_u = at_z + qp.h.size
     for i in range(n):
         out[i] += factor * (s[at_u + i] - s[at_u + n + i])
     for j in range(p):
-        add_scaled(out, factor * s[n + j], data, at_A + j * n, n)
-    for j in range(m):
+        add_row(out, factor * s[n + j], qp.A, j)
+    for j in range(qp.h.size):
         if s[at_z + j] != 0.0:
-            add_scaled(out, factor * s[at_z + j], data, at_G + j * n, n)
+            add_row(out, factor * s[at_z + j], qp.G, j)
+
+
+@compiled
+def copy_into(out: Vector, values: Vector) -> None:
+    """Copy all values (k,) into the first entries of `out`."""
+    for k in range(np.uint64(values.size)):
+        out[k] = values[k]
 
 
 @compiled
 def backward_euler(
-    data: Vector, n: int, m: int, p: int, s: Vector, step: float, new: Vector, tol: float,
-    max_newton: int, counted: Vector, gram: Vector, K: Vector,
-) -> int:  # fmt: skip
+    qp: QPViews,
+    s: Vector,
+    step: float,
+    new: Vector,
+    tol: float,
+    max_newton: int,
+    matrix: Condensed,
+) -> int:
     """Solve new = s + step F(new) for `new` (3n + m + p,), the iteration starting at new[:n].
 
-    The iteration stops where the gradient is at most `tol` or lost in rounding, or after
-    `max_newton` rounds. See `condensed_matrix` for `counted` (m,), `gram` and K (n n,).
+    The iteration stops if the gradient is at most `tol` or lost in rounding, or after `max_newton`
+    rounds.
 
     Returns:
-        Newton iterations, or -1 where a matrix was not positive definite to working precision.
+        Newton iterations, or -1 if a matrix was not positive definite to working precision.
     """
-    rows = p + m + 2 * n
-    gradient, direction = np.empty(n), np.empty(n)
-    slacks, change, active = np.empty(rows), np.empty(rows), np.empty(m + 2 * n)
-    _slacks(data, n, m, p, new, slacks)
+    n = qp.q.size
+    rows = matrix.values.size
+    gradient = np.empty(n)
+    direction = np.empty(n)
+    slacks = np.empty(rows)
+    _slacks(qp, new, slacks)
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
     for i in range(n):
@@ -176,100 +227,114 @@ def backward_euler(
     floor = 1e-15 * step * largest
     taken = max_newton
     for iteration in range(max_newton):
-        _multipliers(n, m, p, s, step, slacks, new, active)
-        size = _gradient(data, n, m, p, s, step, new, gradient)
+        _multipliers(qp, s, step, slacks, new, matrix.active)
+        size = _gradient(qp, s, step, new, gradient)
         if not size > max(tol, floor):
             taken = iteration
             break
-        condensed_matrix(data, n, m, p, step, active, counted, gram, K)
-        if not cholesky_factor(K, n):
+        build_condensed(qp, step, matrix)
+        if not cholesky_factor(matrix.K):
             return -1
-        factor_solve(K, n, gradient, direction)
+        factor_solve(matrix.K, gradient, direction)
         for i in range(n):
             direction[i] = -direction[i]
-        rows_times(data, n, m, p, direction, change)
-        length = _line_search(
-            data, n, m, p, s, step, slacks, change, direction, gradient,
-            LOOSE if iteration < LOOSE_NEWTON else EXACT,
-        )  # fmt: skip
+        rows_times(qp, direction, matrix.values)
+        accuracy = LOOSE if iteration < LOOSE_NEWTON else EXACT
+        length = _line_search(qp, s, step, slacks, matrix.values, direction, gradient, accuracy)
         for i in range(n):
             new[i] += length * direction[i]
         for k in range(rows):
-            slacks[k] += length * change[k]
+            slacks[k] += length * matrix.values[k]
     # Once more from x itself: long steps would magnify the rounding of the updates.
-    _slacks(data, n, m, p, new, slacks)
-    _multipliers(n, m, p, s, step, slacks, new, active)
+    _slacks(qp, new, slacks)
+    _multipliers(qp, s, step, slacks, new, matrix.active)
     return taken
 
 
 @compiled
-def _slacks(data: Vector, n: int, m: int, p: int, x: Vector, slacks: Vector) -> None:
+def _slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
     """Write A x - b, G x - h, x - ub and lb - x into `slacks` (p + m + 2n)."""
-    _, at_G, _, at_lb = offsets(n, m, p)
-    at_h, at_b, at_ub = at_G + m * n, at_lb - p, at_lb + n
-    rows_times(data, n, m, p, x, slacks)
+    n = qp.q.size
+    p = qp.b.size
+    first = p + qp.h.size
+    rows_times(qp, x, slacks)
     for j in range(p):
-        slacks[j] -= data[at_b + j]
-    for j in range(m):
-        slacks[p + j] -= data[at_h + j]
+        slacks[j] -= qp.b[j]
+    for j in range(qp.h.size):
+        slacks[p + j] -= qp.h[j]
     for i in range(n):
-        slacks[p + m + i] -= data[at_ub + i]
-        slacks[p + m + n + i] += data[at_lb + i]
+        slacks[first + i] -= qp.ub[i]
+        slacks[first + n + i] += qp.lb[i]
 
 
 @compiled
 def _multipliers(
-    n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, new: Vector, active: Vector
+    qp: QPViews, s: Vector, step: float, slacks: Vector, new: Vector, active: Vector
 ) -> None:
-    """Write the multipliers after a step to x with these slacks into `new`, and which follow it."""
+    """Write the multipliers after a step to x with these slacks, and mark those that are active."""
+    n = qp.q.size
+    p = qp.b.size
     keep = 1.0 / (1.0 + step)
     for j in range(p):
         new[n + j] = s[n + j] + step * slacks[j]
-    shift, rows = np.uint64(n + p), np.uint64(p)
-    for k in range(np.uint64(m + 2 * n)):  # no branch: several at once
+    shift = np.uint64(n + p)
+    rows = np.uint64(p)
+    for k in range(np.uint64(active.size)):  # no branch: several at once
         old = s[shift + k]
-        moving, kept = old + step * slacks[rows + k], old * keep
+        moving = old + step * slacks[rows + k]
+        kept = old * keep
         is_active = moving > kept
         active[k] = 1.0 if is_active else 0.0
         new[shift + k] = moving if is_active else kept
 
 
 @compiled
-def _gradient(
-    data: Vector, n: int, m: int, p: int, s: Vector, step: float, new: Vector, gradient: Vector
-) -> float:
+def _gradient(qp: QPViews, s: Vector, step: float, new: Vector, gradient: Vector) -> float:
     """Write the gradient of the step's convex function; returns its largest entry."""
-    rows_dot(data, 0, n, n, new, gradient, 0)
-    for i in range(n):
-        gradient[i] += data[n * n + i] + (new[i] - s[i]) / step
-    add_transposed(data, n, m, p, 1.0, new, gradient)
+    rows_dot(qp.P, new, gradient, 0)
+    for i in range(qp.q.size):
+        gradient[i] += qp.q[i] + (new[i] - s[i]) / step
+    add_transposed(qp, 1.0, new, gradient)
     size = 0.0
-    for i in range(n):
+    for i in range(qp.q.size):
         size = larger(size, abs(gradient[i]))
     return size
 
 
 @compiled
 def _line_search(
-    data: Vector, n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector,
-    direction: Vector, gradient: Vector, accuracy: float,
-) -> float:  # fmt: skip
-    """Minimise the step's convex function along the Newton `direction`, to a part of its slope.
+    qp: QPViews,
+    s: Vector,
+    step: float,
+    slacks: Vector,
+    change: Vector,
+    direction: Vector,
+    gradient: Vector,
+    accuracy: float,
+) -> float:
+    """Minimize the step's convex function along the Newton `direction`, to a part of its slope.
 
     Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
     inside a bracket ends at the root. `change` is [A; G; I; -I] direction.
     """
-    start, shortest = 0.0, 0.0
+    n = qp.q.size
+    p = qp.b.size
+    start = 0.0
+    shortest = 0.0
     for i in range(n):
         start += gradient[i] * direction[i]
         shortest += direction[i] * direction[i]
     # direction^T K direction is -start: that is the curvature where the active rows stay active.
-    slope, second = _slope(n, m, p, s, step, slacks, change, 0.0)
-    constant, curvature = start - slope, max(-start - second, shortest / step)
-    low, high, length = 0.0, np.inf, 1.0
+    slope, second = _slope(n, p, s, step, slacks, change, 0.0)
+    constant = start - slope
+    curvature = max(-start - second, shortest / step)
+    low = 0.0
+    high = np.inf
+    length = 1.0
     for _ in range(50):
-        slope, second = _slope(n, m, p, s, step, slacks, change, length)
-        slope, second = slope + constant + length * curvature, second + curvature
+        slope, second = _slope(n, p, s, step, slacks, change, length)
+        slope = slope + constant + length * curvature
+        second += curvature
         if abs(slope) <= accuracy * abs(start):
             break
         if slope > 0.0:
@@ -284,14 +349,18 @@ def _line_search(
 
 @njit(cache=True, error_model="numpy", fastmath=SUMS)
 def _slope(
-    n: int, m: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
+    n: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
 ) -> tuple[float, float]:
     """Sum slope and curvature of the inequalities' part of the step's function at a length."""
-    keep, slope, second = 1.0 / (1.0 + step), 0.0, 0.0
+    keep = 1.0 / (1.0 + step)
+    slope = 0.0
+    second = 0.0
     shift = np.uint64(n)
-    for k in range(np.uint64(p), np.uint64(p + m + 2 * n)):
-        old, rate = s[shift + k], change[k]
-        moving, kept = old + step * (slacks[k] + length * rate), old * keep
+    for k in range(np.uint64(p), np.uint64(slacks.size)):
+        old = s[shift + k]
+        rate = change[k]
+        moving = old + step * (slacks[k] + length * rate)
+        kept = old * keep
         is_active = moving > kept  # no branch: several rows at once
         slope += (moving if is_active else kept) * rate
         second += step * rate * rate if is_active else 0.0
