@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import barrier
-from iiwa_dnn.networks.integrators.base import enter_answer
-from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_address
+from iiwa_dnn.networks.integrators.base import ANSWER, enter_answer
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, field_shapes, qp_views, released
 from iiwa_dnn.qp.program import FIELDS, QP, absent_fields, real_array, require_pairs
@@ -186,10 +186,10 @@ def _settle_all(stack: _Stack, tol: float, points: Matrix, figures: Matrix) -> N
     """Settle every program, over all cores."""
     settler = ImplicitEuler()
     constants = np.array([tol, settler.max_steps, settler.long_step])
-    address = settle_address()
+    address = ANSWER.address(settle)
     shared_cost = len(stack.fields[0]) == 1
 
-    def settle(first: int) -> None:
+    def settle_chunk(first: int) -> None:
         rows = stack.rows(first, min(first + CHUNK, stack.count))
         last = first + len(rows)
         _settle_rows(
@@ -200,7 +200,7 @@ def _settle_all(stack: _Stack, tol: float, points: Matrix, figures: Matrix) -> N
     # Not numba's own threads: those end the process if two callers use them at once.
     threads: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(settle, range(0, stack.count, CHUNK)))
+        list(pool.map(settle_chunk, range(0, stack.count, CHUNK)))
 
 
 @released

@@ -12,10 +12,16 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import RATES, Network
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator, barrier
-from iiwa_dnn.networks.integrators.base import ANSWER, CompiledAnswer, Settled, answer_program
+from iiwa_dnn.networks.integrators.base import (
+    ANSWER,
+    BUDGET,
+    CompiledAnswer,
+    Settled,
+    answer_program,
+)
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import (
-    settle_address,
+    settle,
     settle_program,
     sharpen_implicit,
 )
@@ -152,7 +158,7 @@ class DNNSolver:
         substeps = 0
         # A subclass may integrate in its own way.
         if duration == 0.0 and builtin and type(settler) is ImplicitEuler:
-            address = settle_address()
+            address = ANSWER.address(settle)
             budget = settler.max_steps
             long_step = settler.long_step
         elif duration > 0.0 and type(follower) is ExplicitEuler and (follower.substeps or builtin):
@@ -175,30 +181,28 @@ class DNNSolver:
         """
         n, m, p = sizes = qp.sizes
         network = self.network
+        tol = self.tol
         state = self._take(network, qp)
         point = np.empty(2 * n + m + p)
         if self._first_try is None:
-            settled = self.settler.settle(network, qp, state, point, self.tol)
+            settled = self.settler.settle(network, qp, state, point, tol)
         elif n >= LARGE and not state.any():
-            settled = barrier.settle(qp, state, point, self.tol, int(self._first_try[1]))
+            settled = barrier.settle(qp, state, point, tol, int(self._first_try[BUDGET]))
         else:
             settled = answer_program(
-                qp.data, n, m, p, settle_address(), self._first_try, state, point
+                qp.data, n, m, p, ANSWER.address(settle), self._first_try, state, point
             )
-        if not within(*settled[2:], self.tol):
-            # The state is not kept without a solution: the multipliers grow without bound then, or
-            # are no numbers any more, and would spoil every later call.
-            if not math.isfinite(sum(settled[2:])):
-                return Solution(point, sizes, Status.NOT_FINITE, *settled)
-            certificate = find_certificate(qp, point)
-            if certificate is not None:
-                return Solution(point, sizes, certificate[0], *settled, certificate[1])
-            settled = self._second_try(qp, state, point, settled)
-            if not within(*settled[2:], self.tol):
-                return Solution(point, sizes, Status.NOT_SETTLED, *settled)
-        self._kept.append((network, sizes, state))
+        status = Status.SOLVED
+        certificate = None
+        _, _, primal, dual, gap = settled
+        if not (primal <= tol and dual <= tol and gap <= tol):
+            settled, status, certificate = self._try_again(qp, state, point, settled)
+        # The state is not kept without a solution: the multipliers grow without bound then, or are
+        # no numbers any more, and would spoil every later call.
+        if status is Status.SOLVED:
+            self._kept.append((network, sizes, state))
         # A named tuple's own constructor costs as much as a fifth of the call.
-        return tuple.__new__(Solution, (point, sizes, Status.SOLVED, *settled, None))
+        return tuple.__new__(Solution, (point, sizes, status, *settled, certificate))
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on for a few long steps from the state that the last call left, as far as it helps.
@@ -269,25 +273,36 @@ class DNNSolver:
         half = (self.settler.max_steps + 1) // 2
         return np.array([self.tol, half, self.settler.long_step])
 
-    def _second_try(self, qp: QP, state: Vector, point: Vector, settled: Settled) -> Settled:
-        """Settle from a cold start, by the barrier if it was not the first; keep what is better."""
+    def _try_again(
+        self, qp: QP, state: Vector, point: Vector, settled: Settled
+    ) -> tuple[Settled, Status, Vector | None]:
+        """Prove that there is no solution or settle from a cold start, after a first try failed.
+
+        Returns:
+            The progress, the better one of both tries; the status, and the certificate if any.
+        """
+        if not math.isfinite(sum(settled[2:])):
+            return settled, Status.NOT_FINITE, None
+        proof = find_certificate(qp, point)
+        if proof is not None:
+            return settled, *proof
         settler = self.settler
-        if self._first_try is None or not isinstance(settler, ImplicitEuler):
-            return settled
-        left = settler.max_steps - settled[0]
-        if left <= 0:
-            return settled
-        other = point.copy()
-        if qp.sizes[0] < LARGE:
-            again = barrier.settle(qp, state, other, self.tol, left)
-        else:
-            state[:] = 0.0
-            again = settle_program(qp, state, other, self.tol, left, settler.long_step)
-        systems = settled[0] + again[0]
-        if not max(again[2:]) < max(settled[2:]):
-            return systems, *settled[1:]
-        point[:] = other
-        return systems, settled[1] + again[1], *again[2:]
+        if isinstance(settler, ImplicitEuler) and self._first_try is not None:
+            left = settler.max_steps - settled[0]
+            other = point.copy()
+            if qp.sizes[0] < LARGE:
+                again = barrier.settle(qp, state, other, self.tol, left)
+            else:
+                state[:] = 0.0
+                again = settle_program(qp, state, other, self.tol, left, settler.long_step)
+            systems = settled[0] + again[0]
+            if max(again[2:]) < max(settled[2:]):
+                point[:] = other
+                settled = (systems, settled[1] + again[1], *again[2:])
+            else:
+                settled = (systems, *settled[1:])
+        status = Status.SOLVED if within(*settled[2:], self.tol) else Status.NOT_SETTLED
+        return settled, status, None
 
     def _warm(self) -> tuple[Network, Sizes, Vector] | None:
         """Return the last network, sizes and state; None while another call has them."""

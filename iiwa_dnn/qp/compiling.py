@@ -74,10 +74,10 @@ class Signature:
         """Take numba's types of the result (`types.void` for none) and of the arguments."""
         self._result = result
         self._arguments = arguments
-        self._interpreted: dict[int, Any] = {}
+        self._addresses: dict[Callable[..., Any], int] = {}
         self.enter: Any = _call_at_address(result, arguments)
         if _INTERPRETED:
-            self.enter = lambda address, *values: self._interpreted[address](*values)
+            self.enter = self._call
 
     def address(self, function: Callable[..., Any]) -> int:
         """Return the address of a compiled function, which is compiled if it has not been yet.
@@ -85,9 +85,11 @@ class Signature:
         Raises:
             TypeError: The function is not compiled by numba or returns another type.
         """
-        if _INTERPRETED:
-            self._interpreted[id(function)] = function
-            return id(function)
+        if function not in self._addresses:
+            self._addresses[function] = id(function) if _INTERPRETED else self._compile(function)
+        return self._addresses[function]
+
+    def _compile(self, function: Any) -> int:
         if not isinstance(function, Dispatcher):
             raise TypeError(f"{function!r} is not compiled by numba")
         function.compile(self._arguments)
@@ -97,6 +99,11 @@ class Signature:
             raise TypeError(f"{made.fndesc.qualname} returns {returned}, not {self._result}")
         address: int = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
         return address
+
+    def _call(self, address: int, *arguments: Any) -> Any:
+        """Call the interpreted function that stands at an address, without numba."""
+        functions = {place: function for function, place in self._addresses.items()}
+        return functions[address](*arguments)
 
 
 def _call_at_address(result: Any, expected: tuple[Any, ...]) -> Any:

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -245,12 +244,6 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     return systems, time, primal, dual, gap
 
 
-@lru_cache
-def settle_address() -> int:
-    """Compile `settle`, or read it from disk, and return its address."""
-    return ANSWER.address(settle)
-
-
 def settle_program(
     qp: QP, state: Vector, point: Vector, tol: float, max_systems: int, long_step: float
 ) -> Settled:
@@ -259,7 +252,7 @@ def settle_program(
     check_size("state", state, 3 * n + m + p)
     check_size("point", point, 2 * n + m + p)
     constants = np.array([tol, max_systems, long_step])
-    return answer_program(qp.data, n, m, p, settle_address(), constants, state, point)
+    return answer_program(qp.data, n, m, p, ANSWER.address(settle), constants, state, point)
 
 
 @released
