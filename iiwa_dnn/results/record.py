@@ -26,7 +26,8 @@ IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
 MODES = ("converged", "continuous")
-LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
+LIMITS = ("q_lower", "q_upper", "dq_max")
+RATES = ("ddq_max", "dddq_max")
 
 # Errors of NumPy, zip and JSON on a missing or damaged file; InvalidInputError is a ValueError.
 _UNREADABLE = (
