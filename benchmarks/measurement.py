@@ -108,8 +108,7 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
     names = ("P", "q", "A", "b", "lb", "ub")
     stacks: dict[str, Any] = {name: np.stack([getattr(qp, name) for qp in given]) for name in names}
     solve_batch(**stacks)  # compiles
-    threads = os.cpu_count() or 1
-    eye = np.eye(n)
+    threads, eye = os.cpu_count() or 1, np.eye(n)
     seconds = {"filled": 0.0, "solved": 0.0}
     picked = np.arange(count) % len(given)
     everything: dict[str, Any] = {name: stack[picked] for name, stack in stacks.items()}
@@ -119,8 +118,7 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         batch = solve_batch(**everything, tol=TOL)
         calls.append(perf_counter() - start)
     ours = float(np.median(calls))
-    worst = 0.0
-    failed = 0
+    worst, failed = 0.0, 0
     for begin in range(0, count, slice_size):
         picked = np.arange(begin, min(begin + slice_size, count)) % len(given)
         arrays = {name: stack[picked] for name, stack in stacks.items()}
@@ -128,17 +126,11 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         qps = proxqp.dense.BatchQP(picked.size)
         for k in range(picked.size):
             qp = qps.init_qp_in_place(n, p, n)
-            qp.settings.eps_abs = TOL
-            qp.settings.eps_rel = 0.0
+            qp.settings.eps_abs, qp.settings.eps_rel = TOL, 0.0
             qp.init(
-                arrays["P"][k],
-                arrays["q"][k],
-                arrays["A"][k],
-                arrays["b"][k],
-                eye,
-                arrays["lb"][k],
-                arrays["ub"][k],
-            )
+                arrays["P"][k], arrays["q"][k], arrays["A"][k], arrays["b"][k], eye,
+                arrays["lb"][k], arrays["ub"][k],
+            )  # fmt: skip
         seconds["filled"] += perf_counter() - start
         start = perf_counter()
         proxqp.dense.solve_in_parallel(qps, threads)
@@ -146,8 +138,7 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         for k in range(0, picked.size, 10):
             results = qps.get(k).results
             residual = given[picked[k]].residuals(results.x, results.y, None, results.z).largest
-            worst = max(worst, residual)
-            failed = failed + 10 * (not residual <= FAILED)
+            worst, failed = max(worst, residual), failed + 10 * (not residual <= FAILED)
     scale = 1e6 / count
     return [
         {
@@ -179,15 +170,12 @@ def measure_known(solvable: int, infeasible: int, unbounded: int) -> list[Row]:
         ("infeasible", infeasible, programs.infeasible, "primal infeasible"),
         ("unbounded", unbounded, programs.unbounded, "dual infeasible (unbounded)"),
     ]
-    solver = DNNSolver(tol=TOL)
-    rows = []
+    solver, rows = DNNSolver(tol=TOL), []
     for seed, (name, count, make, wanted) in enumerate(kinds, 1):
         solver.reset()
         warm_up = make(np.random.default_rng([seed, count]))
         solver.solve(warm_up[0] if isinstance(warm_up, tuple) else warm_up)
-        times = []
-        right = 0
-        error = 0.0
+        times, right, error = [], 0, 0.0
         for k in range(count):
             made = make(np.random.default_rng([min(seed, 2), k]))
             qp = made[0] if isinstance(made, tuple) else made

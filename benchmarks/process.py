@@ -95,8 +95,5 @@ def _python(code: str, cache: str | None, *arguments: str) -> str:
     environment = {**os.environ, **({} if cache is None else {"NUMBA_CACHE_DIR": cache})}
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    ).stdout
+        env=environment, capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip

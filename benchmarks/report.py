@@ -22,16 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PACKAGES = (
-    "iiwa-dnn",
-    "daqp",
-    "osqp",
-    "piqp",
-    "proxsuite",
-    "quadprog",
-    "qpsolvers",
-    "numba",
-    "numpy",
-)
+    "iiwa-dnn", "daqp", "osqp", "piqp", "proxsuite", "quadprog", "qpsolvers", "numba", "numpy",
+)  # fmt: skip
 
 LIMITS = """\
 - One process on one machine, with whatever else runs on it. The peers take turns every 50 programs,
@@ -50,26 +42,18 @@ LIMITS = """\
 
 
 _SOLVERS = {
-    "solver": "{solver}",
-    "median µs": "{median_us:.2f}",
-    "p99 µs": "{p99_us:.1f}",
-    "worst residual": "{worst_residual:.1e}",
-    "failed": "{failed} of {programs}",
-}
+    "solver": "{solver}", "median µs": "{median_us:.2f}", "p99 µs": "{p99_us:.1f}",
+    "worst residual": "{worst_residual:.1e}", "failed": "{failed} of {programs}",
+}  # fmt: skip
 _BATCH = {
-    "solver": "{solver}",
-    "solving, µs per program": "{solve_us:.2f}",
-    "with handing over": "{total_us:.2f}",
-    "worst residual": "{worst_residual:.1e}",
+    "solver": "{solver}", "solving, µs per program": "{solve_us:.2f}",
+    "with handing over": "{total_us:.2f}", "worst residual": "{worst_residual:.1e}",
     "failed": "{failed}",
-}
+}  # fmt: skip
 _KNOWN = {
-    "kind": "{kind}",
-    "recognised": "{recognised} of {programs}",
-    "median ms": "{median_ms:.3f}",
-    "largest ms": "{largest_ms:.2f}",
-    "largest error of x": "{largest_error:.1e}",
-}
+    "kind": "{kind}", "recognised": "{recognised} of {programs}", "median ms": "{median_ms:.3f}",
+    "largest ms": "{largest_ms:.2f}", "largest error of x": "{largest_error:.1e}",
+}  # fmt: skip
 
 
 def environment(more: Sequence[str] = ()) -> dict[str, Any]:

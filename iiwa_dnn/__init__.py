@@ -4,7 +4,7 @@ from importlib.metadata import version
 from typing import Any
 from warnings import warn
 
-from iiwa_dnn.control.answers import Command
+from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import (
     FileError,

@@ -95,6 +95,9 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
 
     An entry of -1 in ``shape`` leaves that length open.
     """
+    masked: bool = np.ma.is_masked(value)  # type: ignore[no-untyped-call]
+    if masked or np.iscomplexobj(value):
+        raise InvalidInputError(argument, "must be real numbers, none of them masked", value)
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:

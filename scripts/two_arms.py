@@ -12,8 +12,7 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
 
-LEFT = "left_iiwa7_flange"
-RIGHT = "right_iiwa7_flange"
+LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
 
 
 def scheme(*tasks):

@@ -85,7 +85,7 @@ def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
 def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:
     """Lower and upper velocity bounds of the joint limits at a configuration."""
     target = Target(conf.position, conf.rotation)
-    qp = Scheme(limits=[JointLimits(gain)]).build_qp(conf, target)
+    qp = Scheme(limits=[JointLimits(gain=gain)]).build_qp(conf, target)
     return qp.lb, qp.ub
 
 
@@ -93,7 +93,7 @@ def orientation_rows(
     form: str, conf: Configuration, target: Target, gain: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rows and right-hand side of the orientation task alone."""
-    qp = Scheme(tasks=[OrientationTask(gain, form)]).build_qp(conf, target)
+    qp = Scheme(tasks=[OrientationTask(gain=gain, form=form)]).build_qp(conf, target)
     return qp.A, qp.b
 
 

@@ -19,8 +19,7 @@ from scripts import arm_scenes
 
 def make(task: Task, variant: str) -> Loop:
     """Make the loop; the variants are ``command``, ``euler`` and ``midpoint``."""
-    q = np.array(task["q0"])
-    dt = float(task["dt"])
+    q, dt = np.array(task["q0"]), float(task["dt"])
     reference: Any
     if "scene" in task:
         robot, scheme, reference, _ = arm_scenes.scene(str(task["scene"]), dt)

@@ -2,47 +2,66 @@
 
 from __future__ import annotations
 
+import copy
+import threading
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import computeJointJacobians, updateFramePlacement, updateFramePlacements
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.answers import Answers, Command
+from iiwa_dnn.control.cascade import Level
+from iiwa_dnn.control.command import Command, RowLayout
+from iiwa_dnn.control.fallback import Fallback
 from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far, warn_if_outside
-from iiwa_dnn.control.plan import Plan
-from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.room import SIZE, Room
+from iiwa_dnn.control.policies import POLICIES, Action, Policy, Resolution
+from iiwa_dnn.control.state import LAST, ControllerState, Q
+from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.references import Reference, Target
+from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.base import targets_of
+from iiwa_dnn.schemes.foreign import ForeignProgram
+from iiwa_dnn.schemes.program import StepProgram
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
+
+_FLOAT = np.dtype(np.float64)
 
 
 class Controller:
     """A robot, a scheme and a reference, closed by a network.
 
-    In a robot's loop, `step` takes the encoders' reading and returns the command.
+    In a robot's loop, `step` takes the encoders' reading and returns the command. Attributes may
+    be set in motion: the last commands and the reference's clock stay. Copies and pickles carry
+    them along. Threads may share a controller: steps wait for each other.
 
     Attributes:
         robot: The robot, n joints, with the limits that the scheme keeps.
-        scheme: Builds the programs; where it has no home, the first step's posture becomes it.
+        scheme: Builds the programs; if it has no home, the first step's posture becomes it.
         reference: Path of the tip, or paths by frame name.
         dt: Control period [s].
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags.
-        policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
+        policy: Action at a step without a solution in ``converged`` mode (`control.policies`). At
+            the acceleration level ``slow`` acts as ``relax``.
         solver: Network, integrators and tolerance; keeps the network's state between steps.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
+
+    robot: Robot
+    scheme: Scheme
+    reference: References | None
+    dt: float
+    mode: Mode
+    policy: Policy
+    solver: DNNSolver
 
     def __init__(
         self,
@@ -71,17 +90,49 @@ class Controller:
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
-        self.mode, self.policy, self.dt = mode, policy, dt
-        self.robot, self.scheme, self.reference = robot, scheme, reference
+        self._lock = threading.Lock()
+        self._state = ControllerState(0)
+        self._derived: tuple[ControlStep, Fallback] | None
+        self.mode = mode
+        self.policy = policy
+        self.dt = dt
+        self.robot = robot
+        self.scheme = scheme
+        self.reference = reference
         self.solver = DNNSolver(tol=tol) if solver is None else solver
-        self.delay, self._begun, self._q = 0.0, False, np.zeros(robot.dof)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if check := _CHECKS.get(name):
+        check = _CHECKS.get(name)
+        if check is not None:
             check(name, value)
-            self._plan: Plan | None = None
-            self._room: Room | None = None
+            self._derived = None
         object.__setattr__(self, name, value)
+        if name == "robot" and self._state.past.shape[1] != value.dof:
+            self._state = ControllerState(value.dof)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name not in _DERIVED}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._lock = threading.Lock()
+        self._derived = None
+
+    def __copy__(self) -> Controller:
+        twin = type(self).__new__(type(self))
+        twin.__setstate__(self.__getstate__())
+        twin._state = copy.deepcopy(self._state)
+        twin.solver = copy.copy(self.solver)
+        return twin
+
+    @property
+    def delay(self) -> float:
+        """Time by which the reference's clock is behind [s]."""
+        return self._state.delay
+
+    @delay.setter
+    def delay(self, seconds: float) -> None:
+        self._state.delay = seconds
 
     def step(
         self,
@@ -90,7 +141,7 @@ class Controller:
         target: Target | Mapping[str, Target] | None = None,
         dq: ArrayLike | None = None,
     ) -> Command:
-        """Compute the command for joint positions at a time.
+        """Compute the command for joint positions at a time; it counts as sent when it is returned.
 
         Args:
             q: Measured joint positions [rad], (n,).
@@ -108,231 +159,256 @@ class Controller:
                 there is neither reference nor target.
             NoSolutionError: There is no solution and the policy is ``raise``.
         """
-        plan, room = self._plan, self._room
-        if room is None or plan is None or plan.version != self.solver.version:
-            plan, room = self._prepare(q, t, target)
-        if type(q) is not np.ndarray or q.shape != plan.shape:
-            q = checks.finite_array("q", q, plan.shape)
-        plan.q[...] = q  # quicker than [:]
-        index = room.count
-        if index == SIZE:
-            self._room, index = (room := room.following()), 0
-        if target is not None or not room.paths:
-            room.targets[index] = self.targets(t - self.delay, target)
-        else:
-            room.sample(t - self.delay, index)
-        if plan.accelerates:
-            plan.wanted[:] = self._accelerations(t) if target is None else 0.0
-        if dq is not None:
-            plan.measure(dq)
+        state = self._state
+        before = state.past
+        delay = state.delay
         try:
-            self._answer(plan, room, index, t)
+            with self._lock:
+                command = self._compute(q, t, target, dq)
+                resolution = command.resolution
+                if resolution is not None:
+                    state.delay += self.dt * (1.0 - resolution.fraction)
+                state.commit()
+                return command
         except BaseException:
-            self._room = None  # its row is half written
+            if state.past is not before:  # interrupted before anybody got the command
+                state.commit()
+            state.delay = delay
             raise
-        if index in room.resolved:
-            self.delay += self.dt * (1.0 - room.resolved[index].fraction)
-        return Command(room, index, room.commands[index])
+
+    def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
+        """Compute a command that does not count as sent, as `step`; `send` makes it count."""
+        with self._lock:
+            return self._compute(q, t, target, None)
+
+    def send(self, dq: Vector, resolution: Resolution | None = None) -> None:
+        """Count a velocity dq (n,) [rad/s] as sent, and let the clock go on as a policy decided."""
+        self._state.send(dq)
+        if resolution is not None:
+            self._state.delay += self.dt * (1.0 - resolution.fraction)
+        self._state.commit()
+
+    def _compute(
+        self,
+        q: ArrayLike,
+        t: float,
+        target: Target | Mapping[str, Target] | None,
+        dq: ArrayLike | None,
+    ) -> Command:
+        derived = self._derived
+        if derived is None or derived[0].version != self.solver.version:
+            derived = self._prepare(q, t, target)
+        step = derived[0]
+        layout = step.layout
+        state = self._state
+        past = state.past
+        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != (layout.dof,):
+            q = checks.finite_array("q", q, (layout.dof,))
+        past[Q] = q
+        if dq is not None:
+            self._measure(dq)
+        row = np.empty(layout.width)
+        begin = step.begin
+        if begin != SAMPLE or target is not None:
+            layout.targets(row)[:] = self.targets(t - state.delay, target)
+            begin = max(begin, WRITE)
+        program = step.program
+        if program.moving:
+            program.move(t)
+        program.update(q)
+        if begin == ANSWER:
+            wanted = self._accelerations(t) if program.accelerates and target is None else None
+            data = layout.view(row, "program")
+            program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t, wanted)
+            derived[1].cascade.resolve(QP.from_data(data, layout.sizes))
+        if step.has_network and not state.yields and state.halted is None:
+            network = self.solver.warm_state(layout.sizes)
+            if network is not None and step.run(
+                row, step.arrays, past, state.following, network, t, state.delay, begin
+            ):
+                return Command(row, layout)
+        return self._compute_in_python(derived, row, t, begin)
+
+    def _compute_in_python(
+        self, derived: tuple[ControlStep, Fallback], row: Vector, t: float, begin: int
+    ) -> Command:
+        """Compute the first command, one without a compiled form, or one that does not succeed."""
+        step, fallback = derived
+        layout = step.layout
+        program = step.program
+        state = self._state
+        checks.finite_array("q", state.past[Q], (layout.dof,))
+        if begin == SAMPLE:
+            layout.targets(row)[:] = self.targets(t - state.delay)
+        targets = layout.targets(row)
+        checks.finite_array("target", targets, targets.shape)
+        data = layout.view(row, "program")
+        if begin != ANSWER:
+            program.write(data, targets, state.past[: LAST + 2], self.dt, t)
+        qp = QP.from_data(data, layout.sizes)
+        if self.mode == "converged" and step.has_network and fallback.yielding is None:
+            self.solver.reset()  # compiled code has tried from the last state already
+        policy = self.policy
+        if program.accelerates and policy == "slow":
+            policy = "relax"  # the clock of an arm that is in motion cannot be slowed down at once
+        solution, resolution = fallback.answer(qp, policy)
+        if resolution is not None:
+            qp = resolution.qp
+        dq = solution.x[: layout.dof].copy()
+        last = state.past[LAST]
+        if program.accelerates:
+            if resolution is not None and resolution.action is Action.STOP:
+                n = qp.lb.size
+                solution.point[:n] = np.clip(-last / self.dt, qp.lb, qp.ub)
+                dq = solution.x[: layout.dof]
+            dq = last + self.dt * dq
+        layout.fill(row, qp, solution, program.placement, state.past[Q], dq)
+        state.send(dq)
+        unsolved = None if solution.status is layout.status else solution
+        return Command(row, layout, resolution, unsolved)
+
+    def _measure(self, dq: ArrayLike) -> None:
+        """Take measured joint velocities (n,) [rad/s] for the last command."""
+        program = self.program
+        if not program.accelerates:
+            raise InvalidInputError("dq", "is for schemes of the acceleration level", dq)
+        self._state.past[LAST] = checks.finite_array("dq", dq, (program.robot.dof,))
 
     def _prepare(
         self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None
-    ) -> tuple[Plan, Room]:
-        """Lay out whatever a step needs, and at the first step anchor the scheme."""
+    ) -> tuple[ControlStep, Fallback]:
+        """Anchor the scheme, and at the first step warn of a start that is most likely wrong."""
+        state = self._state
         posture = checks.finite_array("q", q, (self.robot.dof,))
-        if not self._begun:
-            start = Configuration(self.robot, posture)
-            self.anchor(start)
-            if target is None:
-                self.warn_if_far(start, t, stacklevel=4)
-        plan, given = self.plan, by_frame(self.reference, self.robot.tip)
-        seen = [self._ahead(name, given[name]) for name in plan.frames if name in given]
-        self._room = room = Room(plan, seen if len(seen) == len(plan.frames) else [])
-        return plan, room
+        start = Configuration(self.robot, posture)
+        begun = state.begun
+        self.anchor(start)
+        if not begun and target is None:
+            self.warn_if_far(start, t, stacklevel=5)
+        return self._laid_out()
 
-    def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
-        """Warn where a first target is far from its frame: most likely it was not anchored."""
-        warn_if_far(self.scheme, self.plan.frames, start, self.targets(t), stacklevel + 1)
-
-    def anchor(self, start: Configuration) -> None:
-        """Make a configuration the posture to come back to, where the scheme has none."""
-        warn_if_outside(start, stacklevel=4)
-        if (anchored := getattr(self.scheme, "anchored", None)) is not None:
-            self.scheme = anchored(start)
-        self._q[:] = start.q
-        self._begun = True
-
-    def reset(self) -> None:
-        """Forget the network's state, the last command and the delay; the home stays."""
-        self.solver.reset()
-        self.delay = 0.0
-        self._plan = self._room = None
-
-    def warm_up(self) -> None:
-        """Compile whatever a step needs, so that the first one is as quick as the others."""
-        begun, scheme, home = self._begun, self.scheme, self.robot.start_posture()
-        conf = Configuration(self.robot, home)
-        frames = {name: conf.frame(name) for name in self.plan.frames}
-        poses = {name: Target(at.position, at.rotation) for name, at in frames.items()}
-        for _ in range(3):
-            self.step(home, 0.0, poses)
-        if self.reference is not None:
-            self.step(home, 0.0)
-        self.scheme, self._begun = scheme, begun
-        self.reset()
+    def _laid_out(self) -> tuple[ControlStep, Fallback]:
+        """Return what is derived from the settings."""
+        derived = self._derived
+        if derived is None or derived[0].version != self.solver.version:
+            duration = 0.0 if self.mode == "converged" else self.dt
+            if getattr(type(self.scheme), "build_qp", None) is Scheme.build_qp:
+                program = self.scheme.program(self.robot)
+            else:
+                program = ForeignProgram(self.robot, self.scheme, self._state.past[Q])
+            references = by_frame(self.reference, self.robot.tip)
+            step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
+            fallback = Fallback(program, self.solver, self._state, duration, self.dt)
+            derived = (step, fallback)
+            self._derived = derived
+        return derived
 
     @property
-    def plan(self) -> Plan:
-        """The scheme laid out for the robot, made anew where an attribute has changed."""
-        plan = self._plan
-        if plan is None or plan.version != self.solver.version:
-            converged = self.mode == "converged"
-            parts = self.robot, self.scheme, self.solver, self.dt, converged
-            self._plan = plan = Plan(*parts, self._q)
-        return plan
+    def program(self) -> StepProgram:
+        """The scheme laid out for the robot."""
+        return self._laid_out()[0].program
 
-    def answers(self, targets: Matrix) -> Answers:
-        """Return room for the answers to a stretch of targets, (k, 18 frames)."""
-        plan = self.plan
-        return Answers(plan.sizes, self._q.size, plan.expected, targets, plan.accelerates)
+    @property
+    def layout(self) -> RowLayout:
+        """Columns of the commands' rows."""
+        return self._laid_out()[0].layout
 
-    def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Vector:
-        """Return the targets of a time, (18 frames,): those given, else the reference's."""
-        if target is None:
-            targets: Vector = self.sample(np.array([t]))[0]
-            return targets
-        return np.concatenate(targets_of(self.robot.tip, self.plan.frames, target))
+    @property
+    def last(self) -> Vector:
+        """Last command [rad/s], (n,), a view into the controller's state."""
+        last: Vector = self._state.past[LAST]
+        return last
 
-    def sample(self, times: Vector) -> Matrix:
-        """Return the reference's targets at many times, one frame after the other, (k, 18 frames).
+    @property
+    def levels(self) -> list[Level]:
+        """Levels of the tasks with priorities, as the last command has left them."""
+        return self._laid_out()[1].cascade.levels
+
+    def halt(self, resolution: Resolution) -> None:
+        """Brake at every step from now on, where the arm cannot stop at once."""
+        step, fallback = self._laid_out()
+        if self._state.halted is None and (fallback.yielding or step.program.accelerates):
+            self._state.halted = resolution
+
+    def anchor(self, start: Configuration) -> None:
+        """Make a configuration the posture to come back to, if the scheme has none."""
+        state = self._state
+        if not state.begun:
+            warn_if_outside(start, stacklevel=5)
+        anchored = getattr(self.scheme, "anchored", None)
+        if anchored is not None:
+            scheme = anchored(start)
+            if scheme is not self.scheme:
+                self.scheme = scheme
+        state.past[Q] = start.q
+        state.begun = True
+
+    def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
+        """Warn if a first target is far from its frame: most likely it was not anchored."""
+        targets = self.targets(t).ravel()
+        warn_if_far(self.scheme, self.program.target_frames, start, targets, stacklevel + 1)
+
+    def reset(self) -> None:
+        """Forget the network's state, the last commands and the delay; the home stays."""
+        self.solver.reset()
+        self._state.reset()
+        self._derived = None
+
+    def warm_up(self) -> None:
+        """Compile all that a step needs, so that the first one is as quick as the others."""
+        twin = copy.copy(self)
+        home = self.robot.start_posture()
+        conf = Configuration(self.robot, home)
+        frames = {name: conf.frame(name) for name in twin.program.target_frames}
+        poses = {name: Target(at.position, at.rotation) for name, at in frames.items()}
+        for _ in range(3):
+            twin.step(home, 0.0, poses)
+        if self.reference is not None:
+            twin.step(home, 0.0)
+
+    def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
+        """Return the targets of a time of the reference's clock [s], (k, 18), or those given.
 
         Raises:
             InvalidInputError: A frame that a task tracks has no reference, or another one has.
         """
-        paths = paths_of(self.reference, self.robot.tip, self.plan.frames)
-        seen = (self._ahead(name, path).sample(times) for name, path in paths.items())
-        return np.concatenate([targets.data for targets in seen], axis=1)
+        program = self.program
+        frames = program.target_frames
+        if target is not None:
+            return np.array(targets_of(self.robot.tip, frames, target))
+        paths = paths_of(self.reference, self.robot.tip, frames)
+        found = np.array([path.base for path in paths.values()])
+        for (name, path), row in zip(paths.items(), found, strict=True):
+            seen = path.ahead(self.dt) if name in program.ahead else path
+            seen.move(t, row)
+        return found
 
     def _accelerations(self, t: float) -> Vector:
         """Return the accelerations of the targets of a time [s], (6 frames,)."""
-        paths = paths_of(self.reference, self.robot.tip, self.plan.frames).values()
+        paths = paths_of(self.reference, self.robot.tip, self.program.target_frames).values()
         return np.concatenate([path.accelerations(t - self.delay) for path in paths])
 
-    def _ahead(self, frame: str, reference: Reference) -> Reference:
-        """Return a frame's reference, one period ahead where its tasks track the next target."""
-        return reference.ahead(self.dt) if frame in self.plan.ahead else reference
+    def placement(self, q: Vector) -> Vector:
+        """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
+        program = self.program
+        program.update(q)
+        return program.placement.copy()
 
-    def answer(self, q: Vector, answers: Answers, t: float = 0.0) -> Vector:
-        """Take a step towards the next target in `answers`, and add program and answer to them.
-
-        Args:
-            q: Joint positions [rad], (n,).
-            answers: Targets, programs and answers.
-            t: Time [s], for parts of one's own.
-
-        Returns:
-            Joint velocity [rad/s], (n,), a view into `answers`.
-        """
-        plan, index = self.plan, answers.count
-        plan.q[:] = q
-        if plan.accelerates:
-            plan.wanted[:] = self._accelerations(t)
-        self._answer(plan, answers, index, t)
-        return answers.dq(index)
-
-    def _answer(self, plan: Plan, answers: Answers, index: int, t: float) -> None:
-        """Take a step at the joint positions that the plan holds."""
-        if plan.needs_more:
-            plan.update(plan.q)
-            plan.move(t)
-        else:
-            model, data, tip, _ = plan.pinocchio
-            computeJointJacobians(model, data, plan.q)
-            updateFramePlacement(model, data, tip)
-        if plan.asks:
-            plan.build(answers.program(index), answers.targets[index], t)
-        state = self.solver.warm_state(plan.sizes)
-        ready = state is not None and plan.network is not None
-        if ready and plan.step(answers.rows, index, *plan.compiled, state, plan.asks, 0.0):
-            answers.count = index + 1
-            return
-        # Where tasks yield to acceleration limits that is quicker found out than proven.
-        plan.stick(self.mode == "converged")
-        self._solve(answers)
-
-    def follow(self, q: Vector, answers: Answers, count: int) -> int:
-        """Take up to `count` steps of which each answer moves `q` for one control period.
-
-        Args:
-            q: Joint positions [rad], (n,); moved in place.
-            answers: Targets, programs and answers.
-            count: Most steps to take.
-
-        Returns:
-            Steps taken; the next one, if any is left, is not solved by compiled code alone.
-        """
-        plan = self.plan
-        state = self.solver.warm_state(plan.sizes)
-        in_python = plan.asks or plan.moves or plan.inertia.size
-        if state is None or plan.network is None or in_python:
-            return 0
-        rows, first, dt, step = answers.rows, answers.count, self.dt, plan.step
-        codes, work, jacobian, placements = plan.compiled
-        model, data, tip, others = plan.pinocchio
-        plan.q[:] = q
-        moving = plan.q
-        for index in range(first, first + count):
-            computeJointJacobians(model, data, moving)
-            updateFramePlacement(model, data, tip)
-            if others:
-                updateFramePlacements(model, data)
-            if not step(rows, index, codes, work, jacobian, placements, state, False, dt):
-                break
-        else:
-            index = first + count
-        q[:] = moving
-        answers.count = index
-        return index - first
-
-    def _solve(self, answers: Answers) -> None:
-        """Take a first step, one that does not succeed, or one without a compiled form."""
-        plan, index = self.plan, answers.count
-        checks.finite_array("q", plan.q, (plan.q.size,))
-        checks.finite_array("target", answers.targets[index], (-1,))
-        if not plan.asks:
-            plan.assemble(answers.program(index), answers.targets[index])
-        qp = answers.qp(index)
-        duration = 0.0 if self.mode == "converged" else self.dt
-        if duration == 0.0 and plan.network is not None and plan.yielding is None:
-            self.solver.reset()  # compiled code has tried from the last state already
-        # The clock of an arm that is in motion cannot be slowed down at once.
-        policy = "relax" if plan.accelerates and self.policy == "slow" else self.policy
-        solution, resolution = plan.answer(qp, self.solver, policy, duration)
-        if resolution is not None:
-            qp, answers.resolved[index] = resolution.qp, resolution
-            if plan.accelerates and resolution.action is Action.STOP:
-                solution.point[: qp.lb.size] = np.clip(-plan.last / self.dt, qp.lb, qp.ub)
-        answers.add(qp, solution, plan.place, plan.q)
-        if plan.accelerates:
-            answers.dq(index)[:] = plan.last + self.dt * solution.x[: plan.q.size]
-        plan.tell(answers.dq(index))
-
-    def place(self, q: Vector) -> Vector:
-        """Return the first frame's placement at joint positions q (n,), (12,)."""
-        self.plan.update(q)
-        return self.plan.place
-
-    def program_at(self, q: Vector, targets: Vector, t: float) -> QP:
-        """Build the program at joint positions q (n,) [rad] for targets (18 frames,)."""
-        plan = self.plan
-        n, m, p = plan.sizes
-        plan.update(q)
-        plan.move(t)
-        data = np.empty((n + m + p) * (n + 1) + 2 * n)
-        plan.build(data, targets, t)
-        return QP.from_data(data, plan.sizes)
+    def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
+        """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
+        program = self.program
+        past = self._state.past[: LAST + 2].copy()
+        past[Q] = q
+        data = np.empty(program.data_size)
+        program.move(t)
+        program.update(q)
+        program.write(data, targets, past, self.dt, t)
+        return QP.from_data(data, program.sizes)
 
 
-# What a plan depends on; a change of it is checked, and makes another plan.
+_DERIVED = ("_derived", "_lock")
+
+# A change of one of them is checked, and what is derived from them is made anew.
 _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "robot": partial(checks.instance, kind=Robot),
     "scheme": lambda name, value: checks.offers(name, value, "build_qp", "settings"),

@@ -30,8 +30,9 @@ import numpy as np
 
 from iiwa_dnn.control.clipping import clip_command
 from iiwa_dnn.control.reach import DRIFT, Reach
+from iiwa_dnn.control.state import LAST, WANTED, ControllerState, Q
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.dense import dot
 from iiwa_dnn.qp.layout import compiled, offsets
 from iiwa_dnn.schemes.motion_limits import braking
@@ -71,36 +72,39 @@ class Yielded(NamedTuple):
 class Yielding:
     """Answers of the steps at which a task yields to acceleration and jerk limits."""
 
-    def __init__(
-        self, numbers: Vector, past: Vector, q: Vector, weights: Vector, dt: float
-    ) -> None:
+    def __init__(self, limits: Vector, weights: Vector, dt: float, state: ControllerState) -> None:
         """Prepare for a robot's loop.
 
         Args:
-            numbers: `MotionLimits.numbers`, (5 n,).
-            past: The last two commands [rad/s], (2 n,), kept current by the caller.
-            q: Joint positions [rad], (n,), likewise.
+            limits: `MotionLimits.constants`, (5 n,).
             weights: Weight of each task row, (p,).
             dt: Control period [s].
+            state: State of the controller.
         """
-        self._numbers, self._last, self._q, self._dt = numbers, past[: q.size], q, dt
-        self._weights, self._wanted = weights, np.zeros(q.size)
-        self._solver, self._clipper = DNNSolver(tol=1e-8), DNNSolver()
+        self._state = state
+        self._limits = limits
+        self._weights = weights
+        self._dt = dt
+        self._solver = DNNSolver(tol=1e-8)
+        self._clipper = DNNSolver()
 
     def brake(self, qp: QP) -> Vector:
         """Compute the command (n,) [rad/s] that comes to rest quickest.
 
         It is within the bounds of `qp`, and within its rows if any velocity is.
         """
-        rest = np.zeros(self._q.size)
-        approach_velocity(self._numbers, self._last, self._wanted, rest, qp.lb, qp.ub, self._dt)
-        return clip_command(qp, rest, self._clipper)[0] if qp.sizes[1] else rest
+        state = self._state
+        dq = np.zeros(state.past.shape[1])
+        approach_velocity(self._limits, state.past, state.following, dq, qp.lb, qp.ub, self._dt)
+        return clip_command(qp, dq, self._clipper)[0] if qp.sizes[1] else dq
 
     def answer(self, qp: QP) -> Yielded:
         """Compute the command at a program of n variables whose rows may contradict its bounds."""
-        dof, (n, m, p) = self._q.size, qp.sizes
+        state = self._state
+        n, m, p = qp.sizes
+        dof = state.past.shape[1]
         data = np.empty((n + m) * (n + 1) + 2 * n)
-        damping = soften(qp.data, n, m, p, self._weights, self._numbers, self._q, data)
+        damping = soften(qp.data, n, m, p, self._weights, self._limits, state.past[Q], data)
         solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
         x: Vector = solution.x.copy() if solution.found else np.zeros(n)
         # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
@@ -110,10 +114,11 @@ class Yielding:
             x = exact
         wanted = x[:dof].copy()
         if on and inside(qp.data, n, m, p, exact):
-            self._wanted[:] = wanted
-            none = np.zeros(n, np.int8), np.zeros(m, np.int8)
-            return Yielded(Reach(1.0, x, *none), True)
-        approach_velocity(self._numbers, self._last, self._wanted, x[:dof], qp.lb, qp.ub, self._dt)
+            state.following[WANTED] = wanted
+            return Yielded(Reach(1.0, x, np.zeros(n, np.int8), np.zeros(m, np.int8)), True)
+        approach_velocity(
+            self._limits, state.past, state.following, x[:dof], qp.lb, qp.ub, self._dt
+        )
         if m:
             x[:dof] = clip_command(qp, x[:dof], self._clipper)[0]
         rhs = self._weights * qp.b
@@ -127,25 +132,34 @@ class Yielding:
 
 @compiled
 def approach_velocity(
-    numbers: Vector, last: Vector, before: Vector, wanted: Vector, lb: Vector, ub: Vector, dt: float
+    limits: Vector,
+    past: Matrix,
+    following: Matrix,
+    wanted: Vector,
+    lb: Vector,
+    ub: Vector,
+    dt: float,
 ) -> None:
     """Overwrite wanted velocities by the commands that approach them in the shortest time.
 
     Args:
-        numbers: `MotionLimits.numbers`, (5 n,).
-        last: Last commands [rad/s], (n,).
-        before: Velocities that were wanted at the last step [rad/s], (n,); becomes `wanted`.
+        limits: `MotionLimits.constants`, (5 n,).
+        past: `ControllerState.past`, (4, n).
+        following: `ControllerState.following`, (4, n); the wanted velocities are noted in it.
         wanted: Velocities that are wanted [rad/s], (n,); becomes the commands.
         lb: Lower bounds [rad/s], (n,) or more.
         ub: Upper bounds [rad/s], (n,) or more.
         dt: Control period [s].
     """
-    n = last.size
+    n = wanted.size
     for i in range(n):
-        aim, most = wanted[i], numbers[3 * n + i] * dt
-        behind = last[i] - (aim - min(max(aim - before[i], -most), most))
-        dq = aim + braking(behind, lb[i] - aim, ub[i] - aim, numbers[4 * n + i], dt)
-        before[i], wanted[i] = aim, min(max(dq, lb[i]), ub[i])
+        aim = wanted[i]
+        most = limits[3 * n + i] * dt
+        change = min(max(aim - past[WANTED, i], -most), most)
+        behind = past[LAST, i] - (aim - change)
+        dq = aim + braking(behind, lb[i] - aim, ub[i] - aim, limits[4 * n + i], dt)
+        following[WANTED, i] = aim
+        wanted[i] = min(max(dq, lb[i]), ub[i])
 
 
 @compiled
@@ -193,7 +207,7 @@ def soften(
         m: Number of inequality rows.
         p: Number of task rows.
         weights: Weight of each task row, (p,).
-        numbers: `MotionLimits.numbers`, (5 dof,).
+        numbers: `MotionLimits.constants`, (5 dof,).
         q: Joint positions [rad], (dof,).
         out: The program, (size,), in the same way.
 

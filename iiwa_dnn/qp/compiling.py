@@ -127,3 +127,25 @@ def _call_at_address(result: Any, expected: tuple[Any, ...]) -> Any:
         return result(types.int64, types.StarArgTuple.from_types(arguments)), code
 
     return enter
+
+
+@intrinsic
+def _without_owner(typing: Any, array: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        view = context.make_array(array)(context, builder, values[0])
+        view.meminfo = cgutils.get_null_value(view.meminfo.type)
+        view.parent = cgutils.get_null_value(view.parent.type)
+        return view._getvalue()
+
+    return array(array), code
+
+
+def _itself(array: Any) -> Any:
+    return array
+
+
+borrowed: Any = _itself if _INTERPRETED else _without_owner
+"""Return an array whose views are not counted, to compiled code that its owner outlives.
+
+Counting the references to a view takes longer than a row of seven numbers.
+"""

@@ -26,8 +26,7 @@ IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
 MODES = ("converged", "continuous")
-LIMITS = ("q_lower", "q_upper", "dq_max")
-RATES = ("ddq_max", "dddq_max")
+LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
 
 # Errors of NumPy, zip and JSON on a missing or damaged file; InvalidInputError is a ValueError.
 _UNREADABLE = (

@@ -29,7 +29,7 @@ from iiwa_dnn.schemes.motion_limits import JerkLimits as JerkLimits
 from iiwa_dnn.schemes.parts import Cost as Cost
 from iiwa_dnn.schemes.parts import Limit as Limit
 from iiwa_dnn.schemes.parts import Part as Part
-from iiwa_dnn.schemes.parts import Step as Step
 from iiwa_dnn.schemes.parts import Task as Task
+from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask
 from iiwa_dnn.schemes.tasks import PositionTask as PositionTask

@@ -21,8 +21,8 @@ resolution of manipulators through torque optimization", IEEE J. Robotics and Au
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -32,14 +32,15 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.costs import KineticEnergy, WeightedCost
-from iiwa_dnn.schemes.parts import CUSTOM, Cost, Step, Task
+from iiwa_dnn.schemes.parts import Cost, Task
+from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
 Level = Literal["velocity", "acceleration"]
 LEVELS: tuple[Level, ...] = ("velocity", "acceleration")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class JointAcceleration(WeightedCost):
     r"""Joint acceleration, :math:`\tfrac12 w\,\|\ddot q + \lambda\,\dot q\|^2`.
 
@@ -59,7 +60,7 @@ class JointAcceleration(WeightedCost):
         return self.weight * np.eye(step.q.size), self.weight * self.damping * step.dq
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class JointTorque(WeightedCost):
     r"""Joint torque, :math:`\tfrac12 w\,\|\tau\|^2`, :math:`\tau = M \ddot q + h(q, \dot q)`.
 
@@ -79,7 +80,7 @@ class JointTorque(WeightedCost):
 def check_parts(costs: Sequence[Cost], tasks: Sequence[Task]) -> None:
     """Raise InvalidInputError unless the parts have a meaning at the acceleration level."""
     for cost in costs:
-        if cost.kind != CUSTOM and not isinstance(cost, KineticEnergy):
+        if cost.is_compiled and not isinstance(cost, KineticEnergy):
             problem = f"{type(cost).__name__} is of the velocity level alone"
             raise InvalidInputError("costs", problem, cost)
     for task in tasks:
@@ -88,6 +89,12 @@ def check_parts(costs: Sequence[Cost], tasks: Sequence[Task]) -> None:
             problem = "of the acceleration level are PositionTask and OrientationTask (so3), "
             problem += f"without tracking the next target, not {task!r}"
             raise InvalidInputError("tasks", problem, task)
+
+
+def with_squared_gains(tasks: Sequence[Task]) -> list[Task]:
+    r"""Return tasks of which the rows of the velocity level feed back :math:`\delta^2 e`."""
+    position_or_turn: Any = tasks
+    return [replace(task, gain=task.gain**2) for task in position_or_turn]
 
 
 def damping_of(frames: Sequence[str], tasks: Sequence[tuple[str, Task]]) -> Vector:
@@ -100,26 +107,39 @@ def damping_of(frames: Sequence[str], tasks: Sequence[tuple[str, Task]]) -> Vect
 
 
 def lift_targets(
-    kinematics: Kinematics, frames: Sequence[str], damping: Vector, targets: Vector,
-    wanted: Vector, q: Vector, dq: Vector,
-) -> Vector:  # fmt: skip
+    kinematics: Kinematics,
+    frames: Sequence[str],
+    damping: Vector,
+    targets: Matrix,
+    wanted: Vector,
+    past: Matrix,
+) -> Matrix:
     r"""Put :math:`a_d - \dot J \dot q + 2 \delta (v_d - J \dot q)` in the place of the twists.
 
     With the gain squared, the rows of the velocity level are then those of the acceleration level.
-    The kinematics are those of q (n,) [rad] and dq (n,) [rad/s], `damping` is that of `damping_of`;
-    the targets, of which a copy is returned, stand one after the other, (18 frames,), like their
-    accelerations, linear and angular, `wanted` (6 frames,).
+
+    Args:
+        kinematics: Kinematics of the joint positions.
+        frames: Names of the k tracked frames.
+        damping: `damping_of`, (6 k,).
+        targets: Their targets, (k, 18).
+        wanted: Their accelerations, linear and angular, (6 k,).
+        past: Joint positions [rad] and joint velocities [rad/s], (2 or more, n).
+
+    Returns:
+        The changed targets, (k, 18), a copy.
     """
     model, data, *_ = kinematics.pinocchio
-    pin.forwardKinematics(model, data, q, dq, np.zeros(dq.size))
-    lifted: Vector = targets.copy()
+    pin.forwardKinematics(model, data, past[0], past[1], np.zeros(model.nv))
+    lifted = targets.copy()
     for i, name in enumerate(frames):
-        frame, at = kinematics.robot.frame_id(name), slice(6 * i, 6 * i + 6)
+        frame = kinematics.robot.frame_id(name)
+        own = slice(6 * i, 6 * i + 6)
         axes = pin.LOCAL_WORLD_ALIGNED
         velocity = pin.getFrameVelocity(model, data, frame, axes).vector
         drift = pin.getFrameClassicalAcceleration(model, data, frame, axes).vector
-        twist = lifted[18 * i + 12 : 18 * i + 18]
-        twist[:] = wanted[at] - drift + damping[at] * (twist - velocity)
+        twist = lifted[i, 12:18]
+        twist[:] = wanted[own] - drift + damping[own] * (twist - velocity)
     return lifted
 
 

@@ -11,13 +11,10 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.acceleration import LEVELS, Level, lift_targets, lower_limits
-from iiwa_dnn.schemes.assembly import Layout, assemble
+from iiwa_dnn.schemes.acceleration import LEVELS, Level
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.filling import fill
-from iiwa_dnn.schemes.joint_tasks import couplings
-from iiwa_dnn.schemes.parts import Cost, Limit, Part, Step, Task
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task
+from iiwa_dnn.schemes.program import StepProgram
 
 SchemeT = TypeVar("SchemeT", bound="Scheme")
 
@@ -96,16 +93,14 @@ class Scheme:
         scheme._compose(costs, tasks, limits)
         return scheme
 
-    def layout(self, robot: Robot) -> Layout:
-        """Lay the parts out for a robot: which rows belong to which part.
+    def program(self, robot: Robot) -> StepProgram:
+        """Lay the parts out for a robot.
 
         Raises:
             NotFoundError: A part names a frame that the robot does not have.
             InvalidInputError: A parameter of a part does not fit the robot.
         """
-        accelerates = self.level == "acceleration"
-        tasks = (*self.tasks, *couplings(robot))
-        return Layout(robot, self.costs, tasks, self.limits, self.slack, accelerates)
+        return StepProgram(robot, self)
 
     def build_qp(
         self,
@@ -118,11 +113,11 @@ class Scheme:
         """Build the program of one instant; it is not solved here.
 
         Args:
-            conf: Where the robot is, n joints.
-            target: Where the tip should be; with tasks of other frames, a target by frame name.
+            conf: Configuration of the robot, n joints.
+            target: Target of the tip; with tasks of other frames, a target by frame name.
             dt: Control period [s], which the acceleration level needs, and tasks that track the
                 next target; `target` is then one of `Reference.ahead`.
-            dq: Joint velocities [rad/s], (n,), or the last command; None: rest.
+            dq: Joint velocities [rad/s], (n,), or the last command; None: zero.
             acceleration: Accelerations of the targets, linear and angular, (6 frames,), for the
                 acceleration level; None: zero.
 
@@ -132,35 +127,19 @@ class Scheme:
         Raises:
             InvalidInputError: A task's frame has no target, or a part does not fit the robot.
         """
-        layout = self.layout(checks.instance("conf", conf, Configuration).robot)
-        if layout.needs_period:
+        program = self.program(checks.instance("conf", conf, Configuration).robot)
+        if program.needs_period:
             checks.positive("dt", dt)
-        kinematics = Kinematics(conf.robot, layout.frames, layout.needs_inertia)
         q = conf.arrays[0]
-        kinematics.update(q)
-        found = targets_of(conf.robot.tip, layout.target_frames, target)
-        targets = dict(zip(layout.target_frames, found, strict=True))
-        data, given = np.empty(layout.size), np.concatenate(found)
-        moving = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
-        if layout.damping.size:
-            size = layout.damping.size
-            wanted = np.zeros(size) if acceleration is None else acceleration
-            wanted = checks.finite_array("acceleration", wanted, (size,))
-            given = lift_targets(
-                kinematics, layout.target_frames, layout.damping, given, wanted, q, moving
-            )
-            q = q + 0.5 * dt * moving
-        assemble(
-            data, layout.codes, layout.numbers, q, kinematics.jacobian, kinematics.placements,
-            kinematics.inertia.ravel(), given, 1.0 / dt if dt < np.inf else np.inf,
-            np.tile(moving, 2),
-        )  # fmt: skip
-        if layout.custom:
-            fill(layout, data, Step(kinematics, targets, 0.0, dt, conf.arrays[0], moving))
-        qp = QP.from_data(data, layout.sizes)
-        if layout.damping.size:
-            lower_limits(qp, moving, dt)
-        return qp
+        velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
+        wanted = None
+        if program.accelerates and acceleration is not None:
+            wanted = checks.finite_array("acceleration", acceleration, program.damping.shape)
+        targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
+        data = np.empty(program.data_size)
+        program.update(q)
+        program.write(data, targets, np.array([q, velocity, velocity]), dt, wanted=wanted)
+        return QP.from_data(data, program.sizes)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
         """Compute dq^T G(q) dq of a joint velocity dq (n,) [rad/s].

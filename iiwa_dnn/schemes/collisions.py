@@ -32,11 +32,77 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import FOUND, HEAD, PAIR, Scene, make_scene, measure
-
-COLLISION = 40
+from iiwa_dnn.schemes.step import StepViews
 
 RETREAT = 0.9
 """Largest share of the joints' velocity limits that a row asks for, so that it has a solution."""
+
+
+@compiled
+def collision_rows(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Write the rows of the pairs that are nearest to being active."""
+    dof = step.q.size
+    rows = h.size
+    pairs = int(constants[5])
+    width = FOUND + dof
+    row = 0
+    found = np.empty(pairs * width)
+    measure(constants, 0, dof, step.placements, found)
+    for k in range(pairs):
+        _damper(constants, 0, dof, step.jacobian, k, found, step.rate)
+    for k in range(pairs):
+        out, before = k * width, 0
+        if pairs > rows:
+            slack = found[out + 15] - found[out + 16]
+            for i in range(pairs):
+                other = found[i * width + 15] - found[i * width + 16]
+                before += other < slack or (other == slack and i < k)
+        if before < rows:
+            for j in range(dof):
+                G[row, j] = found[out + FOUND + j]
+            h[row] = found[out + 15] if found[out + 15] < found[out + 16] else np.inf
+            row += 1
+
+
+@compiled
+def _damper(
+    numbers: Vector, at: int, dof: int, jacobian: Matrix, k: int, found: Vector, rate: float
+) -> None:
+    """Write into a pair's part of `found` its h, the largest G x there is, and its row of G."""
+    pair, out = at + int(numbers[at + 6]) + (PAIR + dof) * k, (FOUND + dof) * k
+    fastest = 0.0
+    for j in range(dof):
+        moved, value = numbers[pair + PAIR + j], 0.0
+        if moved != 0.0:
+            x = out if moved > 0.0 else out + 3
+            a, b, c = found[x], found[x + 1], found[x + 2]
+            value = found[out + 6] * (jacobian[j, 0] + jacobian[j, 4] * c - jacobian[j, 5] * b)
+            value += found[out + 7] * (jacobian[j, 1] + jacobian[j, 5] * a - jacobian[j, 3] * c)
+            value += found[out + 8] * (jacobian[j, 2] + jacobian[j, 3] * b - jacobian[j, 4] * a)
+        found[out + FOUND + j] = -moved * value
+        fastest += abs(value) * numbers[at + HEAD + j]
+    dt, speed, turn = 1.0 / rate, numbers[pair + 8], numbers[pair + 10]
+    taken, strays = 0.5 * dt * dt * numbers[pair + 9], numbers[pair + 12]
+    if numbers[pair + 3] == 1.0 and (found[out + 11] > 0.0 or found[out + 13] > 0.0):
+        # Seen from the link, a ball's middle is a point that moves.
+        turned = (turn * turn + numbers[pair + 11]) * (found[out + 9] + dt * speed)
+        taken += 0.5 * dt * dt * (turned + 2.0 * turn * speed)
+    else:
+        lost = dt * turn * found[out + 11] - found[out + 12]
+        taken += max(0.0, lost, dt * turn * found[out + 13] - found[out + 14])
+    gain, distance, least = min(numbers[at + 2], rate), found[out + 10], numbers[at + 1]
+    room = distance - least - taken
+    approach = gain * room
+    if room < 0.0 and rate < np.inf:
+        approach = rate * max(room, -taken) + gain * min(room + taken, 0.0)
+    limit = max(approach - strays, -RETREAT * fastest)
+    # Idle from the activation on, but never where one step could reach the least distance.
+    idle = max(numbers[at + 3], least + taken + dt * (speed + strays))
+    if numbers[at + 3] > 0.0 and distance > idle:
+        limit = np.inf
+    found[out + 15], found[out + 16] = limit, fastest
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,13 +124,13 @@ class CollisionAvoidance(Limit):
         nearest: Most rows; with more pairs, those that are nearest to being active have them.
     """
 
+    kernel = staticmethod(collision_rows)
     obstacles: Sequence[Obstacle] = ()
     self_collision: bool = True
     distance: float = 0.02
     activation: float | None = None
     gain: float = 20.0
     nearest: int = 24
-    kind: int = field(default=COLLISION, init=False, repr=False)
     moves: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -125,13 +191,13 @@ class CollisionAvoidance(Limit):
         """Return the links whose placements the rows need."""
         return self.scene(robot).frames
 
-    def numbers(self, robot: Robot) -> Vector:
+    def constants(self, robot: Robot) -> Vector:
         """Return `Scene.numbers`, (k,)."""
         return self.scene(robot).numbers
 
-    def move(self, robot: Robot, numbers: Vector, t: float) -> None:
+    def move(self, robot: Robot, constants: Vector, t: float) -> None:
         """Put the moving obstacles where they are at a time [s]."""
-        self.scene(robot).move(numbers, t)
+        self.scene(robot).move(constants, t)
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
@@ -164,71 +230,3 @@ def recorded(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, An
     if part is None:
         return {}
     return dict(zip(("distance", "nearest"), part.scene(robot).nearest(q, t), strict=True))
-
-
-@compiled
-def collision_rows(
-    data: Vector, at_G: int, at_h: int, n: int, dof: int, rows: int, numbers: Vector, at: int,
-    jacobian: Matrix, placements: Matrix, rate: float,
-) -> None:  # fmt: skip
-    """Write the rows of the pairs that are nearest to being active.
-
-    G begins at `at_G` and h at `at_h` in the program `data` (size,); other arguments as
-    `iiwa_dnn.schemes.assembly.assemble`.
-    """
-    pairs, width, row = int(numbers[at + 5]), FOUND + dof, 0
-    found = np.empty(pairs * width)
-    measure(numbers, at, dof, placements, found)
-    for k in range(pairs):
-        _damper(numbers, at, dof, jacobian, k, found, rate)
-    for k in range(pairs):
-        out, before = k * width, 0
-        if pairs > rows:
-            slack = found[out + 15] - found[out + 16]
-            for i in range(pairs):
-                other = found[i * width + 15] - found[i * width + 16]
-                before += other < slack or (other == slack and i < k)
-        if before < rows:
-            for j in range(dof):
-                data[at_G + row * n + j] = found[out + FOUND + j]
-            data[at_h + row] = found[out + 15] if found[out + 15] < found[out + 16] else np.inf
-            row += 1
-
-
-@compiled
-def _damper(
-    numbers: Vector, at: int, dof: int, jacobian: Matrix, k: int, found: Vector, rate: float
-) -> None:
-    """Write into a pair's part of `found` its h, the largest G x there is, and its row of G."""
-    pair, out = at + int(numbers[at + 6]) + (PAIR + dof) * k, (FOUND + dof) * k
-    fastest = 0.0
-    for j in range(dof):
-        moved, value = numbers[pair + PAIR + j], 0.0
-        if moved != 0.0:
-            x = out if moved > 0.0 else out + 3
-            a, b, c = found[x], found[x + 1], found[x + 2]
-            value = found[out + 6] * (jacobian[j, 0] + jacobian[j, 4] * c - jacobian[j, 5] * b)
-            value += found[out + 7] * (jacobian[j, 1] + jacobian[j, 5] * a - jacobian[j, 3] * c)
-            value += found[out + 8] * (jacobian[j, 2] + jacobian[j, 3] * b - jacobian[j, 4] * a)
-        found[out + FOUND + j] = -moved * value
-        fastest += abs(value) * numbers[at + HEAD + j]
-    dt, speed, turn = 1.0 / rate, numbers[pair + 8], numbers[pair + 10]
-    taken, strays = 0.5 * dt * dt * numbers[pair + 9], numbers[pair + 12]
-    if numbers[pair + 3] == 1.0 and (found[out + 11] > 0.0 or found[out + 13] > 0.0):
-        # Seen from the link, a ball's middle is a point that moves.
-        turned = (turn * turn + numbers[pair + 11]) * (found[out + 9] + dt * speed)
-        taken += 0.5 * dt * dt * (turned + 2.0 * turn * speed)
-    else:
-        lost = dt * turn * found[out + 11] - found[out + 12]
-        taken += max(0.0, lost, dt * turn * found[out + 13] - found[out + 14])
-    gain, distance, least = min(numbers[at + 2], rate), found[out + 10], numbers[at + 1]
-    room = distance - least - taken
-    approach = gain * room
-    if room < 0.0 and rate < np.inf:
-        approach = rate * max(room, -taken) + gain * min(room + taken, 0.0)
-    limit = max(approach - strays, -RETREAT * fastest)
-    # Idle from the activation on, but never where one step could reach the least distance.
-    idle = max(numbers[at + 3], least + taken + dt * (speed + strays))
-    if numbers[at + 3] > 0.0 and distance > idle:
-        limit = np.inf
-    found[out + 15], found[out + 16] = limit, fastest

@@ -5,7 +5,7 @@ With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's c
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -15,15 +15,14 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.parts import Cost, Step
+from iiwa_dnn.schemes.parts import Cost
+from iiwa_dnn.schemes.step import Step, StepViews
 
 Kinetic = Literal["identity", "inertia"]
 KINETICS: tuple[Kinetic, ...] = ("identity", "inertia")
 
-KINETIC_ENERGY, CYCLIC_MOTION = 1, 2
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class WeightedCost(Cost):
     """Base of costs with one weight.
 
@@ -37,7 +36,19 @@ class WeightedCost(Cost):
         checks.not_negative("weight", self.weight)
 
 
-@dataclass(frozen=True)
+@compiled
+def add_kinetic_energy(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
+    """Add w G(q) to P; the constants are those of `KineticEnergy`."""
+    weight = constants[0]
+    for i in range(step.q.size):
+        if constants[1] == 0.0:
+            P[i, i] += weight
+        else:
+            for j in range(step.q.size):
+                P[i, j] += weight * step.inertia[i, j]
+
+
+@dataclass(frozen=True, kw_only=True)
 class KineticEnergy(WeightedCost):
     r"""Minimum kinetic energy (MKE).
 
@@ -51,33 +62,29 @@ class KineticEnergy(WeightedCost):
             matrix, which makes the cost w times the true kinetic energy [J].
     """
 
+    kernel = staticmethod(add_kinetic_energy)
     kinetic: Kinetic = "identity"
-    kind: int = field(default=KINETIC_ENERGY, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.one_of("kinetic", self.kinetic, KINETICS)
 
-    def numbers(self, robot: Robot) -> Vector:
+    def constants(self, robot: Robot) -> Vector:
         """Return the weight and 1 for the inertia matrix, (2,)."""
         return np.array([self.weight, float(self.kinetic == "inertia")])
 
 
 @compiled
-def add_kinetic_energy(
-    data: Vector, n: int, dof: int, numbers: Vector, at: int, inertia: Vector
-) -> None:
-    """Add w G(q) to P (n, n); arguments as `iiwa_dnn.schemes.assembly.assemble`."""
-    weight = numbers[at]
-    for i in range(dof):
-        if numbers[at + 1] == 0.0:
-            data[i * n + i] += weight
-        else:
-            for j in range(dof):
-                data[i * n + j] += weight * inertia[i * dof + j]
+def add_cyclic_motion(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
+    """Add w I to P and w m (q - home) to the linear term; constants of `CyclicMotion`."""
+    weight = constants[0]
+    gain = constants[1]
+    for i in range(step.q.size):
+        P[i, i] += weight
+        q[i] += weight * gain * (step.q[i] - constants[2 + i])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CyclicMotion(WeightedCost):
     r"""Cyclic motion generation (CMG): the posture is drawn back to where it began.
 
@@ -93,13 +100,13 @@ class CyclicMotion(WeightedCost):
             nothing draws it; `simulate` and `Controller` anchor it where they begin.
     """
 
+    kernel = staticmethod(add_cyclic_motion)
     gain: float = 10.2
     home: tuple[float, ...] | None = None
-    kind: int = field(default=CYCLIC_MOTION, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.not_negative("drift_gain", self.gain)
+        checks.not_negative("gain", self.gain)
         if self.home is not None:
             self._set(home=tuple(checks.finite_array("home", self.home, (-1,)).tolist()))
 
@@ -107,7 +114,7 @@ class CyclicMotion(WeightedCost):
         """Return the cost with `conf` as home, unless it has a home already."""
         return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
 
-    def numbers(self, robot: Robot) -> Vector:
+    def constants(self, robot: Robot) -> Vector:
         """Return weight, gain and home, (2 + n,).
 
         Raises:
@@ -120,16 +127,7 @@ class CyclicMotion(WeightedCost):
         return np.concatenate([[self.weight, self.gain], self.home])
 
 
-@compiled
-def add_cyclic_motion(data: Vector, n: int, dof: int, numbers: Vector, at: int, q: Vector) -> None:
-    """Add w I to P and w m (q - home) to the linear term behind it, q (dof,) [rad] the joints'."""
-    weight, gain = numbers[at], numbers[at + 1]
-    for i in range(dof):
-        data[i * n + i] += weight
-        data[n * n + i] += weight * gain * (q[i] - numbers[at + 2 + i])
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Manipulability(WeightedCost):
     r"""Motion towards postures in which the tool moves with equal ease in all directions.
 

@@ -77,14 +77,18 @@ class DoubleIndicator(Scheme):
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         checks.one_of("kinetic", self.kinetic, KINETICS)
-        cyclic = CyclicMotion(1.0 - self.weight, self.drift_gain, self.home)
+        for name in ("drift_gain", "position_gain", "orientation_gain"):
+            checks.not_negative(name, getattr(self, name))
+        checks.positive("limit_gain", self.limit_gain)
+        cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
         if isinstance(self.extra_limits, Limit):
             problem = f"must be a tuple of limits, not {self.extra_limits!r}"
             raise InvalidInputError("extra_limits", problem, self.extra_limits)
         tasks = tip_tasks(self)
-        costs = [KineticEnergy(self.weight, self.kinetic), cyclic]
-        self._compose(costs, tasks, [JointLimits(self.limit_gain), *self.extra_limits])
+        energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
+        limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
+        self._compose([energy, cyclic], tasks, limits)
 
     def anchored(self, conf: Configuration) -> DoubleIndicator:
         """Return the scheme with `conf` as home, unless it has a home already."""
@@ -124,6 +128,8 @@ class PseudoInverse(Scheme):
     next_gain: float | None = None
 
     def __post_init__(self) -> None:
+        for name in ("position_gain", "orientation_gain"):
+            checks.not_negative(name, getattr(self, name))
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
         self._compose([KineticEnergy()], tip_tasks(self), [])
 
@@ -140,9 +146,9 @@ class PseudoInverse(Scheme):
 
 def tip_tasks(scheme: DoubleIndicator | PseudoInverse) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
-    checks.not_negative("orientation_gain", scheme.orientation_gain)
     how: dict[str, Any] = {"tracking": scheme.tracking, "next_gain": scheme.next_gain}
-    position = PositionTask(scheme.position_gain, **how)
+    position = PositionTask(gain=scheme.position_gain, **how)
     if scheme.orientation == "none":
         return [position]
-    return [position, OrientationTask(scheme.orientation_gain, scheme.orientation, **how)]
+    form = scheme.orientation
+    return [position, OrientationTask(gain=scheme.orientation_gain, form=form, **how)]

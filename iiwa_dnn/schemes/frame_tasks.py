@@ -8,18 +8,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
-import pinocchio as pin
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.references.rotations import rotation_log
-from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes.parts import Step, Tracking
-from iiwa_dnn.schemes.tasks import ROTATION_LENGTH, GainTask
+from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.references.rotations import combined, cross, dot, rotation_log, row_of
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.schemes.parts import Tracking
+from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.tasks import (
+    ROTATION_LENGTH,
+    GainTask,
+    axis_at,
+    gain_of,
+    joint_spin,
+    joint_velocity,
+    position_rows,
+    so3_rows,
+    vector_at,
+)
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -42,18 +52,19 @@ class FeedbackTask(GainTask):
     tracking: Tracking = "paper"
     next_gain: float | None = None
 
-    def __post_init__(self) -> None:
-        self._check("gain")
-        if self.priority is not None:
-            checks.integer("priority", self.priority, 1)
-
-    def feedback(self, step: Step) -> float:
-        """Return the gain of a step [1/s]."""
-        gain = float(self.numbers(step.robot)[0])
-        return gain if self.tracking == "paper" else min(gain, 1.0 / step.dt)
+    def _with(self, robot: Robot, *own: ArrayLike) -> Vector:
+        """Return the constants of a `GainTask`, and further ones."""
+        return np.concatenate([GainTask.constants(self, robot), *map(np.ravel, own)])
 
 
-@dataclass(frozen=True)
+@compiled
+def pose_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `PoseTask`, six."""
+    position_rows(step, constants, target, A[:3], b[:3])
+    so3_rows(step, constants, target, A[3:], b[3:])
+
+
+@dataclass(frozen=True, kw_only=True)
 class PoseTask(FeedbackTask):
     r"""Position and orientation of a frame, six rows.
 
@@ -63,17 +74,41 @@ class PoseTask(FeedbackTask):
         frame: Name of the frame; None stands for the robot's tip.
     """
 
+    kernel = staticmethod(pose_rows)
     frame: str | None = None
     rows: int = field(default=6, init=False, repr=False)
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (6, n) and b (6,)."""
-        here, target = step.frame(self.frame), step.target(self.frame)
-        error = np.concatenate([target.position - here.position, _log(target.rotation, here)])
-        return here.jacobian, target.data[12:] + self.feedback(step) * error
+
+@compiled
+def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `AxisTask`, two."""
+    frame = int(constants[0])
+    placement = step.placements[frame]
+    axis = vector_at(constants, 3)
+    if constants[12] == 0.0:
+        spin = vector_at(target, 15)
+        wanted = (
+            dot(row_of(target, 0), axis),
+            dot(row_of(target, 1), axis),
+            dot(row_of(target, 2), axis),
+        )
+    else:
+        spin = (0.0, 0.0, 0.0)
+        wanted = vector_at(constants, 13)
+    here = axis_at(placement, axis)
+    turn = cross(here, wanted)
+    sine = np.sqrt(dot(turn, turn))
+    angle = np.arctan2(sine, dot(here, wanted))
+    factor = angle / sine if sine > 1e-12 else 1.0
+    rate = combined(1.0, spin, gain_of(step, constants) * factor, turn)
+    for i in range(2):
+        normal = axis_at(placement, vector_at(constants, 6 + 3 * i))
+        b[i] = dot(normal, rate)
+        for j in range(step.q.size):
+            A[i, j] = step.moves[frame, j] * dot(normal, joint_spin(step, j))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class AxisTask(FeedbackTask):
     r"""Direction of one axis of a frame, which stays free to spin about it; two rows.
 
@@ -89,6 +124,7 @@ class AxisTask(FeedbackTask):
         frame: Name of the frame; None stands for the robot's tip.
     """
 
+    kernel = staticmethod(axis_rows)
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     direction: Sequence[float] | None = None
     frame: str | None = None
@@ -101,21 +137,42 @@ class AxisTask(FeedbackTask):
         if self.direction is not None:
             self._set(direction=checks.direction("direction", self.direction), tracks=False)
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (2, n) and b (2,)."""
-        here = step.frame(self.frame)
-        spin: Vector = np.zeros(3)
-        if self.direction is None:
-            target = step.target(self.frame)
-            wanted, spin = target.rotation @ self.axis, target.data[15:]
-        else:
-            wanted = np.array(self.direction)
-        axis, normals = here.rotation @ self.axis, here.rotation @ _normals(self.axis)
-        turn = np.cross(axis, wanted)
-        sine = np.sqrt(turn @ turn)
-        angle = np.arctan2(sine, axis @ wanted)
-        error = turn * (angle / sine if sine > 1e-12 else 1.0)
-        return normals.T @ here.jacobian[3:], normals.T @ (spin + self.feedback(step) * error)
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, axis, two normals of it, and 1 with a fixed direction or 0, (16,)."""
+        fixed = (0.0, 0.0, 0.0, 0.0) if self.direction is None else (1.0, *self.direction)
+        return self._with(robot, self.axis, _normals(self.axis).T, fixed)
+
+
+@compiled
+def relative_pose_rows(
+    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+) -> None:
+    """Write the rows of `RelativePoseTask`, six."""
+    frame = int(constants[0])
+    base = int(constants[3])
+    gain = gain_of(step, constants)
+    first = step.placements[base]
+    second = step.placements[frame]
+    point = vector_at(second, 9)
+    between = combined(1.0, point, -1.0, vector_at(first, 9))
+    for i in range(3):
+        axis = vector_at(first, 3 * i)
+        b[i] = gain * (constants[5 + i] - dot(axis, between)) * constants[4]
+        for j in range(step.q.size):
+            sign = step.moves[frame, j] - step.moves[base, j]
+            A[i, j] = sign * dot(axis, joint_velocity(step, j, point))
+            A[3 + i, j] = sign * dot(axis, joint_spin(step, j))
+    relative = np.empty((3, 3))
+    for i in range(3):
+        for k in range(3):
+            relative[i, k] = 0.0
+            for j in range(3):
+                turned = dot(vector_at(first, 3 * k), vector_at(second, 3 * j))
+                relative[i, k] += constants[8 + 3 * i + j] * turned
+    error = np.empty(3)
+    rotation_log(relative, error)
+    for i in range(3):
+        b[3 + i] = gain * error[i] * constants[4]
 
 
 @dataclass(frozen=True)
@@ -136,6 +193,7 @@ class RelativePoseTask(FeedbackTask):
         pose: Desired pose as a homogeneous matrix, (4, 4); None: the one where a run begins.
     """
 
+    kernel = staticmethod(relative_pose_rows)
     frame: str
     base: str
     pose: Rows | None = None
@@ -155,20 +213,37 @@ class RelativePoseTask(FeedbackTask):
         pose = np.linalg.inv(conf.frame(self.base).pose) @ conf.frame(self.frame).pose
         return replace(self, pose=tuple(map(tuple, pose.tolist())))
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (6, n) and b (6,)."""
-        base, here = step.frame(self.base), step.frame(self.frame)
-        back, apart = base.rotation.T, here.position - base.position
-        place, turn = back @ apart, back @ here.rotation
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the name of the base frame."""
+        return (self.base,)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, index of the base, 1 with a pose or 0, its position and rotation, (17,)."""
+        base = robot.frame_id(self.base)
         pose = np.eye(4) if self.pose is None else np.array(self.pose)
-        if self.pose is None:
-            pose[:3, :3], pose[:3, 3] = turn, place
-        J1, J2 = base.jacobian, here.jacobian
-        linear = J2[:3] - J1[:3] + pin.skew(apart) @ J1[3:]
-        A = np.concatenate([back @ linear, back @ (J2[3:] - J1[3:])])
-        error = np.empty(3)
-        rotation_log(np.ascontiguousarray(pose[:3, :3] @ turn.T), error)
-        return A, self.feedback(step) * np.concatenate([pose[:3, 3] - place, error])
+        return self._with(robot, base, self.pose is not None, pose[:3, 3], pose[:3, :3])
+
+
+@compiled
+def remote_center_rows(
+    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+) -> None:
+    """Write the rows of `RemoteCenterTask`, two."""
+    frame = int(constants[0])
+    carrier = int(constants[9])
+    placement = step.placements[frame]
+    point = vector_at(constants, 10)
+    if carrier >= 0:
+        point = vector_at(step.placements[carrier], 9)
+    offset = combined(1.0, point, -1.0, vector_at(placement, 9))
+    for i in range(2):
+        normal = axis_at(placement, vector_at(constants, 3 + 3 * i))
+        b[i] = gain_of(step, constants) * dot(normal, offset)
+        for j in range(step.q.size):
+            sign = step.moves[frame, j]
+            if carrier >= 0:
+                sign -= step.moves[carrier, j]
+            A[i, j] = sign * dot(normal, joint_velocity(step, j, point))
 
 
 @dataclass(frozen=True)
@@ -192,6 +267,7 @@ class RemoteCenterTask(FeedbackTask):
         frame: Name of the frame; None stands for the robot's tip.
     """
 
+    kernel = staticmethod(remote_center_rows)
     point: Sequence[float] | str
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     frame: str | None = None
@@ -204,24 +280,16 @@ class RemoteCenterTask(FeedbackTask):
         if not isinstance(self.point, str):
             self._set(point=checks.vector3("point", self.point))
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (2, n) and b (2,)."""
-        here, normals = step.frame(self.frame), _normals(self.axis)
-        moved, back = here.jacobian[:3], (here.rotation @ normals).T
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the name of the frame that carries the point, if there is one."""
+        return (self.point,) if isinstance(self.point, str) else ()
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, two normals of the axis, the carrier's index or -1, and the point, (13,)."""
+        normals = _normals(self.axis).T
         if isinstance(self.point, str):
-            there = step.frame(self.point)
-            apart, moved = there.position - here.position, moved - there.jacobian[:3]
-        else:
-            apart = self.point - here.position
-        A = back @ (moved - pin.skew(apart) @ here.jacobian[3:])
-        return A, self.feedback(step) * (back @ apart)
-
-
-def _log(desired: Matrix, here: Any) -> Vector:
-    """Compute the rotation vector from an orientation to the desired one, (3,)."""
-    error = np.empty(3)
-    rotation_log(desired @ here.rotation.T, error)
-    return error
+            return self._with(robot, normals, robot.frame_id(self.point), np.zeros(3))
+        return self._with(robot, normals, -1.0, self.point)
 
 
 def _normals(axis: Sequence[float]) -> NDArray[np.float64]:

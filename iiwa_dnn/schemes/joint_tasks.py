@@ -6,14 +6,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import pinocchio as pin
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.frame_tasks import FeedbackTask
-from iiwa_dnn.schemes.parts import Step
+from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.tasks import axis_at, gain_of, joint_velocity, vector_at
+
+
+@compiled
+def posture_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `PostureTask`."""
+    for i in range(b.size):
+        joint = int(constants[3 + 2 * i])
+        A[i, joint] = 1.0
+        b[i] = gain_of(step, constants) * (constants[4 + 2 * i] - step.q[joint])
 
 
 @dataclass(frozen=True)
@@ -26,6 +39,7 @@ class PostureTask(FeedbackTask):
         joints: Desired positions by joint name [rad].
     """
 
+    kernel = staticmethod(posture_rows)
     joints: Mapping[str, float]
     tracks: bool = field(default=False, init=False, repr=False)
     row_weight: float = field(default=0.1, init=False, repr=False)
@@ -35,13 +49,20 @@ class PostureTask(FeedbackTask):
         joints = {name: checks.finite("joints", value) for name, value in self.joints.items()}
         self._set(joints=joints, rows=len(joints))
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (rows, n) and b (rows,)."""
-        A, b = np.zeros((self.rows, step.q.size)), np.zeros(self.rows)
-        for i, (name, wanted) in enumerate(self.joints.items()):
-            j = _joint(step.robot, name)
-            A[i, j], b[i] = 1.0, self.feedback(step) * (wanted - step.q[j])
-        return A, b
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, then index and desired position of each joint, (3 + 2 rows,)."""
+        pairs = [(_joint(robot, name), wanted) for name, wanted in self.joints.items()]
+        return self._with(robot, pairs)
+
+
+@compiled
+def coupling_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the row of `JointCouplingTask`."""
+    missing = constants[3]
+    for j in range(step.q.size):
+        A[0, j] = constants[4 + j]
+        missing -= constants[4 + j] * step.q[j]
+    b[0] = gain_of(step, constants) * missing
 
 
 @dataclass(frozen=True)
@@ -55,6 +76,7 @@ class JointCouplingTask(FeedbackTask):
         offset: c_0 [rad].
     """
 
+    kernel = staticmethod(coupling_rows)
     coefficients: Mapping[str, float]
     offset: float = 0.0
     tracks: bool = field(default=False, init=False, repr=False)
@@ -67,12 +89,12 @@ class JointCouplingTask(FeedbackTask):
         given = self.coefficients.items()
         self._set(coefficients={name: checks.finite("coefficients", c) for name, c in given})
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (1, n) and b (1,)."""
-        A = np.zeros((1, step.q.size))
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, offset and the coefficient of each joint, (4 + n,)."""
+        row = np.zeros(robot.dof)
         for name, coefficient in self.coefficients.items():
-            A[0, _joint(step.robot, name)] = coefficient
-        return A, self.feedback(step) * (self.offset - A @ step.q)
+            row[_joint(robot, name)] = coefficient
+        return self._with(robot, self.offset, row)
 
 
 def couplings(robot: Robot) -> list[JointCouplingTask]:
@@ -81,6 +103,43 @@ def couplings(robot: Robot) -> list[JointCouplingTask]:
         JointCouplingTask(coefficients={joint: 1.0, leader: -multiplier}, offset=offset)
         for joint, leader, multiplier, offset in robot.mimics
     ]
+
+
+@compiled
+def swivel_angle(u: Vector3, d: Vector3, reference: Vector3) -> tuple[float, Vector3, Vector3]:
+    """Compute the angle about d from a reference direction to u, and its gradients to u and d."""
+    length = np.sqrt(dot(d, d))
+    w = scaled(1.0 / length, d)
+    across = combined(1.0, u, -dot(w, u), w)
+    zero = combined(1.0, reference, -dot(w, reference), w)
+    angle = np.arctan2(dot(w, cross(zero, across)), dot(zero, across))
+    by_u = scaled(1.0 / dot(across, across), cross(w, across))
+    turned = scaled(dot(w, reference) / dot(zero, zero), cross(w, zero))
+    by_w = combined(-dot(w, u), by_u, 1.0, turned)
+    return angle, by_u, scaled(1.0 / length, combined(1.0, by_w, -dot(w, by_w), w))
+
+
+@compiled
+def elbow_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the row of `ElbowAngleTask`."""
+    shoulder = int(constants[3])
+    elbow = int(constants[4])
+    wrist = int(constants[5])
+    origin = vector_at(step.placements[shoulder], 9)
+    middle = vector_at(step.placements[elbow], 9)
+    end = vector_at(step.placements[wrist], 9)
+    u = combined(1.0, middle, -1.0, origin)
+    d = combined(1.0, end, -1.0, origin)
+    angle, by_u, by_d = swivel_angle(u, d, vector_at(constants, 8))
+    missing = (constants[7] - angle) * constants[6]
+    missing -= 2.0 * np.pi * np.floor((missing + np.pi) / (2.0 * np.pi))
+    b[0] = gain_of(step, constants) * missing
+    both = added(by_u, by_d)
+    for j in range(step.q.size):
+        of_elbow = step.moves[elbow, j] * dot(by_u, joint_velocity(step, j, middle))
+        of_wrist = step.moves[wrist, j] * dot(by_d, joint_velocity(step, j, end))
+        of_shoulder = step.moves[shoulder, j] * dot(both, joint_velocity(step, j, origin))
+        A[0, j] = of_elbow + of_wrist - of_shoulder
 
 
 @dataclass(frozen=True)
@@ -108,6 +167,7 @@ class ElbowAngleTask(FeedbackTask):
         reference: Direction l in the world, (3,).
     """
 
+    kernel = staticmethod(elbow_rows)
     angle: float | None = None
     joints: tuple[str, str, str] | None = None
     reference: Sequence[float] = (0.0, 0.0, 1.0)
@@ -131,19 +191,22 @@ class ElbowAngleTask(FeedbackTask):
         Raises:
             InvalidInputError: The robot has not seven joints, and no frames are named.
         """
-        shoulder, elbow, wrist = (conf.frame(name).position for name in self._names(conf.robot))
-        return _swivel(elbow - shoulder, wrist - shoulder, np.array(self.reference))[0]
+        names = self._names(conf.robot)
+        shoulder, elbow, wrist = (vector_at(conf.frame(name).position, 0) for name in names)
+        upper = combined(1.0, elbow, -1.0, shoulder)
+        whole = combined(1.0, wrist, -1.0, shoulder)
+        direction = checks.vector3("reference", self.reference)
+        return float(swivel_angle(upper, whole, direction)[0])
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (1, n) and b (1,)."""
-        shoulder, elbow, wrist = (step.frame(name) for name in self._names(step.robot))
-        u, d = elbow.position - shoulder.position, wrist.position - shoulder.position
-        angle, by_elbow, by_wrist = _swivel(u, d, np.array(self.reference))
-        moved = shoulder.jacobian[:3]
-        A = by_elbow @ (elbow.jacobian[:3] - moved) + by_wrist @ (wrist.jacobian[:3] - moved)
-        missing = 0.0 if self.angle is None else self.angle - angle
-        missing = (missing + np.pi) % (2.0 * np.pi) - np.pi
-        return A[np.newaxis], np.array([self.feedback(step) * missing])
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the names of the frames at shoulder, elbow and wrist."""
+        return self._names(robot)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, indices of the frames, 1 with an angle or 0, angle and direction, (11,)."""
+        frames = [robot.frame_id(name) for name in self._names(robot)]
+        angle = 0.0 if self.angle is None else self.angle
+        return self._with(robot, frames, self.angle is not None, angle, self.reference)
 
     def _names(self, robot: Robot) -> tuple[str, str, str]:
         if self.joints is None and robot.dof != 7:
@@ -151,6 +214,34 @@ class ElbowAngleTask(FeedbackTask):
             raise InvalidInputError("joints", problem)
         names = robot.joint_names
         return self.joints or (names[1], names[3], names[5])
+
+
+@compiled
+def center_of_mass_rows(
+    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+) -> None:
+    """Write the rows of `CenterOfMassTask`."""
+    links = constants[10:].reshape((constants.size - 10) // 5, 5)
+    total = np.sum(links[:, 1])
+    center = (0.0, 0.0, 0.0)
+    jacobian = np.zeros((3, step.q.size))
+    for k in range(links.shape[0]):
+        frame = int(links[k, 0])
+        fraction = links[k, 1] / total
+        placement = step.placements[frame]
+        point = added(vector_at(placement, 9), axis_at(placement, vector_at(links[k], 2)))
+        center = combined(1.0, center, fraction, point)
+        for j in range(step.q.size):
+            moved = scaled(fraction * step.moves[frame, j], joint_velocity(step, j, point))
+            for i in range(3):
+                jacobian[i, j] += moved[i]
+    row = 0
+    for i in range(3):
+        if constants[7 + i] != 0.0:
+            b[row] = gain_of(step, constants) * (constants[4 + i] - center[i]) * constants[3]
+            for j in range(step.q.size):
+                A[row, j] = jacobian[i, j]
+            row += 1
 
 
 @dataclass(frozen=True)
@@ -164,6 +255,7 @@ class CenterOfMassTask(FeedbackTask):
         axes: Axes that are held, out of ``"xyz"``.
     """
 
+    kernel = staticmethod(center_of_mass_rows)
     position: Sequence[float] | None = None
     axes: str = "xyz"
     tracks: bool = field(default=False, init=False, repr=False)
@@ -183,24 +275,20 @@ class CenterOfMassTask(FeedbackTask):
         place: Vector3 = checks.vector3("position", conf.center_of_mass[0])
         return replace(self, position=place)
 
-    def equations(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return A (rows, n) and b (rows,)."""
-        conf = Configuration(step.robot, step.q)
-        place, jacobian = conf.center_of_mass
-        at = ["xyz".index(axis) for axis in self.axes]
-        wanted = place if self.position is None else np.array(self.position)
-        return jacobian[at], self.feedback(step) * (wanted - place)[at]
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the names of all joints' frames."""
+        return tuple(robot.model.names[1:])
 
-
-def _swivel(u: Vector, d: Vector, reference: Vector) -> tuple[float, Vector, Vector]:
-    """Compute the angle about d (3,) from `reference` to u, and its gradients to u and d (3,)."""
-    length = np.linalg.norm(d)
-    w = d / length
-    across, zero = u - w * (w @ u), reference - w * (w @ reference)
-    angle = float(np.arctan2(w @ np.cross(zero, across), zero @ across))
-    by_u = np.cross(w, across) / (across @ across)
-    by_w = -(w @ u) * by_u + (w @ reference) * np.cross(w, zero) / (zero @ zero)
-    return angle, by_u, (by_w - w * (w @ by_w)) / length
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, 1 with a position or 0, it, axes, and frame, mass, lever of each link."""
+        model = robot.model
+        position = np.zeros(3) if self.position is None else self.position
+        held = [axis in self.axes for axis in "xyz"]
+        links = [
+            (model.getFrameId(name, pin.FrameType.JOINT), inertia.mass, *inertia.lever)
+            for name, inertia in zip(model.names[1:], list(model.inertias)[1:], strict=True)
+        ]
+        return self._with(robot, self.position is not None, position, held, links)
 
 
 def _joint(robot: Robot, name: str) -> int:

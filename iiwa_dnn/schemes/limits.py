@@ -1,19 +1,33 @@
 """Limits: bounds and inequality rows that no policy ever relaxes."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.step import StepViews
 
-JOINT_LIMITS = 20
+
+@compiled
+def joint_limits(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Tighten the bounds to those of `JointLimits`, whose constants these are."""
+    dof = step.q.size
+    gain = min(constants[0], step.rate)
+    for i in range(dof):
+        lower = constants[1 + i]
+        upper = constants[1 + dof + i]
+        fastest = constants[1 + 2 * dof + i]
+        lb[i] = max(lb[i], min(max(gain * (lower - step.q[i]), -fastest), fastest))
+        ub[i] = min(ub[i], min(max(gain * (upper - step.q[i]), -fastest), fastest))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class JointLimits(Limit):
     r"""Joint velocity bounds that keep the joint positions inside their limits.
 
@@ -34,26 +48,12 @@ class JointLimits(Limit):
         gain: The paper's kappa [1/s], above 0.
     """
 
+    kernel = staticmethod(joint_limits)
     gain: float = 20.0
-    kind: int = field(default=JOINT_LIMITS, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        checks.positive("limit_gain", self.gain)
+        checks.positive("gain", self.gain)
 
-    def numbers(self, robot: Robot) -> Vector:
+    def constants(self, robot: Robot) -> Vector:
         """Return the gain and the rows of `Robot.limits`, (1 + 3 n,)."""
         return np.concatenate([[self.gain], robot.limits.ravel()])
-
-
-@compiled
-def joint_limits(
-    data: Vector, at_lb: int, n: int, dof: int, numbers: Vector, at: int, q: Vector, rate: float
-) -> None:
-    """Intersect the bounds with those of joint positions q (dof,); `rate` is 1 / dt [1/s]."""
-    gain = min(numbers[at], rate)
-    for i in range(dof):
-        lower, upper = numbers[at + 1 + i], numbers[at + 1 + dof + i]
-        fastest = numbers[at + 1 + 2 * dof + i]
-        lb, ub = at_lb + i, at_lb + n + i
-        data[lb] = max(data[lb], min(max(gain * (lower - q[i]), -fastest), fastest))
-        data[ub] = min(data[ub], min(max(gain * (upper - q[i]), -fastest), fastest))

@@ -13,7 +13,8 @@ from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.parts import Cost, Limit, Step, Task
+from iiwa_dnn.schemes.parts import Cost, Limit, Task
+from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
 SMALLEST = 1e-3
@@ -88,7 +89,7 @@ def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme
     """
     if checks.not_negative("weight", weight) > 1.0:
         raise InvalidInputError("weight", f"must be in [0, 1], not {weight}", weight)
-    costs = [KineticEnergy(max(weight, SMALLEST)), LargestSpeed(1.0 - weight)]
+    costs = [KineticEnergy(weight=max(weight, SMALLEST)), LargestSpeed(weight=1.0 - weight)]
     return Scheme(costs, _tasks(gain), [JointLimits(), SpeedsBelowSlack(robot)], slack=1)
 
 
@@ -99,7 +100,7 @@ def minimum_acceleration_norm(gain: float = 10.2, damping: float = 1e-3) -> Sche
     optimization", IEEE J. Robotics and Automation 3 (1987), for the norm of the acceleration, here
     that of the difference of two commands.
     """
-    return Scheme([VelocityChange(), KineticEnergy(damping)], _tasks(gain), [JointLimits()])
+    return Scheme([VelocityChange(), KineticEnergy(weight=damping)], _tasks(gain), [JointLimits()])
 
 
 def resolved_acceleration(gain: float = 10.2, damping: float = 5.0) -> Scheme:
@@ -116,7 +117,7 @@ def minimum_torque(gain: float = 10.2, weight: float = 10.0, damping: float = 5.
     Source: that of `minimum_acceleration_norm`. A `JointAcceleration` of a weight [(N m s^2)^2]
     keeps the joints from racing.
     """
-    return _second_order(gain, [JointTorque(), JointAcceleration(weight, damping)])
+    return _second_order(gain, [JointTorque(), JointAcceleration(weight=weight, damping=damping)])
 
 
 def _second_order(gain: float, costs: list[Cost]) -> Scheme:
@@ -124,4 +125,4 @@ def _second_order(gain: float, costs: list[Cost]) -> Scheme:
 
 
 def _tasks(gain: float) -> list[Task]:
-    return [PositionTask(gain), OrientationTask(gain)]
+    return [PositionTask(gain=gain), OrientationTask(gain=gain)]

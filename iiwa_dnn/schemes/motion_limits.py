@@ -32,19 +32,18 @@ third order is derived in docs/limits.md.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit
-
-MOTION_LIMITS = 21
+from iiwa_dnn.schemes.step import StepViews
 
 MARGIN = 0.2
 """Room that is kept free at a position limit, in units of J dt^3."""
@@ -126,6 +125,28 @@ class JerkLimits(_RateLimits):
     default: ClassVar[str] = "dddq_max"
 
 
+@compiled
+def motion_limits(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Put the bounds of the joints inside those of `MotionLimits`, whose constants these are.
+
+    Bounds of other limits give way where they contradict: the position and velocity limits are
+    kept by these bounds too. Without a control period there are none.
+    """
+    if not step.rate < np.inf:
+        return
+    limits = constants.reshape(5, step.q.size)
+    dt = 1.0 / step.rate
+    for i in range(step.q.size):
+        above = limits[1, i] - step.q[i]
+        below = step.q[i] - limits[0, i]
+        rates = (limits[2, i], limits[3, i], limits[4, i])
+        lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, dt)
+        lb[i] = min(max(lb[i], lower), upper)
+        ub[i] = min(max(ub[i], lower), upper)
+
+
 @dataclass(frozen=True)
 class MotionLimits(Limit):
     """All acceleration and jerk limits of a scheme, as the one block that is compiled.
@@ -134,10 +155,10 @@ class MotionLimits(Limit):
         limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
     """
 
+    kernel = staticmethod(motion_limits)
     limits: tuple[_RateLimits, ...] = ()
-    kind: int = field(default=MOTION_LIMITS, init=False, repr=False)
 
-    def numbers(self, robot: Robot) -> Vector:
+    def constants(self, robot: Robot) -> Vector:
         """Return position, velocity, acceleration and jerk limits, (5 n,).
 
         Raises:
@@ -166,73 +187,90 @@ def merged(limits: Sequence[Limit]) -> list[Limit]:
 
 
 @compiled
-def motion_limits(
-    data: Vector, at_lb: int, n: int, dof: int, numbers: Vector, at: int, q: Vector, past: Vector,
-    rate: float,
-) -> None:  # fmt: skip
-    """Put the bounds of the joints inside those of acceleration and jerk.
-
-    Bounds of other limits give way where they contradict: the position and velocity limits are
-    kept by these bounds too. Without a control period there are none. Arguments, such as q (dof,)
-    [rad], as `iiwa_dnn.schemes.assembly.assemble`.
-    """
-    if not rate < np.inf:
-        return
-    for i in range(dof):
-        k = at + i
-        lower, upper = joint_bounds(
-            past[i], past[dof + i], numbers[k + dof] - q[i], q[i] - numbers[k],
-            numbers[k + 2 * dof], numbers[k + 3 * dof], numbers[k + 4 * dof], 1.0 / rate,
-        )  # fmt: skip
-        lb, ub = at_lb + i, at_lb + n + i
-        data[lb] = min(max(data[lb], lower), upper)
-        data[ub] = min(max(data[ub], lower), upper)
-
-
-@compiled
 def joint_bounds(
-    last: float, before: float, above: float, below: float, fastest: float, accel: float,
-    jerk: float, dt: float,
-) -> tuple[float, float]:  # fmt: skip
+    last: float,
+    before: float,
+    above: float,
+    below: float,
+    rates: tuple[float, float, float],
+    dt: float,
+) -> tuple[float, float]:
     """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
 
-    Jerk and acceleration are within their limits at both, whatever the state is. `last` and
-    `before` are the commands until now [rad/s], `above` and `below` the ways to the position limits
-    [rad]; a limit of inf is none.
+    Jerk and acceleration are within their limits at both, whatever the state is.
+
+    Args:
+        last: Last command [rad/s].
+        before: Command before it [rad/s].
+        above: Distance to the upper position limit [rad].
+        below: Distance to the lower position limit [rad].
+        rates: Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; inf for none.
+        dt: Control period [s].
     """
-    first, final = last - accel * dt, last + accel * dt
+    _, accel, jerk = rates
     if jerk < np.inf:
-        # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
-        middle, reach = 2.0 * last - before, jerk * dt * dt
-        first = min(max(first, middle - reach), middle + reach)
-        final = min(max(final, middle - reach), middle + reach)
-        jerk = min(jerk, min(accel / dt, fastest / (dt * dt)) / SHARE)
-        unit = jerk * dt * dt
-        lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
-        ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
-        if lb > ub:
-            lb = ub = 0.5 * (lb + ub)
-        limit, margin = accel - jerk * dt, MARGIN * unit * dt
-        upper = _ceiling(lb, ub, above - margin, last, dt, jerk, limit)
-        lower = -_ceiling(-ub, -lb, below - margin, -last, dt, jerk, limit)
+        lower, upper = _jerk_bounds(last, before, above, below, rates, dt)
     elif accel < np.inf:
-        unit = accel * dt
-        above -= min(max(above, 0.0), ROUNDING)
-        below -= min(max(below, 0.0), ROUNDING)
-        upper = min(fastest, unit * approach(above / (unit * dt)))
-        lower = max(-fastest, -unit * approach(below / (unit * dt)))
-        upper, lower = min(max(upper, first), final), min(max(lower, first), final)
+        lower, upper = _acceleration_bounds(last, above, below, rates, dt)
     else:
         return -np.inf, np.inf
     if lower > upper:  # by rounding, or at a position that no command led to
-        lower = upper = 0.5 * (lower + upper)
+        lower = 0.5 * (lower + upper)
+        upper = lower
+    return lower, upper
+
+
+@compiled
+def _acceleration_bounds(
+    last: float, above: float, below: float, rates: tuple[float, float, float], dt: float
+) -> tuple[float, float]:
+    """Compute `joint_bounds` where no jerk is limited."""
+    fastest, accel, _ = rates
+    unit = accel * dt
+    first = last - unit
+    final = last + unit
+    above -= min(max(above, 0.0), ROUNDING)
+    below -= min(max(below, 0.0), ROUNDING)
+    upper = min(fastest, unit * approach(above / (unit * dt)))
+    lower = max(-fastest, -unit * approach(below / (unit * dt)))
+    return min(max(lower, first), final), min(max(upper, first), final)
+
+
+@compiled
+def _jerk_bounds(
+    last: float,
+    before: float,
+    above: float,
+    below: float,
+    rates: tuple[float, float, float],
+    dt: float,
+) -> tuple[float, float]:
+    """Compute `joint_bounds` where the jerk is limited."""
+    fastest, accel, jerk = rates
+    # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
+    middle = 2.0 * last - before
+    change = jerk * dt * dt
+    first = min(max(last - accel * dt, middle - change), middle + change)
+    final = min(max(last + accel * dt, middle - change), middle + change)
+    jerk = min(jerk, min(accel / dt, fastest / (dt * dt)) / SHARE)
+    unit = jerk * dt * dt
+    lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
+    ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
+    if lb > ub:
+        lb = 0.5 * (lb + ub)
+        ub = lb
+    margin = MARGIN * unit * dt
+    limit = accel - jerk * dt
+    upper = _ceiling(lb, ub, above - margin, last, dt, (jerk, limit))
+    lower = -_ceiling(-ub, -lb, below - margin, -last, dt, (jerk, limit))
     return lower, upper
 
 
 @compiled
 def braking(last: float, lb: float, ub: float, jerk: float, dt: float) -> float:
     """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
-    wanted, unit = 0.0, jerk * dt * dt
+    wanted = 0.0
+    unit = jerk * dt * dt
     if jerk < np.inf and last != 0.0:
         wanted = last - math.copysign(unit * approach(abs(last) / unit), last)
     return min(max(wanted, lb), ub)
@@ -259,7 +297,8 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
     T = (a + d) / J
     way = T * (v + T * (0.5 * a - J * T / 6.0)) + d * d * d / (6.0 * J * J)
     if square > d * d:
-        v, h = v + 0.5 * (a * a - d * d) / J, 0.5 * d * d / J
+        v += 0.5 * (a * a - d * d) / J
+        h = 0.5 * d * d / J
         way += (v - h) * (v + h) / (2.0 * d)
     return way
 
@@ -267,7 +306,8 @@ def stopping_distance(v: float, a: float, J: float, A: float) -> float:
 @compiled
 def highest(v: float, last: float, dt: float, J: float, A: float) -> float:
     """Compute the highest position of the way to rest after command v, from that before it."""
-    a, mean = (v - last) / dt, 0.5 * (v + last)
+    a = (v - last) / dt
+    mean = 0.5 * (v + last)
     start = dt * dt * a / 6.0
     if mean + 0.5 * a * abs(a) / J >= 0.0:
         return start + max(0.0, stopping_distance(mean, a, J, A))
@@ -279,26 +319,38 @@ def highest(v: float, last: float, dt: float, J: float, A: float) -> float:
 
 @compiled
 def _ceiling(
-    lb: float, ub: float, room: float, last: float, dt: float, J: float, A: float
+    lb: float,
+    ub: float,
+    distance: float,
+    last: float,
+    dt: float,
+    braking_limits: tuple[float, float],
 ) -> float:
-    """Compute the largest command in [lb, ub] whose highest position is within `room`, else lb."""
-    over = highest(ub, last, dt, J, A) - room
+    """Compute the largest command in [lb, ub] whose highest position is within `distance`, else lb.
+
+    The limits are those of jerk [rad/s^3] and acceleration [rad/s^2] on the way to rest.
+    """
+    J, A = braking_limits
+    over = highest(ub, last, dt, J, A) - distance
     if not over > 0.0:
         return ub
-    under = highest(lb, last, dt, J, A) - room
+    under = highest(lb, last, dt, J, A) - distance
     if under > 0.0:
         return lb
-    bottom, top, narrow = lb, ub, 1e-6 * (ub - lb)
+    bottom = lb
+    top = ub
     for k in range(50):
-        if top - bottom <= narrow:
-            break
         width = top - bottom
+        if width <= 1e-6 * (ub - lb):
+            break
         # Every third step halves: regula falsi alone may keep one end for long.
-        share = 0.5 if k % 3 == 2 else min(max(under / (under - over), 0.01), 0.99)
-        middle = bottom + share * width
-        value = highest(middle, last, dt, J, A) - room
+        fraction = 0.5 if k % 3 == 2 else min(max(under / (under - over), 0.01), 0.99)
+        middle = bottom + fraction * width
+        value = highest(middle, last, dt, J, A) - distance
         if value > 0.0:
-            top, over = middle, value
+            top = middle
+            over = value
         else:
-            bottom, under = middle, value
+            bottom = middle
+            under = value
     return bottom

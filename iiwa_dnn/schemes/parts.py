@@ -1,92 +1,41 @@
 """Parts of a program: costs, tasks and limits, each a block of rows.
 
-A part of one's own overrides one method, written with numpy. The package's own parts name a
-compiled form instead (`Part.kind`, `Part.numbers`), which stands beside the equation in `costs`,
-`tasks` and `limits` and is chosen by its number in `iiwa_dnn.schemes.assembly`.
+A part names the compiled function that writes its rows, its `kernel`, and gives the constants which
+that function reads; or it overrides one method, written with numpy. All kernels of a kind have one
+signature:
+
+    cost   kernel(step, constants, P, q)                adds to P (n, n) and q (n,)
+    task   kernel(step, constants, target, A, b)        writes A (rows, n) and b (rows,)
+    limit  kernel(step, constants, G, h, lb, ub)        writes G (rows, n) and h (rows,), and
+                                                        tightens lb (n,) and ub (n,)
+
+`step` is a `StepViews`, `target` (18,) the `Target.data` of the frame that the task tracks. The
+rows come in as zeros, h as zeros, and n counts the joints and then the scheme's slack variables.
 """
 
-from collections.abc import Mapping
 from dataclasses import fields
-from typing import Any, Literal, TypeVar
+from typing import Any, ClassVar, Literal, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
-from pinocchio import rnea
+from numba import types
 
-from iiwa_dnn.checks import read_only
-from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.references import Target
+from iiwa_dnn.qp.compiling import Signature
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.configuration import FrameState
-from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
 
 Tracking = Literal["paper", "next"]
 TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
 
-CUSTOM = 0
-"""The kind of a part without a compiled form."""
+V = types.float64[::1]
+M = types.float64[:, ::1]
+STEP_TYPE = types.NamedTuple((types.float64, types.float64, V, V, V, M, M, M, M, M), StepViews)
 
-TARGET_SIZE = 18
-"""Numbers of a target, `Target.data`."""
-
-
-class Step:
-    """One instant of a control loop, as a part of one's own is asked with it.
-
-    Attributes:
-        robot: The robot, n joints.
-        t: Time [s].
-        dt: Control period [s]; inf where a program is built outside of a loop.
-        q: Joint positions [rad], (n,).
-        dq: Last command [rad/s], (n,); zeros at the first step.
-    """
-
-    __slots__ = ("_kinematics", "_targets", "dq", "dt", "q", "robot", "t")
-
-    def __init__(
-        self,
-        kinematics: Kinematics,
-        targets: Mapping[str, Vector],
-        t: float,
-        dt: float,
-        q: Vector,
-        dq: Vector,
-    ) -> None:
-        self._kinematics, self._targets = kinematics, targets
-        self.robot, self.t, self.dt, self.q, self.dq = kinematics.robot, t, dt, q, dq
-
-    def frame(self, name: str | None = None) -> FrameState:
-        """Return pose and Jacobian of a frame of the robot; None stands for the tip.
-
-        Raises:
-            NotFoundError: The robot has no frame of that name.
-        """
-        return FrameState(*self._kinematics.frame(self.robot.tip if name is None else name))
-
-    def target(self, name: str | None = None) -> Target:
-        """Return the target of a frame that some task tracks; None stands for the tip.
-
-        Raises:
-            NotFoundError: No task tracks a frame of that name.
-        """
-        frame = self.robot.tip if name is None else name
-        if frame not in self._targets:
-            raise NotFoundError("target of frame", frame, self._targets)
-        return Target.from_data(self._targets[frame])
-
-    @property
-    def inertia(self) -> Matrix:
-        """Joint-space inertia matrix [kg m^2], (n, n)."""
-        return read_only(np.array(Configuration(self.robot, self.q).inertia))
-
-    @property
-    def bias(self) -> Vector:
-        """Joint torques of gravity, Coriolis and centrifugal forces [N m], (n,)."""
-        model, data, *_ = self._kinematics.pinocchio
-        return np.array(rnea(model, data, self.q, self.dq, np.zeros(self.q.size)))
+COST = Signature(types.void, STEP_TYPE, V, M, V)
+TASK = Signature(types.void, STEP_TYPE, V, V, M, V)
+LIMIT = Signature(types.void, STEP_TYPE, V, M, V, V, V)
 
 
 class Part:
@@ -95,15 +44,22 @@ class Part:
     A part that is made with a wrong parameter raises an `InvalidInputError` that names it.
 
     Attributes:
-        kind: Number of the compiled form; ``CUSTOM`` for a part written with numpy.
+        kernel: Compiled function that writes the rows; None for a part written with numpy.
         rows: Number of rows; none for a cost.
     """
 
-    kind: int = CUSTOM
+    kernel: Any = None
     rows: int = 0
+    _plain: ClassVar[tuple[str, ...]] = ()  # methods that the kernel stands in for
 
-    def numbers(self, robot: Robot) -> Vector:
-        """Return the constants that the compiled form takes, (k,).
+    @property
+    def is_compiled(self) -> bool:
+        """Whether the kernel writes the rows; a subclass's own method in numpy goes before it."""
+        inherited = (_owner(type(self), name) in _KINDS for name in self._plain)
+        return self.kernel is not None and all(inherited)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return the numbers that the kernel reads, (k,).
 
         Raises:
             InvalidInputError: A parameter does not fit the robot.
@@ -120,7 +76,7 @@ class Part:
         return self.rows
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the names of further frames whose placements the compiled form needs."""
+        """Return the names of further frames whose placements the kernel reads."""
         return ()
 
     def anchored(self: PartT, conf: Configuration) -> PartT:
@@ -138,9 +94,16 @@ class Part:
         names = [field.name for field in parts if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
+    def _kernel_or_raise(self, method: str) -> Any:
+        if self.kernel is None:
+            raise TypeError(f"{type(self).__name__} has no kernel and does not override {method}")
+        return self.kernel
+
 
 class Cost(Part):
     """A term of the cost, 1/2 x^T P x + q^T x."""
+
+    _plain = ("quadratic",)
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n), symmetric positive semidefinite, and q (n,), to be added to the cost.
@@ -148,7 +111,12 @@ class Cost(Part):
         n counts the scheme's variables, the joints and then its slack variables, or the joints
         alone: slack variables may be left out of any part.
         """
-        raise TypeError(f"{type(self).__name__} overrides neither quadratic nor kind")
+        kernel = self._kernel_or_raise("quadratic")
+        robot = step.robot
+        P = np.zeros((robot.dof, robot.dof))
+        q = np.zeros(robot.dof)
+        kernel(step.views(self.frame_name(robot)), self.constants(robot), P, q)
+        return P, q
 
 
 class Task(Part):
@@ -166,6 +134,7 @@ class Task(Part):
             rows may ask for the next target (`iiwa_dnn.schemes.tasks`).
     """
 
+    _plain = ("equations",)
     tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
@@ -174,7 +143,13 @@ class Task(Part):
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        raise TypeError(f"{type(self).__name__} overrides neither equations nor kind")
+        kernel = self._kernel_or_raise("equations")
+        robot = step.robot
+        A = np.zeros((self.row_count(robot), robot.dof))
+        b = np.zeros(len(A))
+        views = step.views(self.frame_name(robot))
+        kernel(views, self.constants(robot), views.targets[0], A, b)
+        return A, b
 
 
 class Limit(Part):
@@ -183,13 +158,14 @@ class Limit(Part):
     The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
 
     Attributes:
-        moves: Whether constants of the compiled form change along a run, by `move`.
+        moves: Whether constants of the kernel change along a run, by `move`.
     """
 
+    _plain = ("inequalities", "bounds")
     moves: bool = False
 
-    def move(self, robot: Robot, numbers: Vector, t: float) -> None:
-        """Write what has moved until a time [s] into the constants of the compiled form, (k,)."""
+    def move(self, robot: Robot, constants: Vector, t: float) -> None:
+        """Bring the constants of the kernel, (k,), to a time [s]."""
 
     def row_names(self, robot: Robot) -> list[str]:
         """Return names of the inequality rows, in words; none where their numbers will do."""
@@ -197,11 +173,32 @@ class Limit(Part):
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,); asked where `rows` is above 0."""
-        raise TypeError(f"{type(self).__name__} has rows but does not override inequalities")
+        self._kernel_or_raise("inequalities")
+        G, h, _, _ = self._evaluated(step)
+        return G, h
 
     def bounds(self, step: Step) -> tuple[Vector, Vector] | None:
         """Return lb (n,) and ub (n,), or None; the bounds of all limits are intersected."""
-        return None
+        if self.kernel is None:
+            return None
+        _, _, lb, ub = self._evaluated(step)
+        return lb, ub
+
+    def _evaluated(self, step: Step) -> tuple[Matrix, Vector, Vector, Vector]:
+        robot = step.robot
+        constants = self.constants(robot).copy()
+        self.move(robot, constants, step.t)
+        G = np.zeros((self.row_count(robot), robot.dof))
+        h = np.zeros(len(G))
+        lb = np.full(robot.dof, -np.inf)
+        ub = np.full(robot.dof, np.inf)
+        self.kernel(step.views(self.frame_name(robot)), constants, G, h, lb, ub)
+        return G, h, lb, ub
 
 
-Codes = NDArray[np.int64]
+_KINDS = (Cost, Task, Limit)
+
+
+def _owner(cls: type, name: str) -> type:
+    """Return the class that defines a method."""
+    return next(base for base in cls.__mro__ if name in vars(base))

@@ -20,36 +20,46 @@ does not add up from step to step. A smaller :math:`\gamma` is for noise (`noise
 """
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.references.rotations import rotated, rotation_log
+from iiwa_dnn.references.rotations import (
+    added,
+    combined,
+    cross,
+    rotated,
+    rotation_log,
+    scaled,
+)
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import TRACKINGS, Codes, Task, Tracking
+from iiwa_dnn.schemes.parts import TRACKINGS, Task, Tracking
+from iiwa_dnn.schemes.step import StepViews
 
 Form = Literal["so3", "block"]
 Orientation = Literal["so3", "block", "none"]
 ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")
-
-POSITION, ORIENTATION_SO3, ORIENTATION_BLOCK = 10, 11, 12
 
 ROTATION_LENGTH = 0.1
 """Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m]."""
 
 
 class GainTask(Task):
-    """Base of tasks that feed an error back: attributes as of `PositionTask`."""
+    """Base of tasks that feed an error back: attributes as of `PositionTask`.
+
+    The first three constants of every kernel are the index of the frame, the gain [1/s], not yet
+    cut to 1 / dt, and 1 where the next target is tracked.
+    """
 
     gain: float
     next_gain: float | None
 
-    def _check(self, name: str) -> None:
-        """Check gain, by the name that users know it by, weight, priority, tracking, its gain."""
-        checks.not_negative(name, self.gain)
+    def __post_init__(self) -> None:
+        checks.not_negative("gain", self.gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
         if self.priority is not None:
             checks.integer("priority", self.priority, 1)
@@ -57,14 +67,83 @@ class GainTask(Task):
             if getattr(self, name) is not None:
                 checks.not_negative(name, getattr(self, name))
 
-    def numbers(self, robot: Robot) -> Vector:
-        """Return the gain, not yet cut to 1 / dt, and 1 where the next target is tracked, (2,)."""
+    def constants(self, robot: Robot) -> Vector:
+        """Return the index of the frame, the gain and the way of tracking, (3,)."""
+        frame = float(robot.frame_id(self.frame_name(robot)))
         if self.tracking == "paper":
-            return np.array([self.gain, 0.0])
-        return np.array([np.inf if self.next_gain is None else self.next_gain, 1.0])
+            return np.array([frame, self.gain, 0.0])
+        return np.array([frame, np.inf if self.next_gain is None else self.next_gain, 1.0])
 
 
-@dataclass(frozen=True)
+@compiled
+def gain_of(step: StepViews, constants: Vector) -> float:
+    """Compute the gain of a step [1/s] from the constants of a `GainTask`."""
+    gain: float = constants[1]
+    return min(gain, step.rate) if constants[2] != 0.0 else gain
+
+
+@compiled
+def vector_at(array: Vector, start: int) -> Vector3:
+    """Return three numbers of an array, from an index on."""
+    return array[start], array[start + 1], array[start + 2]
+
+
+@compiled
+def axis_at(placement: Vector, axis: Vector3) -> Vector3:
+    """Turn a direction in a frame's own coordinates, by its placement (12,), into the world's."""
+    x = scaled(axis[0], vector_at(placement, 0))
+    return added(x, combined(axis[1], vector_at(placement, 3), axis[2], vector_at(placement, 6)))
+
+
+@compiled
+def joint_spin(step: StepViews, j: int) -> Vector3:
+    """Return the angular velocity for each unit of velocity of joint j."""
+    return vector_at(step.jacobian[j], 3)
+
+
+@compiled
+def joint_velocity(step: StepViews, j: int, point: Vector3) -> Vector3:
+    """Compute the velocity of a point [m] of the world for each unit of velocity of joint j.
+
+    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
+    """
+    return added(vector_at(step.jacobian[j], 0), cross(joint_spin(step, j), point))
+
+
+@compiled
+def point_jacobian(step: StepViews, frame: int, point: Vector, out: Matrix) -> None:
+    """Write the Jacobian (3, n) of a point (3,) [m] of the world that moves with a frame."""
+    for j in range(step.q.size):
+        if step.moves[frame, j] != 0.0:
+            a = step.jacobian[j, 3]
+            b = step.jacobian[j, 4]
+            c = step.jacobian[j, 5]
+            out[0, j] = step.jacobian[j, 0] + (b * point[2] - c * point[1])
+            out[1, j] = step.jacobian[j, 1] + (c * point[0] - a * point[2])
+            out[2, j] = step.jacobian[j, 2] + (a * point[1] - b * point[0])
+
+
+@compiled
+def angular_jacobian(step: StepViews, frame: int, out: Matrix) -> None:
+    """Write the angular Jacobian of a frame, (3, n)."""
+    for j in range(step.q.size):
+        if step.moves[frame, j] != 0.0:
+            for i in range(3):
+                out[i, j] = step.jacobian[j, 3 + i]
+
+
+@compiled
+def position_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `PositionTask`, three."""
+    frame = int(constants[0])
+    gain = gain_of(step, constants)
+    position = step.placements[frame, 9:]
+    for i in range(3):
+        b[i] = target[12 + i] + gain * (target[i] - position[i])
+    point_jacobian(step, frame, position, A)
+
+
+@dataclass(frozen=True, kw_only=True)
 class PositionTask(GainTask):
     r"""Position of a frame.
 
@@ -82,44 +161,87 @@ class PositionTask(GainTask):
             it.
     """
 
+    kernel = staticmethod(position_rows)
     gain: float = 10.2
     frame: str | None = None
     weight: float | None = None
     priority: int | None = None
     tracking: Tracking = "paper"
     next_gain: float | None = None
-    kind: int = field(default=POSITION, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
-
-    def __post_init__(self) -> None:
-        self._check("position_gain")
 
 
 @compiled
-def position_rows(
-    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
-    jacobian: Matrix, place: Vector, targets: Vector, target: int,
-) -> None:  # fmt: skip
-    """Write three rows of n entries and their right-hand side into a program.
-
-    A joint with angular velocity w and velocity v of the world's origin moves a frame at p with
-    v + w x p. The rows begin at `rows` and the right-hand side at `rhs` in `out` (size,), the
-    program or scratch memory; the flags of the joints that move the frame begin at `support` in
-    `codes`, its target at `target` in `targets`; `place` (12,) is its placement, the gain is in
-    [1/s]. Other arguments as `iiwa_dnn.schemes.assembly.assemble`.
-    """
-    x, y, z = place[9], place[10], place[11]
+def so3_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `OrientationTask` in the form ``so3``, three."""
+    frame = int(constants[0])
+    gain = gain_of(step, constants)
+    relative = np.empty((3, 3))
+    error = np.empty(3)
+    _relative_rotation(step.placements[frame], target, relative)
+    rotation_log(relative, error)
     for i in range(3):
-        out[rhs + i] = targets[target + 12 + i] + gain * (targets[target + i] - place[9 + i])
-    for j in range(jacobian.shape[0]):
-        if codes[support + j] != 0:
-            a, b, c = jacobian[j, 3], jacobian[j, 4], jacobian[j, 5]
-            out[rows + j] = jacobian[j, 0] + (b * z - c * y)
-            out[rows + n + j] = jacobian[j, 1] + (c * x - a * z)
-            out[rows + 2 * n + j] = jacobian[j, 2] + (a * y - b * x)
+        b[i] = target[15 + i] + gain * error[i]
+    angular_jacobian(step, frame, A)
+    if constants[2] != 0.0:
+        # The logarithm of a product: the mean twist and the error do not just add up.
+        turn = (target[15] / step.rate, target[16] / step.rate, target[17] / step.rate)
+        ahead = np.empty(3)
+        _turn(turn, relative)
+        rotation_log(relative, ahead)
+        for i in range(3):
+            b[i] = step.rate * ahead[i] - (step.rate - gain) * error[i]
 
 
-@dataclass(frozen=True)
+@compiled
+def _relative_rotation(placement: Vector, target: Vector, out: Matrix) -> None:
+    """Write the rotation (3, 3) from a placement's (12,) to a target's (18,), R_d R^T."""
+    for i in range(3):
+        for j in range(3):
+            value = 0.0
+            for k in range(3):
+                value += target[3 + 3 * i + k] * placement[3 * k + j]
+            out[i, j] = value
+
+
+@compiled
+def _turn(vector: Vector3, R: Matrix) -> None:
+    """Turn a rotation matrix (3, 3) from the left by a rotation vector."""
+    for j in range(3):
+        column = rotated(vector, (R[0, j], R[1, j], R[2, j]))
+        for i in range(3):
+            R[i, j] = column[i]
+
+
+@compiled
+def block_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `OrientationTask` in the form ``block``, four."""
+    frame = int(constants[0])
+    gain = gain_of(step, constants)
+    here = np.empty((4, 3))
+    there = np.empty((4, 3))
+    rotation = np.empty((3, 3))
+    desired = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            rotation[i, j] = step.placements[frame, 3 * j + i]
+            desired[i, j] = target[3 + 3 * i + j]
+    block_map(rotation, here)
+    block_map(desired, there)
+    for i in range(4):
+        b[i] = gain * (desired[i // 2, i % 2] - rotation[i // 2, i % 2])
+        for k in range(3):
+            b[i] += there[i, k] * target[15 + k]
+        for j in range(step.q.size):
+            if step.moves[frame, j] != 0.0:
+                value = 0.0
+                for k in range(3):
+                    value += here[i, k] * step.jacobian[j, 3 + k]
+                A[i, j] = value
+    project_on_range(here, b)
+
+
+@dataclass(frozen=True, kw_only=True)
 class OrientationTask(GainTask):
     r"""Orientation of a frame, in one of two forms.
 
@@ -157,84 +279,19 @@ class OrientationTask(GainTask):
     priority: int | None = None
     tracking: Tracking = "paper"
     next_gain: float | None = None
-    kind: int = field(default=ORIENTATION_SO3, init=False, repr=False)
     rows: int = field(default=3, init=False, repr=False)
     row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        self._check("orientation_gain")
+        super().__post_init__()
         checks.one_of("form", self.form, ("so3", "block"))
         if self.form == "block":
-            self._set(kind=ORIENTATION_BLOCK, rows=4)
+            self._set(rows=4)
 
-
-@compiled
-def so3_rows(
-    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
-    jacobian: Matrix, place: Vector, targets: Vector, target: int, rate: float,
-) -> None:  # fmt: skip
-    """Write three rows (3, n) and their right-hand side; arguments as `position_rows`.
-
-    A `rate` above zero is 1 / dt of a task that tracks the next target.
-    """
-    relative, error = np.empty((3, 3)), np.empty(3)
-    for i in range(3):
-        for j in range(3):
-            value = 0.0
-            for k in range(3):
-                value += targets[target + 3 + 3 * i + k] * place[3 * k + j]
-            relative[i, j] = value
-    rotation_log(relative, error)
-    for i in range(3):
-        out[rhs + i] = targets[target + 15 + i] + gain * error[i]
-        for j in range(jacobian.shape[0]):
-            if codes[support + j] != 0:
-                out[rows + i * n + j] = jacobian[j, 3 + i]
-    if rate > 0.0:
-        # The logarithm of a product: the mean twist and the error do not just add up.
-        turn = (
-            targets[target + 15] / rate,
-            targets[target + 16] / rate,
-            targets[target + 17] / rate,
-        )
-        for j in range(3):
-            column = rotated(turn, (relative[0, j], relative[1, j], relative[2, j]))
-            for i in range(3):  # a slice would compile numba's error messages
-                relative[i, j] = column[i]
-        ahead = np.empty(3)
-        rotation_log(relative, ahead)
-        for i in range(3):
-            out[rhs + i] = rate * ahead[i] - (rate - gain) * error[i]
-
-
-@compiled
-def block_rows(
-    out: Vector, rows: int, rhs: int, n: int, codes: Codes, support: int, gain: float,
-    jacobian: Matrix, place: Vector, targets: Vector, target: int,
-) -> None:  # fmt: skip
-    """Write four rows (4, n) and their right-hand side; arguments as `position_rows`."""
-    here, there = np.empty((4, 3)), np.empty((4, 3))
-    rotation, desired = np.empty((3, 3)), np.empty((3, 3))
-    wanted = np.empty(4)
-    for i in range(3):
-        for j in range(3):
-            rotation[i, j] = place[3 * j + i]
-            desired[i, j] = targets[target + 3 + 3 * i + j]
-    block_map(rotation, here)
-    block_map(desired, there)
-    for i in range(4):
-        wanted[i] = gain * (desired[i // 2, i % 2] - rotation[i // 2, i % 2])
-        for k in range(3):
-            wanted[i] += there[i, k] * targets[target + 15 + k]
-        for j in range(jacobian.shape[0]):
-            if codes[support + j] != 0:
-                value = 0.0
-                for k in range(3):
-                    value += here[i, k] * jacobian[j, 3 + k]
-                out[rows + i * n + j] = value
-    project_on_range(here, wanted)
-    for i in range(4):
-        out[rhs + i] = wanted[i]
+    @property
+    def kernel(self) -> Any:
+        """The compiled function of the form."""
+        return so3_rows if self.form == "so3" else block_rows
 
 
 @compiled
@@ -259,13 +316,15 @@ def project_on_range(columns: Matrix, vector: Vector) -> None:
     rows, count = columns.shape
     result = np.zeros(rows)
     for _ in range(count):
-        best, largest = 0, 0.0
+        best = 0
+        largest = 0.0
         for j in range(count):
             norm = 0.0
             for i in range(rows):
                 norm += columns[i, j] * columns[i, j]
             if norm > largest:
-                best, largest = j, norm
+                best = j
+                largest = norm
         if largest <= 1e-18:
             break
         scale = 1.0 / np.sqrt(largest)
@@ -277,14 +336,20 @@ def project_on_range(columns: Matrix, vector: Vector) -> None:
             result[i] += along * columns[i, best]
         for j in range(count):
             if j != best:
-                # Twice, so that rounding leaves no trace of the direction that was taken out.
-                for _ in range(2):
-                    overlap = 0.0
-                    for i in range(rows):
-                        overlap += columns[i, best] * columns[i, j]
-                    for i in range(rows):
-                        columns[i, j] -= overlap * columns[i, best]
+                _take_out(columns, best, j)
         for i in range(rows):
             columns[i, best] = 0.0
     for i in range(rows):
         vector[i] = result[i]
+
+
+@compiled
+def _take_out(columns: Matrix, unit: int, other: int) -> None:
+    """Make a column orthogonal to a unit column, twice, so that rounding leaves no trace of it."""
+    rows = columns.shape[0]
+    for _ in range(2):
+        overlap = 0.0
+        for i in range(rows):
+            overlap += columns[i, unit] * columns[i, other]
+        for i in range(rows):
+            columns[i, other] -= overlap * columns[i, unit]

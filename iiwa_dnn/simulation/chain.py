@@ -3,69 +3,57 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn import checks
 from iiwa_dnn.control.clipping import clip_command
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.control.estimation import JointEstimator
 from iiwa_dnn.control.filters import MovingAverage
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
-from iiwa_dnn.simulation.noise import NOISE_ENTRIES, NoiseEntry, VelocityDisturbance, gaussian_noise
+from iiwa_dnn.simulation.noise import Disturbance, gaussian_noise
 
 
 class SignalChain:
-    """Noise, disturbance, average, estimator and clip of a run of so many steps.
-
-    Attributes:
-        misleads: Whether the controller may see another posture than the robot has.
-        changes: Whether a velocity is changed on its way to the robot.
-        alters: Whether something but the controller's own answer, which keeps the limits, may move
-            the robot.
-    """
+    """Noise, disturbance, average, estimator and clip of a run."""
 
     def __init__(
-        self,
-        steps: int,
-        joints: int,
-        dt: float,
-        noise: float,
-        noise_at: NoiseEntry,
-        disturbance: VelocityDisturbance | None,
-        filter_window: int,
-        estimator: NoiseModel | None,
-        seed: int,
+        self, disturbance: Disturbance, steps: int, joints: int, dt: float, seed: int
     ) -> None:
-        """Check the arguments and draw the noise; see `iiwa_dnn.simulate`."""
-        checks.one_of("noise_at", noise_at, NOISE_ENTRIES)
-        checks.integer("filter_window", filter_window, 1)
-        drawn = gaussian_noise(noise, steps, joints, seed)
-        self._noise, self._noise_at = (drawn if noise > 0.0 else None), noise_at
+        """Draw the noise of a run of so many steps of dt [s]."""
+        self._disturbance = disturbance
+        self._noise = gaussian_noise(disturbance.noise, steps, joints, seed)
         times = dt * np.arange(steps, dtype=np.float64)
-        self._disturbance = self._estimator = None
-        if disturbance is not None:
-            checks.instance("disturbance", disturbance, VelocityDisturbance)
-            self._disturbance = disturbance.at(times)
-        if estimator is not None:
-            self._estimator = JointEstimator(
-                checks.instance("estimator", estimator, NoiseModel), dt
-            )
+        added = disturbance.velocity
+        self._added = None if added is None else added.at(times)
+        model = disturbance.estimator
+        self._estimator = None if model is None else JointEstimator(model, dt)
         # A window longer than the run never fills; so none is too long for the memory.
-        self._window = min(filter_window, steps)
-        noisy, estimates = self._noise is not None, estimator is not None
-        self.misleads = estimates or (noisy and noise_at == "measurement")
-        self.changes = estimates or disturbance is not None or filter_window > 1
-        self.changes |= noisy and noise_at != "measurement"
-        self.alters = noisy or self.changes
-
-    def restart(self) -> None:
-        """Forget the past of a run."""
-        if self._estimator is not None:
-            self._estimator.reset()
-        self._average, self._known = MovingAverage(self._window), MovingAverage(self._window)
+        window = min(disturbance.filter_window, steps)
+        self._average = MovingAverage(window)
+        self._known = MovingAverage(window)
         self._clipper = DNNSolver()
+
+    @property
+    def misleads(self) -> bool:
+        """Whether the controller may see another posture than the robot has."""
+        return self._estimator is not None or self._noise_at("measurement")
+
+    @property
+    def changes(self) -> bool:
+        """Whether a velocity is changed on its way to the robot."""
+        noisy = self._noise_at("velocity") or self._noise_at("network")
+        averaged = self._disturbance.filter_window > 1
+        return noisy or averaged or self._estimator is not None or self._added is not None
+
+    @property
+    def alters(self) -> bool:
+        """Whether more than the controller's own answer moves the robot."""
+        return self._disturbance.noise > 0.0 or self.changes
+
+    def _noise_at(self, entry: str) -> bool:
+        return self._disturbance.noise > 0.0 and self._disturbance.noise_at == entry
 
     def see(self, k: int, reading: Vector) -> Vector:
         """Return the joint positions (n,) [rad] that the controller sees at step k."""
-        if self._noise is not None and self._noise_at == "measurement":
+        if self._noise_at("measurement"):
             reading = reading + self._noise[k]
         return reading if self._estimator is None else self._estimator.update(reading)
 
@@ -82,14 +70,13 @@ class SignalChain:
         """
         command = velocity if self._estimator is None else velocity - self._estimator.bias
         known = command
-        if self._noise is not None:
-            if self._noise_at == "velocity":
-                command = command + self._noise[k]
-            elif self._noise_at == "network":
-                solver.disturb(self._noise[k])
-        if self._disturbance is not None:
-            command = command + self._disturbance[k]
-        if self._window > 1:
+        if self._noise_at("velocity"):
+            command = command + self._noise[k]
+        elif self._noise_at("network"):
+            solver.disturb(self._noise[k])
+        if self._added is not None:
+            command = command + self._added[k]
+        if self._disturbance.filter_window > 1:
             command = self._average(command)
         command, clipped = clip_command(qp, command, self._clipper)
         if self._estimator is not None:

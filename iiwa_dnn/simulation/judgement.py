@@ -1,59 +1,51 @@
 """The check of every program of a run: those of the steps, and of their levels of priority."""
 
+from __future__ import annotations
+
 from contextlib import ExitStack
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from iiwa_dnn.control.answers import Answers
-from iiwa_dnn.control.cascade import Cascade
+from iiwa_dnn.control.cascade import Level
+from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.qp.checkpool import CheckPool
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.simulation.loop import Outcome
 
 
 class Judgement(ExitStack):
-    """Programs of a run of N steps on their way to the reference solvers.
+    """Programs of a run on their way to the reference solvers."""
 
-    Attributes:
-        residual: Largest absolute residual of the rows of each of l levels, (N, l); None where no
-            task has a priority.
-    """
-
-    def __init__(self, check: CrossCheck, steps: int, stages: int, cascade: Cascade) -> None:
-        """Start nothing yet; each step has so many stages, one program each."""
+    def __init__(
+        self, check: CrossCheck, steps: int, stages: int, layout: RowLayout, levels: list[Level]
+    ) -> None:
+        """Start nothing yet; each of the steps has so many stages, one program each."""
         super().__init__()
-        self._levels, self._stages, self._noted = cascade.levels, stages, 0
-        self._waiting: list[list[NDArray[np.float64]]] = []
-        count = 1 + len(self._levels)
-        pools = [CheckPool(check, steps * stages) for _ in range(count)]
+        self._layout = layout
+        self._levels = levels
+        self._stages = stages
+        self._waiting: list[list[Matrix]] = []
+        pools = [CheckPool(check, steps * stages) for _ in range(1 + len(levels))]
         self._pools = [self.enter_context(pool) for pool in pools]
-        self.residual = np.zeros((steps, count - 1)) if self._levels else None
 
-    def note(self) -> None:
-        """Note the levels of the next stage."""
-        if self.residual is not None:
-            step = self._noted // self._stages
-            self._noted += 1
-            self._waiting.append([np.concatenate([level.data, level.x]) for level in self._levels])
-            for i, level in enumerate(self._levels):
-                missing = np.abs(level.missing).max()
-                self.residual[step, i] = max(self.residual[step, i], missing)
+    def observe(self, k: int, outcome: Outcome) -> None:
+        """Take in the levels of step k."""
+        for levels in outcome.levels:
+            self._waiting.append([programs for programs, _ in levels])
 
-    def submit(self, answers: Answers) -> None:
-        """Hand a stretch of steps over to the check."""
-        self._pools[0].submit(answers.programs, answers.sizes, answers.all_x)
+    def submit(self, rows: Matrix) -> None:
+        """Hand the rows of a stretch of steps over to the check, (k, width)."""
+        layout = self._layout
+        n, _, _ = layout.sizes
+        x = layout.view(rows, "point")[:, :n]
+        self._pools[0].submit(layout.view(rows, "program"), layout.sizes, x)
         for i, level in enumerate(self._levels):
-            programs, x = np.split(
-                np.array([each[i] for each in self._waiting]), [level.data.size], 1
-            )
+            found = np.array([programs[i] for programs in self._waiting])
+            programs, answers = np.split(found, [level.data.size], axis=1)
             # A level leaves x free in part: what has to agree is A x.
-            self._pools[1 + i].submit(programs, level.sizes, x, by_cost=True)
+            self._pools[1 + i].submit(programs, level.sizes, answers, by_cost=True)
         self._waiting.clear()
-
-    def arrays(self, steps: int) -> dict[str, Any]:
-        """Return the record's optional arrays, cut to the steps that were taken."""
-        return {} if self.residual is None else {"level_residual": self.residual[:steps]}
 
     def finish(self) -> Agreement:
         """Return the verdict on each step, the worst of its programs."""

@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Matrix, Vector
 
@@ -85,3 +86,47 @@ class VelocityDisturbance:
     def settings(self) -> dict[str, Any]:
         """The numbers, as values that JSON can hold."""
         return asdict(self)
+
+
+@dataclass(frozen=True)
+class Disturbance:
+    """All that disturbs the signals between controller and robot, and what is done against it.
+
+    Attributes:
+        noise: Standard deviation of white noise on each joint, in the unit of the quantity it is
+            added to: [rad/s], or [rad] for ``measurement``.
+        noise_at: ``"velocity"``, commanded; ``"network"``, its x; ``"measurement"``, read joints.
+        velocity: Added to every joint's velocity beside the noise; None: nothing.
+        filter_window: Samples of the moving average of the velocity; 1: no filter.
+        integral_gain: Feedback of the error's integral [1/s^2] (`iiwa_dnn.control.feedback`).
+        estimator: Noise model of a Kalman filter of the joint positions, whose bias the controller
+            takes off its command; None: it sees what is measured.
+    """
+
+    noise: float = 0.0
+    noise_at: NoiseEntry = "velocity"
+    velocity: VelocityDisturbance | None = None
+    filter_window: int = 1
+    integral_gain: float = 0.0
+    estimator: NoiseModel | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters; raises InvalidInputError naming the one that is wrong."""
+        checks.one_of("noise_at", self.noise_at, NOISE_ENTRIES)
+        checks.integer("filter_window", self.filter_window, 1)
+        checks.not_negative("integral_gain", self.integral_gain)
+        if self.velocity is not None:
+            checks.instance("disturbance", self.velocity, VelocityDisturbance)
+        if self.estimator is not None:
+            checks.instance("estimator", self.estimator, NoiseModel)
+
+    def settings(self) -> dict[str, Any]:
+        """Return the entries of a run's settings, as values that JSON can hold."""
+        return {
+            "noise": self.noise,
+            "noise_at": self.noise_at,
+            "disturbance": None if self.velocity is None else self.velocity.settings(),
+            "filter_window": self.filter_window,
+            "integral_gain": self.integral_gain,
+            "estimator": None if self.estimator is None else self.estimator.settings(),
+        }

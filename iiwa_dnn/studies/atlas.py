@@ -9,12 +9,10 @@ A network of one's own is one line in `NETWORKS`.
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, product
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.control.plan import Plan
 from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, NotFoundError
 from iiwa_dnn.networks import (
     DualNetwork,
@@ -58,11 +56,8 @@ from iiwa_dnn.studies.atlas_schemes import SCHEMES
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.sweeps import Outcome
 
-DURATION = 0.5
-"""Length of a run [s]."""
-
-PERIOD = 2.0
-"""Time of a whole heart [s]."""
+DURATION, PERIOD = 0.5, 2.0
+"""Length of a run and time of a whole heart [s]."""
 
 
 @dataclass(frozen=True)
@@ -81,11 +76,10 @@ class Paced(ExplicitEuler):
         Raises:
             InvalidInputError: The network knows no stable step.
         """
-        step = SAFETY * (self.base or network).stable_step(qp, state)
+        step, count = SAFETY * (self.base or network).stable_step(qp, state), self.substeps or 1
         if not step > 0.0:
             raise InvalidInputError("network", "knows no stable step: take `settled`", network)
         rates = network.flow(qp).rates
-        count = self.substeps or 1
         for _ in range(count):
             state += step * rates(state)
         return count
@@ -202,26 +196,29 @@ def cells(
         InvalidInputError: A scheme is not one of `SCHEMES`, or there is none.
         NotFoundError: A network is not one of `NETWORKS`.
     """
-    if not schemes or not set(schemes) <= SCHEMES.keys():
-        raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {list(schemes)}")
+    for name in schemes or [""]:
+        if name not in SCHEMES:
+            raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {name!r}")
     networks = networks or tuple(NETWORKS)
     for name in networks:
         if name not in NETWORKS:
             raise NotFoundError("network", name, NETWORKS)
     middle = evaluations[len(evaluations) // 2]
-    by_scheme = [
-        [
-            cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
-            for network, kind in product(networks, DISTURBANCES)
-        ]
+    whole = [
+        cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
         for scheme in schemes
+        for network in networks
+        for kind in DISTURBANCES
     ]
     budgets = [
         cell(network, schemes[0], kind, count, others)
-        for network, kind, count in product(networks, ("none", "white"), evaluations)
+        for network in networks
+        for kind in ("none", "white")
+        for count in evaluations
         if count != middle
     ]
-    return [*by_scheme[0], *budgets, *chain(*by_scheme[1:])]
+    first = len(networks) * len(DISTURBANCES)
+    return whole[:first] + budgets + whole[first:]
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
@@ -233,8 +230,7 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
         residual of the answers over that half, and the time of an answer [us]; ``failures``, the
         reasons.
     """
-    runs = []
-    failures = []
+    runs, failures = [], []
     for seed in range(settings["seeds"]):
         try:
             with np.errstate(all="ignore"):  # a network that diverges ends its run
@@ -253,10 +249,11 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     solver = NETWORKS[settings["network"]].make(settings["evaluations"])
     arm = Kinematics(other_arm(robot, rng) if kind == "parameter" else robot)
     q = np.array(paper.START)
-    plan = Plan(robot, scheme, solver, DT, False, q)
+    program = scheme.program(robot)
+    past = np.zeros((3, q.size))
     steps = round(DURATION / DT)
-    n, m, p = plan.sizes
-    data = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), plan.sizes)
+    n, m, p = program.sizes
+    data = QP.from_data(np.zeros(program.data_size), program.sizes)
     heart = Heart(period=PERIOD).anchored(Configuration(arm.robot, q))
     targets = heart.sample(DT * np.arange(steps)).data
     errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
@@ -272,21 +269,23 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
         errors[k] = np.linalg.norm(target[:3] - tool[9:])
         if not errors[k] < 1.0:
             raise IiwaDnnError(f"the tool is {errors[k]:.2g} m away")
-        plan.update(seen)
+        program.update(seen)
+        past[0] = seen
         if kind == "parameter":
-            as_measured(target, tool, plan.kinematics.placements[robot.tip_id])
+            as_measured(target, tool, program.placement)
         if kind == "estimated":
             if k == 0:
                 believed = arm.jacobian * (1.0 + 0.1 * rng.standard_normal((q.size, 6)))
             else:
                 learn(believed, q - before, place(tool) * place(was).inverse())
-            plan.kinematics.jacobian[:], was, before = believed, tool, q
-        if plan.accelerates:
-            plan.wanted[:] = heart.accelerations(k * DT)
-        plan.build(data.data, target, k * DT)
-        velocity: Vector = plan.last.copy()
+            program.kinematics.jacobian[:] = believed
+            was = tool
+            before = q
+        wanted = heart.accelerations(k * DT) if program.accelerates else None
+        program.write(data.data, target.reshape(1, -1), past, DT, k * DT, wanted)
+        velocity: Vector = past[1].copy()
         if kind == "locked" and k >= locked:
-            data.lb[joint] = data.ub[joint] = -velocity[joint] / DT if plan.accelerates else 0.0
+            data.lb[joint] = data.ub[joint] = -velocity[joint] / DT if program.accelerates else 0.0
         began = time.perf_counter()
         answer = solver.advance(data, DT)
         spent += time.perf_counter() - began
@@ -298,10 +297,10 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
             state[: width or state.size] += noise[k, : width or state.size]
             residuals[k] = max(solver.network.read(data, state, point))
             x = point
-        plan.last[:] = velocity + DT * x[: q.size] if plan.accelerates else x[: q.size]
+        past[1] = velocity + DT * x[: q.size] if program.accelerates else x[: q.size]
         if kind == "locked" and k >= locked:
-            plan.last[joint] = 0.0
-        q = q + DT * (0.5 * (velocity + plan.last) if plan.accelerates else plan.last)
+            past[1, joint] = 0.0
+        q = q + DT * (0.5 * (velocity + past[1]) if program.accelerates else past[1])
     half = slice(steps // 2, None)
     return {
         "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),

@@ -12,16 +12,9 @@ DT = 2e-3
 """Control period [s]."""
 
 DISTURBANCES = (
-    "none",
-    "constant",
-    "ramp",
-    "sinusoid",
-    "white",
-    "measurement",
-    "parameter",
-    "locked",
+    "none", "constant", "ramp", "sinusoid", "white", "measurement", "parameter", "locked",
     "estimated",
-)
+)  # fmt: skip
 """The first five but none disturb the network's rates, the others the loop around it:
 
 constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
@@ -35,8 +28,7 @@ which is learned from the motion alone (`learn`).
 
 def noise_of(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
     """Draw what is added to the states after each step, (steps, 100)."""
-    direction = rng.standard_normal(100) / np.sqrt(7.0)
-    t = DT * np.arange(steps)
+    direction, t = rng.standard_normal(100) / np.sqrt(7.0), DT * np.arange(steps)
     shapes = {"constant": np.ones(steps), "ramp": t, "sinusoid": np.sin(10.0 * np.pi * t)}
     if kind in shapes:
         return DT * np.outer(shapes[kind], direction)
@@ -62,8 +54,7 @@ def learn(jacobian: Matrix, moved: Vector, motion: pin.SE3) -> None:
     The estimate is as `Kinematics.jacobian`, (n, 6); the joints moved by (n,) [rad], the tool by a
     measured motion of the world's frame.
     """
-    square = moved @ moved
-    if square > 0.0:
+    if (square := moved @ moved) > 0.0:
         missing = pin.log6(motion).vector - moved @ jacobian
         jacobian += np.outer(moved, missing) / square
 

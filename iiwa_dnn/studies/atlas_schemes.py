@@ -31,7 +31,7 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
     "bi-criteria": lambda: literature.bi_criteria(paper_robot()),
     "manipulability": lambda: Scheme([KineticEnergy(), Manipulability()], _TASKS, [JointLimits()]),
     "soft rotation": lambda: Scheme(
-        [KineticEnergy(0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
+        [KineticEnergy(weight=0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
     ),
     "pseudo-inverse": PseudoInverse,
     "resolved acceleration": literature.resolved_acceleration,

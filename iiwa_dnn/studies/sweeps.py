@@ -170,8 +170,7 @@ class Sweep:
         """Compute the cells, each yielded as soon as it is done, in whatever order."""
         if not todo:
             return
-        compute = joblib.delayed(_compute)
-        expected = fingerprint(self.task)
+        compute, expected = joblib.delayed(_compute), fingerprint(self.task)
         calls = (compute(name, self.task, dict(cell), expected) for name, cell in todo.items())
         with _backend(min(workers or joblib.cpu_count(), len(todo)), dask):
             # One cell a message: a finished one is written at once.

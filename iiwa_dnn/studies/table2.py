@@ -89,7 +89,7 @@ def _measure(
 ) -> dict[str, Any]:
     """Lay out one measure of the four cases, and its changes by noise and filter."""
     still = [values[key] for values in quiet]
-    plain, filtered = np.array([[values[key] for values in runs] for runs in noisy], float)
+    plain, filtered = (np.array([values[key] for values in runs], float) for runs in noisy)
     cases = [*map(Estimate.exact, still), estimate(plain), estimate(filtered)]
     changes = {
         "filter, with noise": _relative(paired_difference(filtered, plain), float(plain.mean())),

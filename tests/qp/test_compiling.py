@@ -111,13 +111,13 @@ def test_functions_without_a_module_compile() -> None:
 
 
 def test_compiling_is_not_wall_time_of_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    ask = DoubleIndicator.layout
+    ask = DoubleIndicator.program
 
-    def layout(self: DoubleIndicator, robot: Robot) -> object:
+    def program(self: DoubleIndicator, robot: Robot) -> object:
         compiling.WATCH.seconds += 1000.0
         return ask(self, robot)
 
-    monkeypatch.setattr(DoubleIndicator, "layout", layout)
+    monkeypatch.setattr(DoubleIndicator, "program", program)
     record = simulate(paper_robot(), DoubleIndicator(), heart(), PAPER_Q0, dt=1e-4, duration=1e-3)
     assert record.wall_time_s is not None
     assert record.wall_time_s < -900.0

@@ -29,7 +29,7 @@ from iiwa_dnn.schemes import (
 from iiwa_dnn.simulation import simulate
 
 LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
-COSTS = [KineticEnergy(0.2), CyclicMotion(0.8)]
+COSTS = [KineticEnergy(weight=0.2), CyclicMotion(weight=0.8)]
 
 
 def test_each_arm_is_the_single_one_moved_aside() -> None:

@@ -173,14 +173,14 @@ def test_an_arm_with_mass_follows() -> None:
     ("build", "word"),
     [
         (lambda: Scheme(level="jerk"), "level"),
-        (lambda: scheme(CyclicMotion()).layout(ROBOT), "costs"),
-        (lambda: scheme(tasks=(OrientationTask(form="block"),)).layout(ROBOT), "tasks"),
-        (lambda: scheme(tasks=(PositionTask(tracking="next"),)).layout(ROBOT), "tasks"),
+        (lambda: scheme(CyclicMotion()).program(ROBOT), "costs"),
+        (lambda: scheme(tasks=(OrientationTask(form="block"),)).program(ROBOT), "tasks"),
+        (lambda: scheme(tasks=(PositionTask(tracking="next"),)).program(ROBOT), "tasks"),
         (lambda: scheme().build_qp(START, heart().at(0.0)), "dt"),
         (lambda: drive(scheme(), noise=0.1), "scheme"),
         (lambda: drive(scheme(), integral_gain=1.0), "scheme"),
         (lambda: JointAcceleration(damping=-1.0), "damping"),
-        (lambda: JointTorque(-1.0), "weight"),
+        (lambda: JointTorque(weight=-1.0), "weight"),
     ],
 )
 def test_what_has_no_meaning_is_named(build, word: str) -> None:

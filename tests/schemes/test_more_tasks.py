@@ -41,8 +41,8 @@ SHAFT = START.position + 0.1 * START.rotation[:, 2]
 
 TASKS: dict[str, Any] = {
     "pose": PoseTask(gain=1.0),
-    "axis": AxisTask(AXIS, gain=1.0),
-    "axis in the world": AxisTask(AXIS, START.rotation @ AXIS, gain=1.0),
+    "axis": AxisTask(axis=AXIS, gain=1.0),
+    "axis in the world": AxisTask(axis=AXIS, direction=START.rotation @ AXIS, gain=1.0),
     "relative pose": RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
     "remote center": RemoteCenterTask(SHAFT, gain=1.0),
     "looking at a frame": RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
@@ -171,7 +171,7 @@ def test_parts_leave_slack_variables_out() -> None:
 @pytest.mark.parametrize(
     ("make", "named"),
     [
-        (lambda: AxisTask((0.0, 0.0, 0.0)), "axis"),
+        (lambda: AxisTask(axis=(0.0, 0.0, 0.0)), "axis"),
         (lambda: PoseTask(gain=-1.0), "gain"),
         (lambda: PoseTask(weight=-1.0), "weight"),
         (lambda: CenterOfMassTask(axes="xw"), "axes"),

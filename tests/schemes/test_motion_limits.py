@@ -27,7 +27,7 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     last = before = room = wish = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
-        lb, ub = joint_bounds(last, before, upper - q, q + upper, V, A, J, dt)
+        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J), dt)
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
@@ -85,7 +85,7 @@ def test_approach_is_the_inverse_of_braking_step_by_step(room: float) -> None:
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
 def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
     dt, A, V = 1e-2, 5.0, 2.0
-    lb, ub = joint_bounds(last, 0.0, above, INF, V, A, INF, dt)
+    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF), dt)
     at_most = min(V, last + A * dt)
     assert lb == pytest.approx(max(-V, last - A * dt))
     if stopping_room(last - A * dt, A * dt) * dt > above:
@@ -127,10 +127,10 @@ def test_after_every_bound_some_commands_lead_to_rest() -> None:
     for _ in range(25):
         q, last, before = -rng.uniform(0.3, 1.2), 0.0, 0.0
         for _ in range(int(rng.integers(10, 80))):
-            lb, ub = joint_bounds(last, before, -q, INF, *limits, dt)
+            lb, ub = joint_bounds(last, before, -q, INF, limits, dt)
             v = ub if rng.random() < 0.9 else lb
             q, last, before = q + dt * v, v, last
-        lb, ub = joint_bounds(last, before, -q, INF, *limits, dt)
+        lb, ub = joint_bounds(last, before, -q, INF, limits, dt)
         assert plan_to_rest(q + dt * ub, ub, last, dt, limits)
         reach = limits[2] * dt**2
         if lb < ub < min(2.0 * last - before + reach, last + limits[1] * dt) - 1e-9:
@@ -144,7 +144,7 @@ def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
     for start in (-1.3, 0.004, 1.7):
         last, before, q, spent = start, start, 0.0, 0.0
         for _ in range(2000):
-            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, 2.0, A, jerk, dt)
+            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, (2.0, A, jerk), dt)
             last, before = braking(last, lb, ub, jerk, dt), last
             assert last * start >= -1e-15  # it does not turn round
             q, spent = q + dt * last, spent + dt
@@ -189,10 +189,10 @@ def test_bad_limits_are_refused_by_name(limit: Any) -> None:
 def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
     robot = paper_robot()
     with pytest.raises(InvalidInputError, match="3 numbers for 7 joints"):
-        Scheme(limits=[AccelerationLimits([1.0, 2.0, 3.0])]).layout(robot)
+        Scheme(limits=[AccelerationLimits([1.0, 2.0, 3.0])]).program(robot)
     with pytest.raises(InvalidInputError, match="no dddq_max of its own"):
-        Scheme(limits=[JerkLimits()]).layout(robot)
+        Scheme(limits=[JerkLimits()]).program(robot)
     with pytest.raises(InvalidInputError, match="too little to stop"):
-        Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).layout(robot)
+        Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).program(robot)
     with pytest.raises(InvalidInputError, match="jerk: joint 1: 0 is not above 0"):
         robot.with_limits(jerk=0.0)

@@ -129,7 +129,7 @@ def test_what_does_not_fit_is_told() -> None:
     robot, start = paper_robot(), paper_start()
     mixed = Scheme(tasks=[PositionTask(tracking="next"), OrientationTask()])
     with pytest.raises(InvalidInputError, match=r"^tracking.*all tasks of a frame"):
-        mixed.layout(robot)
+        mixed.program(robot)
     scheme = DoubleIndicator(home=PAPER_Q0, tracking="next")
     with pytest.raises(InvalidInputError, match=r"^dt\b"):
         scheme.build_qp(start, PATH.at(0.0))

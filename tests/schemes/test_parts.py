@@ -129,8 +129,8 @@ def test_a_numpy_task_says_the_same_as_the_compiled_one() -> None:
 @pytest.mark.parametrize("task", [PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
 def test_a_soft_task_is_a_term_of_the_cost(task: Task) -> None:
     conf, target = paper_start(), near_target(PAPER_Q0, 1)
-    qp = Scheme([KineticEnergy(0.5)], [task]).build_qp(conf, target)
-    hard = Scheme([KineticEnergy(0.5)], [PositionTask()]).build_qp(conf, target)
+    qp = Scheme([KineticEnergy(weight=0.5)], [task]).build_qp(conf, target)
+    hard = Scheme([KineticEnergy(weight=0.5)], [PositionTask()]).build_qp(conf, target)
     assert qp.sizes == (7, 0, 0)
     assert_allclose(qp.P, 0.5 * np.eye(7) + 3.0 * hard.A.T @ hard.A, rtol=0, atol=1e-14)
     assert_allclose(qp.q, -3.0 * hard.A.T @ hard.b, rtol=0, atol=1e-14)
@@ -139,7 +139,7 @@ def test_a_soft_task_is_a_term_of_the_cost(task: Task) -> None:
 def test_costs_and_bounds_of_ones_own_join_the_others() -> None:
     conf, target = paper_start(), near_target(PAPER_Q0, 1)
     scheme = Scheme(
-        [CyclicMotion(0.3, home=PAPER_Q0), NumpyEnergy()],
+        [CyclicMotion(weight=0.3, home=PAPER_Q0), NumpyEnergy()],
         [PositionTask()],
         [JointLimits(), NumpyBounds()],
     )
@@ -156,7 +156,7 @@ def test_a_task_of_another_frame_is_that_frames_jacobian(frame: str) -> None:
     state = conf.frame(frame)
     target = Target(state.position + 0.01, state.rotation, np.ones(3))
     scheme = Scheme(
-        [KineticEnergy()], [PositionTask(2.0, frame=frame), OrientationTask(frame=frame)]
+        [KineticEnergy()], [PositionTask(gain=2.0, frame=frame), OrientationTask(frame=frame)]
     )
     qp = scheme.build_qp(conf, {frame: target})
     assert_allclose(qp.A, state.jacobian, rtol=0, atol=1e-15)
@@ -168,7 +168,7 @@ def test_a_task_of_another_frame_is_that_frames_jacobian(frame: str) -> None:
 def test_two_frames_follow_two_references() -> None:
     robot, start = paper_robot(), paper_start()
     scheme = Scheme(
-        [KineticEnergy(), CyclicMotion(0.1)],
+        [KineticEnergy(), CyclicMotion(weight=0.1)],
         [PositionTask(), PositionTask(frame=ELBOW, weight=50.0)],
         [JointLimits()],
     )

@@ -12,9 +12,11 @@ class Plant(ABC):
 
     Attributes:
         packages: Installed packages whose versions belong into the record.
+        exact: Whether the joints move as they are told and are read as they are.
     """
 
     packages: ClassVar[tuple[str, ...]] = ()
+    exact: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:

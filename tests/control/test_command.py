@@ -1,4 +1,4 @@
-"""The compiled control step against its parts, and the array that its answers are kept in."""
+"""Commands: the compiled control step against its parts, and the answers that they carry."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, near_target, paper_robot, paper_start
-from iiwa_dnn.control.answers import Answers
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
+from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 
@@ -40,7 +40,8 @@ class Asked(DNNSolver):
 def test_a_compiled_step_is_its_parts_one_after_the_other(
     scheme: Scheme, mode: Any, substeps: int | None
 ) -> None:
-    follower, robot = ExplicitEuler(substeps), paper_robot()
+    follower = ExplicitEuler(substeps)
+    robot = paper_robot()
     compiled, asked = (
         Controller(robot, scheme, mode=mode, dt=1e-4, solver=solver)
         for solver in (DNNSolver(follower=follower), Asked(follower=follower))
@@ -48,41 +49,25 @@ def test_a_compiled_step_is_its_parts_one_after_the_other(
     rng = np.random.default_rng(7)
     postures = np.array(PAPER_Q0) + 1e-3 * rng.standard_normal((20, 7))
     targets = [near_target(q, seed, size=2e-3) for seed, q in enumerate(postures)]
-    data = np.stack([target.data for target in targets])
-    answers, others = compiled.answers(data), asked.answers(data)
-    for k, q in enumerate(postures):
-        x, y = compiled.answer(q, answers), asked.answer(q, others)
+    for q, target in zip(postures, targets, strict=True):
+        one = compiled.step(q, 0.0, target)
+        other = asked.step(q, 0.0, target)
         # The compiler may round a product and its sum in one place once, in another twice.
-        np.testing.assert_allclose(x, y, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(one.dq, other.dq, rtol=0, atol=1e-11)
         conf = Configuration(robot, q)
-        np.testing.assert_array_equal(answers.qp(k).data, scheme.build_qp(conf, targets[k]).data)
-        one, other = answers.solution(k), others.solution(k)
-        assert one.status is other.status
-        assert one.status is (Status.SOLVED if mode == "converged" else Status.ADVANCED)
-        np.testing.assert_allclose(one.point, other.point, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(one.residuals, other.residuals, rtol=1e-9, atol=1e-11)
-        assert one.network_time == pytest.approx(other.network_time)
-        np.testing.assert_array_equal(answers.places[k][:9].reshape(3, 3).T, conf.rotation)
-        np.testing.assert_array_equal(answers.places[k][9:], conf.position)
-        np.testing.assert_array_equal(answers.q[k], q)
-        np.testing.assert_array_equal(answers.all_x[k], one.x)
-        assert list(answers.solution(k).residuals) == list(one.residuals)
-        assert answers.solution(k).iterations == one.iterations
-    np.testing.assert_array_equal(answers.programs, others.programs)
+        np.testing.assert_array_equal(one.qp.data, other.qp.data)
+        anchored = compiled.scheme
+        np.testing.assert_array_equal(one.qp.data, anchored.build_qp(conf, target).data)
+        assert one.solution.status is other.solution.status
+        assert one.solution.status is (Status.SOLVED if mode == "converged" else Status.ADVANCED)
+        np.testing.assert_allclose(one.solution.point, other.solution.point, rtol=0, atol=1e-9)
+        residuals = one.solution.residuals
+        np.testing.assert_allclose(residuals, other.solution.residuals, rtol=1e-9, atol=1e-11)
+        assert one.solution.network_time == pytest.approx(other.solution.network_time)
+        np.testing.assert_array_equal(one.placement[:9].reshape(3, 3).T, conf.rotation)
+        np.testing.assert_array_equal(one.placement[9:], conf.position)
+        np.testing.assert_array_equal(one.targets[0], target.data)
     np.testing.assert_allclose(compiled.solver.state, asked.solver.state, rtol=0, atol=1e-9)
-
-
-def test_steps_that_move_the_joints_are_the_same_steps() -> None:
-    dt, times = 1e-3, 1e-3 * np.arange(50)
-    moved, stepped = (Controller(paper_robot(), SCHEMES["so3"], heart(), dt=dt) for _ in range(2))
-    answers, others = (c.answers(c.sample(times)) for c in (moved, stepped))
-    q, other = np.array(PAPER_Q0), np.array(PAPER_Q0)
-    q = q + dt * moved.answer(q, answers)
-    assert moved.follow(q, answers, 49) == 49
-    for _ in times:
-        other = other + dt * stepped.answer(other, others)
-    np.testing.assert_array_equal(q, other)
-    np.testing.assert_array_equal(answers.rows, others.rows)
 
 
 def test_only_the_first_step_is_not_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,34 +151,49 @@ def test_a_changed_parameter_counts_from_the_next_step_on(name: str) -> None:
         assert solution.network_time == pytest.approx(controller.dt / 9e-5)
 
 
-def test_a_step_that_is_not_solved_is_told_apart() -> None:
+def test_a_step_that_is_not_solved_leaves_the_others_as_they_are() -> None:
     controller = Controller(paper_robot(), SCHEMES["so3"], dt=1e-4)
-    near, far = heart().at(0.0), near_target(PAPER_Q0, 3, size=3.0)
-    answers = controller.answers(np.stack([near.data, far.data, near.data]))
-    for _ in range(3):
-        controller.answer(np.array(PAPER_Q0), answers)
-    assert list(answers.resolved) == [1]
-    assert answers.resolved[1].action is Action.SLOW
-    assert answers.solution(0).found
-    assert answers.solution(2).found
-    np.testing.assert_allclose(answers.dq(2), answers.dq(0), rtol=0, atol=1e-9)
+    near = heart().at(0.0)
+    far = near_target(PAPER_Q0, 3, size=3.0)
+    commands = [controller.step(PAPER_Q0, 0.0, target) for target in (near, far, near)]
+    assert [command.action for command in commands] == [Action.NONE, Action.SLOW, Action.NONE]
+    assert [command.ok for command in commands] == [True, False, True]
+    np.testing.assert_allclose(commands[2].dq, commands[0].dq, rtol=0, atol=1e-9)
+
+
+class Capricious(DoubleIndicator):
+    """A scheme whose programs change their shape."""
+
+    def build_qp(self, conf: Configuration, target: Any) -> QP:
+        qp = super().build_qp(conf, target)
+        rows = 2 if target.position[2] < 0.4 else 3
+        return QP(qp.P, qp.q, A=qp.A[:rows], b=qp.b[:rows], lb=qp.lb, ub=qp.ub)
 
 
 def test_programs_of_two_shapes_are_refused_by_name() -> None:
-    answers = Answers((2, 0, 0), 2, Status.SOLVED, np.zeros((2, 18)))
-    solver, place = DNNSolver(), np.zeros(12)
-    first, second = QP(np.eye(2), np.ones(2)), QP(np.eye(2), np.ones(2), A=[[1.0, 1.0]], b=[0.0])
-    answers.add(first, solver.solve(first), place, np.zeros(2))
+    controller = Controller(paper_robot(), Capricious(home=PAPER_Q0))
+    start = paper_start()
+    controller.step(PAPER_Q0, 0.0, Target(start.position, start.rotation))
     with pytest.raises(InvalidInputError, match="scheme"):
-        answers.add(second, solver.solve(second), place, np.zeros(2))
+        controller.step(PAPER_Q0, 0.0, Target(start.position + [0.0, 0.0, 0.5], start.rotation))
 
 
-@pytest.mark.parametrize("status", [status for status in Status if status is not Status.SOLVED])
+class Unsettled(DNNSolver):
+    """A solver that says how its answers ended."""
+
+    status = Status.NOT_SETTLED
+
+    def advance(self, qp: QP, duration: float) -> Solution:
+        return super().advance(qp, duration)._replace(status=self.status)
+
+
+@pytest.mark.parametrize("status", [Status.NOT_FINITE, Status.NOT_SETTLED])
 def test_an_answer_of_another_status_keeps_it(status: Status) -> None:
-    answers = Answers((2, 0, 0), 2, Status.SOLVED, np.zeros((2, 18)))
-    qp = QP(np.eye(2), np.ones(2))
-    solution = DNNSolver().solve(qp)
-    answers.add(qp, solution, np.zeros(12), np.zeros(2))
-    answers.add(qp, solution._replace(status=status), np.zeros(12), np.zeros(2))
-    assert list(answers.unsolved) == [1]
-    assert [answers.solution(i).status for i in range(2)] == [Status.SOLVED, status]
+    solver = Unsettled()
+    solver.status = status
+    controller = Controller(
+        paper_robot(), SCHEMES["so3"], heart(), mode="continuous", solver=solver
+    )
+    command = controller.step(PAPER_Q0, 0.0)
+    assert not command.ok
+    assert command.solution.status is status

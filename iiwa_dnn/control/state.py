@@ -1,0 +1,60 @@
+"""The state of a controller: all that one step leaves behind for the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from iiwa_dnn.qp import Vector
+
+if TYPE_CHECKING:
+    from iiwa_dnn.control.policies import Resolution
+
+Q, LAST, BEFORE, WANTED = range(4)
+"""Rows of `ControllerState.past`."""
+
+
+class ControllerState:
+    """Last commands, the reference's clock, and whether the task yields.
+
+    A step reads `past` and writes `following`; only `commit` makes the one the other. A step that
+    is broken off leaves the state as it was.
+
+    Attributes:
+        past: Joint positions of this step [rad], last command, the one before, and the velocity
+            that a yielding task wanted at the last step [rad/s], (4, n).
+        following: The same for the next step, (4, n).
+        delay: Time by which the reference's clock is behind [s].
+        begun: Whether a first step was taken.
+        yields: Whether the task yielded at the last step.
+        halted: Decision to stop, after which every step brakes; None: there was none.
+    """
+
+    __slots__ = ("begun", "delay", "following", "halted", "past", "yields")
+
+    def __init__(self, dof: int) -> None:
+        """Start at rest."""
+        self.past = np.zeros((4, dof))
+        self.following = np.zeros((4, dof))
+        self.begun = False
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the commands and the clock."""
+        self.past[LAST:] = 0.0
+        self.delay = 0.0
+        self.yields = False
+        self.halted: Resolution | None = None
+
+    def send(self, dq: Vector) -> None:
+        """Take note of a command dq (n,) [rad/s] that the next `commit` makes the last one."""
+        self.following[BEFORE] = self.past[LAST]
+        self.following[LAST] = dq
+
+    def commit(self) -> None:
+        """Count the command that `following` holds as sent."""
+        # No call in between, so no interrupt either: both happen, or neither.
+        past = self.past
+        self.past = self.following
+        self.following = past

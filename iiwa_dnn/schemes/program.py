@@ -1,0 +1,526 @@
+"""The step program: a scheme laid out for a robot, once, as named views.
+
+`StepProgram` states which rows belong to which part. `assemble` writes all rows in one compiled
+call, each part by its own kernel; parts written in numpy are asked afterwards
+(`iiwa_dnn.schemes.filling`). This is the only file that knows where a constant lies.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.compiling import Signature
+from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.acceleration import (
+    check_parts,
+    damping_of,
+    lift_targets,
+    lower_limits,
+    with_squared_gains,
+)
+from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.filling import fill
+from iiwa_dnn.schemes.joint_tasks import couplings
+from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
+from iiwa_dnn.schemes.parts import COST, LIMIT, TASK, Cost, Limit, Part, Task
+from iiwa_dnn.schemes.step import Step, StepViews
+
+if TYPE_CHECKING:
+    from iiwa_dnn.schemes.base import Scheme
+
+Table = NDArray[np.int64]
+"""What compiled code reads of a step program: the head, then a row of `_Entry` for each part."""
+
+
+class _Head(NamedTuple):
+    """First row of a table."""
+
+    n: int
+    m: int
+    p: int
+    dof: int
+    frames: int
+    dynamics: int
+    parts: int
+    tip: int
+
+
+class _Entry(NamedTuple):
+    """Row of a table for one part with a kernel."""
+
+    kind: int
+    address: int
+    first: int
+    rows: int
+    start: int
+    stop: int
+    target: int
+    unused: int = 0
+
+
+_COST, _TASK, _SOFT, _LIMIT = range(4)
+
+
+class Block(NamedTuple):
+    """Rows of one part.
+
+    Attributes:
+        part: The part.
+        first: Its first row among the program's equality or inequality rows.
+        rows: Number of its rows; none for a cost.
+    """
+
+    part: Part
+    first: int
+    rows: int
+
+
+class StepProgram:
+    """A scheme laid out for a robot of `dof` joints.
+
+    Attributes:
+        robot: The robot.
+        scheme: The scheme.
+        blocks: The parts in the order costs, tasks, limits.
+        sizes: ``(n, m, p)`` of the programs.
+        target_frames: Names of the frames that tasks track, in the order of the targets; the
+            tip's if no task tracks one.
+        damping: `damping_of` at the acceleration level, (6 frames,); empty at the velocity level.
+        kinematics: The robot's, overwritten by each step.
+        table: What compiled code reads of the layout, (1 + parts, 8).
+        constants: Numbers that compiled code reads, (k,).
+    """
+
+    def __init__(self, robot: Robot, scheme: Scheme) -> None:
+        """Lay a scheme's parts out for a robot.
+
+        Raises:
+            NotFoundError: A part names a frame that the robot does not have.
+            InvalidInputError: A parameter of a part does not fit the robot.
+        """
+        self.robot = robot
+        self.scheme = scheme
+        accelerates = scheme.level == "acceleration"
+        tasks: list[Task] = [*scheme.tasks, *couplings(robot)]
+        for limit in scheme.limits:
+            own = type(limit).inequalities is not Limit.inequalities
+            if own and limit.row_count(robot) < 1:
+                raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
+        self.target_frames = _tracked(robot, tasks)
+        self.damping: Vector = np.zeros(0)
+        if accelerates:
+            check_parts(scheme.costs, tasks)
+            by_name = [(task.frame_name(robot), task) for task in tasks]
+            self.damping = damping_of(self.target_frames, by_name)
+            tasks = with_squared_gains(tasks)
+        hard = [task for task in tasks if task.weight is None]
+        soft = [task for task in tasks if task.weight is not None]
+        rows_of_tasks = _stacked(robot, hard)
+        rows_of_limits = _stacked(robot, merged(scheme.limits))
+        self.blocks = (
+            *(Block(cost, 0, 0) for cost in scheme.costs),
+            *rows_of_tasks,
+            *(Block(task, 0, task.row_count(robot)) for task in soft),
+            *rows_of_limits,
+        )
+        m = sum(block.rows for block in rows_of_limits)
+        p = sum(block.rows for block in rows_of_tasks)
+        self.sizes = (robot.dof + scheme.slack, m, p)
+        further = [name for block in self.blocks for name in block.part.extra_frames(robot)]
+        own_frames = [block.part.frame_name(robot) for block in self.compiled_blocks]
+        frames = dict.fromkeys([robot.tip, *self.target_frames, *own_frames, *further])
+        self.kinematics = Kinematics(robot, frames, self.needs_inertia)
+        self._unseen = True  # the answers of parts written in numpy
+        self._encode()
+
+    def _encode(self) -> None:
+        """Write the table and the constants."""
+        robot = self.robot
+        n, m, p = self.sizes
+        moves = self.kinematics.moves
+        dynamics = int(self.needs_inertia)
+        inertia: Vector = np.zeros(robot.dof * robot.dof * dynamics)
+        arrays: list[Vector] = [moves.ravel(), inertia]
+        stop = moves.size + inertia.size
+        entries = []
+        for block in self.compiled_blocks:
+            part = block.part
+            own = part.constants(robot)
+            start = stop
+            stop += own.size
+            arrays.append(own)
+            name = part.frame_name(robot)
+            target = self.target_frames.index(name) if name in self.target_frames else 0
+            kind, signature = _kind(part)
+            address = signature.address(part.kernel)
+            entry = _Entry(kind, address, block.first, block.rows, start, stop, target)
+            entries.append(entry)
+            if isinstance(part, Task) and part.weight is not None:
+                arrays.append(np.array([part.weight]))  # follows the task's own constants
+                stop += 1
+        tip = robot.frame_id(self.target_frames[0])
+        first = _Head(n, m, p, robot.dof, len(moves), dynamics, len(entries), tip)
+        self.table: Table = np.array([first, *entries], dtype=np.int64)
+        self.constants: Vector = np.concatenate(arrays)
+
+    @cached_property
+    def compiled_blocks(self) -> tuple[Block, ...]:
+        """Blocks of the parts with a kernel."""
+        return tuple(block for block in self.blocks if block.part.is_compiled)
+
+    @cached_property
+    def numpy_blocks(self) -> tuple[Block, ...]:
+        """Blocks of the parts that are written in numpy."""
+        return tuple(block for block in self.blocks if not block.part.is_compiled)
+
+    @cached_property
+    def moving(self) -> list[tuple[Limit, Vector]]:
+        """Limits with constants that change along a run, each with its constants."""
+        entries = self.table[1:].tolist()
+        return [
+            (block.part, self.constants[entry[4] : entry[5]])
+            for block, entry in zip(self.compiled_blocks, entries, strict=False)
+            if isinstance(block.part, Limit) and block.part.moves
+        ]
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether compiled code alone writes the programs."""
+        return not (self.numpy_blocks or self.accelerates or self.priorities.any())
+
+    @property
+    def accelerates(self) -> bool:
+        """Whether the programs are of the acceleration level."""
+        return self.damping.size > 0
+
+    @property
+    def needs_inertia(self) -> bool:
+        """Whether a cost takes the inertia matrix."""
+        energies = (block.part for block in self.blocks if isinstance(block.part, KineticEnergy))
+        return any(energy.kinetic == "inertia" for energy in energies)
+
+    @cached_property
+    def rate_limits(self) -> MotionLimits | None:
+        """The acceleration and jerk limits, if there are any."""
+        last = self.blocks[-1].part if self.blocks else None
+        return last if isinstance(last, MotionLimits) else None
+
+    @property
+    def tasks(self) -> list[Task]:
+        """Hard tasks, in the order of the equality rows."""
+        parts = [block.part for block in self.blocks]
+        return [part for part in parts if isinstance(part, Task) and part.weight is None]
+
+    @property
+    def row_weights(self) -> Vector:
+        """Weight of each equality row where a policy lets the tasks yield, (p,)."""
+        counts = [task.row_count(self.robot) for task in self.tasks]
+        return np.repeat([task.row_weight for task in self.tasks], counts)
+
+    @property
+    def priorities(self) -> NDArray[np.int64]:
+        """Level of each equality row, (p,); 0 for one that has to hold."""
+        counts = [task.row_count(self.robot) for task in self.tasks]
+        levels = np.array([task.priority or 0 for task in self.tasks], dtype=np.int64)
+        return np.repeat(levels, counts)
+
+    @cached_property
+    def ahead(self) -> frozenset[str]:
+        """Names of the frames whose tasks track the next target."""
+        ahead = [task for task in self.scheme.tasks if task.tracks and task.tracking == "next"]
+        return frozenset(task.frame_name(self.robot) for task in ahead)
+
+    @property
+    def needs_period(self) -> bool:
+        """Whether a program needs a control period."""
+        return self.accelerates or any(task.tracking == "next" for task in self.scheme.tasks)
+
+    @property
+    def placement(self) -> Vector:
+        """Placement of the first tracked frame, (12,), a view."""
+        place: Vector = self.kinematics.placements[self.table[0, 7]]
+        return place
+
+    @property
+    def data_size(self) -> int:
+        """Length of the programs' `QP.data`."""
+        n, m, p = self.sizes
+        return (n + m + p) * (n + 1) + 2 * n
+
+    def extend(self, entries: list[list[int]], constants: Vector) -> None:
+        """Add rows and constants that other compiled code of a control step reads.
+
+        Args:
+            entries: Rows of the table; column 4 and 5 count from the first of the constants.
+            constants: Their constants, (k,).
+        """
+        rows = np.zeros((len(entries), self.table.shape[1]), dtype=np.int64)
+        for row, entry in zip(rows, entries, strict=True):
+            row[: len(entry)] = entry
+            row[4:6] += self.constants.size
+        self.table = np.vstack([self.table, rows])
+        self.constants = np.concatenate([self.constants, constants])
+
+    def update(self, q: Vector) -> None:
+        """Bring the kinematics to joint positions q (n,) [rad]."""
+        self.kinematics.update(q)
+        if self.table[0, 5]:
+            moves = self.kinematics.moves.size
+            inertia = self.kinematics.inertia
+            self.constants[moves : moves + inertia.size] = inertia.ravel()
+
+    def move(self, t: float) -> None:
+        """Bring the constants that change along a run to a time [s]."""
+        for part, constants in self.moving:
+            part.move(self.robot, constants, t)
+
+    def write(
+        self,
+        data: Vector,
+        targets: Matrix,
+        past: Matrix,
+        dt: float,
+        t: float = 0.0,
+        wanted: Vector | None = None,
+    ) -> None:
+        """Write the whole program of one step; the kinematics are those of `update`.
+
+        Args:
+            data: The program, `QP.data`, (size,), overwritten.
+            targets: Targets of the tracked frames, (k, 18).
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+            dt: Control period [s]; inf outside of a loop.
+            t: Time [s].
+            wanted: Accelerations of the targets at the acceleration level, (6 k,); None: zero.
+
+        Raises:
+            InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
+        """
+        kinematics = self.kinematics
+        rate = 1.0 / dt if dt < np.inf else np.inf
+        of_kernels = (targets, past)
+        if self.accelerates:
+            of_kernels = self._lifted(targets, past, dt, wanted)
+        write_program(
+            data,
+            self.table,
+            self.constants,
+            of_kernels[1],
+            kinematics.jacobian,
+            kinematics.placements,
+            of_kernels[0],
+            (float(t), float(rate)),
+        )
+        qp = QP.from_data(data, self.sizes)
+        if self.numpy_blocks:
+            by_name = dict(zip(self.target_frames, targets, strict=True))
+            step = Step.from_kinematics(kinematics, by_name, t, dt, past[0], past[1])
+            fill(self.numpy_blocks, qp, step, self.rate_limits is not None, self._unseen)
+            self._unseen = False
+        if self.accelerates:
+            lower_limits(qp, past[1], dt)
+
+    def _lifted(
+        self, targets: Matrix, past: Matrix, dt: float, wanted: Vector | None
+    ) -> tuple[Matrix, Matrix]:
+        """Return targets and positions with which the kernels write the acceleration level."""
+        acceleration = np.zeros_like(self.damping) if wanted is None else wanted
+        lifted = lift_targets(
+            self.kinematics, self.target_frames, self.damping, targets, acceleration, past
+        )
+        middle = past[0] + 0.5 * dt * past[1]
+        return lifted, np.vstack([middle, past[1:]])
+
+    def row_names(self) -> list[dict[str, object]]:
+        """Return for each inequality row its part, its number in it from 1, and its name if any."""
+        found: list[dict[str, object]] = []
+        for block in self.blocks:
+            if isinstance(block.part, Limit):
+                names = block.part.row_names(self.robot)
+                for i in range(block.rows):
+                    about = {"about": names[i]} if names else {}
+                    found.append({"part": type(block.part).__name__, "row": i + 1} | about)
+        return found
+
+    def settings(self) -> dict[str, object]:
+        """Return the inequality rows and the names of unusual parts, for a run's settings.
+
+        ``bounding`` names the limits with bounds, unless `JointLimits` alone; ``own_tasks`` the
+        tasks that are not the package's.
+        """
+        scheme = self.scheme
+        bounding = [
+            type(limit).__name__
+            for limit in scheme.limits
+            if type(limit).bounds is not Limit.bounds
+            or (limit.is_compiled and not limit.row_count(self.robot))
+        ]
+        kinds = [type(task) for task in scheme.tasks]
+        own = [kind.__name__ for kind in kinds if not kind.__module__.startswith("iiwa_dnn.")]
+        found: dict[str, object] = {"rows": self.row_names()}
+        if bounding != ["JointLimits"]:
+            found["bounding"] = bounding
+        if own:
+            found["own_tasks"] = own
+        return found
+
+
+def _tracked(robot: Robot, tasks: list[Task]) -> tuple[str, ...]:
+    """Return the names of the tracked frames, the tip first; the tip's if there are none.
+
+    Raises:
+        InvalidInputError: Tasks of one frame track its targets in different ways.
+    """
+    pairs = {(task.frame_name(robot), task.tracking) for task in tasks if task.tracks}
+    names = dict.fromkeys(task.frame_name(robot) for task in tasks if task.tracks)
+    if len(pairs) > len(names):
+        problem = f"must be the same of all tasks of a frame: {sorted(pairs)}"
+        raise InvalidInputError("tracking", problem)
+    return tuple(sorted(names, key=lambda name: name != robot.tip)) or (robot.tip,)
+
+
+def _stacked(robot: Robot, parts: list[Task] | list[Limit]) -> list[Block]:
+    """Return the blocks of parts whose rows stand one after the other."""
+    blocks = []
+    first = 0
+    for part in parts:
+        rows = part.row_count(robot)
+        blocks.append(Block(part, first, rows))
+        first += rows
+    return blocks
+
+
+def _kind(part: Part) -> tuple[int, Signature]:
+    """Return the kind of a part in the table, and the signature of its kernel."""
+    if isinstance(part, Cost):
+        return _COST, COST
+    if isinstance(part, Task):
+        return (_TASK if part.weight is None else _SOFT), TASK
+    return _LIMIT, LIMIT
+
+
+_enter_cost = COST.enter
+_enter_task = TASK.enter
+_enter_limit = LIMIT.enter
+
+
+@compiled
+def step_views(
+    table: Table,
+    constants: Vector,
+    past: Matrix,
+    jacobian: Matrix,
+    placements: Matrix,
+    targets: Matrix,
+    clock: tuple[float, float],
+) -> StepViews:
+    """Make the views of one instant; arguments as `write_program`."""
+    dof = table[0, 3]
+    frames = table[0, 4]
+    at_inertia = frames * dof
+    inertia_dof = table[0, 5] * dof
+    at_parts = at_inertia + inertia_dof * inertia_dof
+    return StepViews(
+        clock[0],
+        clock[1],
+        past[0],
+        past[1],
+        past[2],
+        jacobian,
+        placements,
+        constants[:at_inertia].reshape(frames, dof),
+        constants[at_inertia:at_parts].reshape(inertia_dof, inertia_dof),
+        targets,
+    )
+
+
+@compiled
+def write_program(
+    data: Vector,
+    table: Table,
+    constants: Vector,
+    past: Matrix,
+    jacobian: Matrix,
+    placements: Matrix,
+    targets: Matrix,
+    clock: tuple[float, float],
+) -> None:
+    """Write the rows of all parts with a kernel.
+
+    Args:
+        data: The program, `QP.data`, (size,), overwritten.
+        table: `StepProgram.table`.
+        constants: `StepProgram.constants`, (k,).
+        past: Joint positions [rad], last command and the one before [rad/s], (3 or more, dof).
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        targets: Targets of the tracked frames, (k, 18).
+        clock: Time [s] and inverse of the control period [1/s].
+    """
+    step = step_views(table, constants, past, jacobian, placements, targets, clock)
+    assemble(step, table, constants, qp_views(data, table[0, 0], table[0, 1], table[0, 2]))
+
+
+@compiled
+def assemble(step: StepViews, table: Table, constants: Vector, qp: QPViews) -> None:
+    """Write the rows of all parts with a kernel into a program; arguments as `write_program`."""
+    _clear(qp)
+    for k in range(1, 1 + table[0, 6]):
+        kind = table[k, 0]
+        address = table[k, 1]
+        first = table[k, 2]
+        rows = table[k, 3]
+        own = constants[table[k, 4] : table[k, 5]]
+        target = step.targets[table[k, 6]]
+        if kind == _COST:
+            _enter_cost(address, step, own, qp.P, qp.q)
+        elif kind == _TASK:
+            A = qp.A[first : first + rows]
+            _enter_task(address, step, own, target, A, qp.b[first : first + rows])
+        elif kind == _SOFT:
+            A = np.zeros((rows, qp.q.size))
+            b = np.zeros(rows)
+            _enter_task(address, step, own, target, A, b)
+            _add_soft(qp, A, b, constants[table[k, 5]])
+        else:
+            G = qp.G[first : first + rows]
+            _enter_limit(address, step, own, G, qp.h[first : first + rows], qp.lb, qp.ub)
+
+
+@compiled
+def _clear(qp: QPViews) -> None:
+    """Set all rows and costs to zero, and all bounds to infinity."""
+    n = qp.q.size
+    for i in range(n):
+        qp.q[i] = 0.0
+        qp.lb[i] = -np.inf
+        qp.ub[i] = np.inf
+        for k in range(n):
+            qp.P[i, k] = 0.0
+    for j in range(qp.h.size):
+        qp.h[j] = 0.0
+        for k in range(n):
+            qp.G[j, k] = 0.0
+    for j in range(qp.b.size):
+        qp.b[j] = 0.0
+        for k in range(n):
+            qp.A[j, k] = 0.0
+
+
+@compiled
+def _add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
+    """Add weight A^T A to P and -weight A^T b to q, for rows A (rows, n) and b (rows,)."""
+    for k in range(b.size):
+        for i in range(qp.q.size):
+            scaled = weight * A[k, i]
+            qp.q[i] -= scaled * b[k]
+            for j in range(qp.q.size):
+                qp.P[i, j] += scaled * A[k, j]

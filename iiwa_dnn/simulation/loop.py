@@ -1,0 +1,264 @@
+"""The control loop: read, decide, alter, move. Whoever wants to know observes its outcomes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.feedback import IntegralFeedback
+from iiwa_dnn.control.policies import Action, Resolution
+from iiwa_dnn.errors import NoSolutionError
+from iiwa_dnn.qp import Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.simulation.chain import SignalChain
+from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated
+from iiwa_dnn.simulation.plants.base import Plant
+
+Levels = list[tuple[Vector, Vector]]
+"""Program with its answer, and missing task velocity, of each level of priority."""
+
+
+class Outcome(NamedTuple):
+    """One step of the loop.
+
+    Attributes:
+        commands: The controller's commands, one for each stage of the motion.
+        velocity: Velocity that the controller answered, the mean of the stages [rad/s], (n,).
+        dq: Velocity that moved the robot [rad/s], (n,).
+        q: True joint positions after the step [rad], (n,).
+        resolution: Decision of a policy that the step followed; else None.
+        action: Action in place of the network's answer.
+        acceleration: Joint accelerations [rad/s^2], (n,), at the acceleration level; else None.
+        clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
+        torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
+        levels: Levels of priority at each stage.
+        ends: Whether the run ends before this step: a policy stopped it, or the plant diverged.
+    """
+
+    commands: Sequence[Command]
+    velocity: Vector
+    dq: Vector
+    q: Vector
+    resolution: Resolution | None = None
+    action: Action = Action.NONE
+    acceleration: Vector | None = None
+    clipped: NDArray[np.int8] | None = None
+    torque: Vector | None = None
+    levels: Sequence[Levels] = ()
+    ends: bool = False
+
+
+Observer = Callable[[int, Outcome], object]
+
+
+class Loop:
+    """A controller and the plant that it moves, one control period after the other.
+
+    Step k: the joints are read, the controller answers at that reading and time k dt (and at the
+    stages between), noise and filter act on the velocity, and the plant follows the result for dt.
+    An altered command is clipped to the limits at the true joint positions, as by a drive that
+    watches its own limits. At a step without a solution a policy decides; it is an Euler step,
+    whatever the motion.
+
+    Attributes:
+        controller: The controller.
+        plant: The plant, started.
+        q: True joint positions [rad], (n,).
+    """
+
+    def __init__(
+        self,
+        controller: Controller,
+        plant: Plant,
+        motion: Motion = "euler",
+        chain: SignalChain | None = None,
+        integral: IntegralFeedback | None = None,
+    ) -> None:
+        """Bring the parts together; the plant begins where it is.
+
+        Args:
+            controller: The controller.
+            plant: The plant, started.
+            motion: Method that integrates the motion of a plant that moves as it is told.
+            chain: Noise and filters between controller and plant; None: none.
+            integral: Feedback of the error's integral; None: none.
+        """
+        self.controller = controller
+        self.plant = plant
+        self.q = plant.q
+        self._motion = MOTIONS[motion]
+        self._chain = chain
+        self._integral = integral
+        self._yielded = False  # the last step was a policy's
+        self._levels: list[Levels] = []
+        self._has_levels = bool(controller.levels)
+        accelerates = controller.program.accelerates
+        self._alters = chain is not None and chain.alters and not accelerates
+        self._plain = motion == "euler" and not (self._alters or accelerates)
+        self._misled = not plant.exact or (chain is not None and chain.misleads)
+
+    def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
+        """Take steps until one of them ends the run; return how many were taken."""
+        for k in range(first, first + steps):
+            outcome = self.step(k)
+            for observe in observers:
+                observe(k, outcome)
+            if outcome.ends:
+                return k - first + 1
+        return steps
+
+    def step(self, k: int) -> Outcome:
+        """Take step k.
+
+        Raises:
+            NoSolutionError: The step has no solution and the policy is ``raise``.
+        """
+        controller = self.controller
+        plant = self.plant
+        t = k * controller.dt
+        seen = self.q
+        if self._misled:
+            reading = plant.read()
+            seen = reading if self._chain is None else self._chain.see(k, reading)
+        try:
+            if not self._plain:
+                return self._general_step(k, t, seen)
+            target = None if self._integral is None else self._corrected(seen, t)
+            command = controller.step(seen, t, target)
+        except NoSolutionError as error:
+            raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
+        dq = command.dq
+        if self._has_levels:
+            self._note_levels()
+        if self._misled:
+            self._show_true_pose(command)
+        resolution = command.resolution
+        self._yielded = resolution is not None
+        if resolution is not None or not plant.exact:
+            return self._moved((command,), dq, dq, resolution)
+        plant.move(dq)
+        self.q = plant.q
+        levels = self._taken_levels() if self._has_levels else ()
+        return Outcome((command,), dq, dq, self.q, levels=levels)
+
+    def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
+        """Take a step of several stages, of the acceleration level, or with an altered command."""
+        controller = self.controller
+        dt = controller.dt
+        commands: list[Command] = []
+
+        def ask(q: Vector, time: float) -> Vector:
+            target = None
+            if self._integral is not None:
+                target = self._corrected(q, time, observe=not commands)
+            command = controller.compute(q, time, target)
+            commands.append(command)
+            if self._has_levels:
+                self._note_levels()
+            return command.dq
+
+        before = controller.last.copy()
+        accelerates = controller.program.accelerates
+        if accelerates:
+            velocity, mean = accelerated(self._motion, ask, controller.last, seen, t, dt)
+            controller.last[:] = before
+        else:
+            velocity = self._motion.step(ask, seen, t, dt)
+            mean = velocity
+        if self._misled:
+            self._show_true_pose(commands[0])
+        resolutions = [command.resolution for command in commands]
+        self._yielded = any(each is not None for each in resolutions)
+        resolution = resolutions[0]
+        if self._yielded:
+            # If only a later stage has no solution, the answer at its start will do.
+            commands = [commands[0]] * len(commands)
+            velocity = commands[0].dq
+            mean = 0.5 * (before + velocity) if accelerates else velocity
+        command = velocity
+        clipped = None
+        if self._alters and self._chain is not None:
+            qp = commands[0].qp
+            if self._misled:
+                qp = controller.program_at(self.q, commands[0].targets, t)
+            command, clipped = self._chain.act(k, velocity, qp, controller.solver)
+        controller.send(command, resolution)
+        acceleration = (velocity - before) / dt if accelerates else None
+        if accelerates and self.plant.exact:
+            command = mean
+        outcome = self._moved(commands, velocity, command, resolution)
+        return outcome._replace(acceleration=acceleration, clipped=clipped)
+
+    def _moved(
+        self,
+        commands: Sequence[Command],
+        velocity: Vector,
+        dq: Vector,
+        resolution: Resolution | None,
+    ) -> Outcome:
+        """Let the plant follow a command, unless a policy has stopped the run."""
+        action = Action.NONE
+        if self._yielded:
+            action = Action.EULER if resolution is None else resolution.action
+        levels = self._taken_levels()
+        torque = None
+        ends = False
+        before = self.q
+        if resolution is not None and action is Action.STOP:
+            self.controller.halt(resolution)
+            ends = not commands[0].dq.any()
+        if not ends:
+            self.plant.move(dq)
+            ends = self.plant.diverged
+            torque = self.plant.torque
+            self.q = self.plant.q
+            # Of an arm with mass the mean velocity of the period.
+            dq = dq if self.plant.exact else (self.q - before) / self.controller.dt
+        if ends:
+            dq = np.zeros_like(dq)
+            self.q = before
+        return Outcome(
+            commands,
+            velocity,
+            dq,
+            self.q,
+            resolution,
+            action,
+            torque=torque,
+            levels=levels,
+            ends=ends,
+        )
+
+    def _corrected(self, q: Vector, t: float, observe: bool = True) -> dict[str, Target]:
+        """Return the target of a time with the integral of the errors fed back."""
+        assert self._integral is not None
+        controller = self.controller
+        target = Target.from_data(controller.targets(t - controller.delay)[0])
+        # Not while the arm cannot follow: the integral would wind up.
+        if observe and not self._yielded:
+            self._integral.observe(Configuration(controller.robot, q), target, controller.dt)
+        return {controller.program.target_frames[0]: self._integral.apply(target)}
+
+    def _show_true_pose(self, command: Command) -> None:
+        """Put the frame's true placement into the row of a command that was misled."""
+        command.placement[:] = self.controller.placement(self.q)
+
+    def _note_levels(self) -> None:
+        """Note programs and answers of the levels of priority."""
+        levels = self.controller.levels
+        if levels:
+            self._levels.append(
+                [(np.concatenate([level.data, level.x]), np.abs(level.missing)) for level in levels]
+            )
+
+    def _taken_levels(self) -> Sequence[Levels]:
+        """Return the levels noted since the last step."""
+        levels = self._levels
+        self._levels = []
+        return levels

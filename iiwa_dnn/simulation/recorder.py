@@ -1,0 +1,219 @@
+"""The recorder of a run: collects the outcomes of a loop and makes the arrays of a record."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.policies import Action
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.results.failures import describe
+from iiwa_dnn.results.metrics import bound_kinds
+from iiwa_dnn.results.record import COLUMNS, OPTIONAL, cut
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.simulation.loop import Outcome
+
+PATIENCE = 100
+"""Consecutive fallbacks to the reference solver after which a run warns."""
+
+_OF_THE_CHECK = {"solution_gap", "objective_gap", "reference_residual", "t"}
+
+
+class Recorder:
+    """Arrays of a record, made from the outcomes of a loop.
+
+    Attributes:
+        arrays: Columns by name; an optional one once there is something to put in.
+        layout: Columns of the commands' rows.
+    """
+
+    def __init__(
+        self, steps: int, controller: Controller, q0: Vector, settings: Mapping[str, Any]
+    ) -> None:
+        """Allocate for so many steps.
+
+        Args:
+            steps: Steps of the whole run.
+            controller: The controller.
+            q0: Joint positions at the start [rad], (n,).
+            settings: Settings of the run, with its inequality rows.
+        """
+        program = controller.program
+        self.layout: RowLayout = controller.layout
+        self._controller = controller
+        self._settings = settings
+        self._steps = steps
+        further = program.target_frames[1:]
+        self._frame_ids = [program.robot.frame_id(name) for name in further]
+        self._kinematics = Kinematics(program.robot, program.target_frames)
+        self._outcomes: list[Outcome] = []
+        self._done = 0
+        self._series = 0
+        self.arrays: dict[str, NDArray[Any]] = {}
+        for name in COLUMNS.keys() - OPTIONAL - _OF_THE_CHECK:
+            self._array(name)
+        self.arrays["q"][0] = q0
+
+    def observe(self, k: int, outcome: Outcome) -> None:
+        """Take in the outcome of step k."""
+        self._outcomes.append(outcome)
+        if outcome.action is not Action.NONE or self._series:
+            self._count_fallbacks(k, outcome.action)
+
+    def flush(self) -> Matrix:
+        """Put the collected outcomes into the arrays.
+
+        Returns:
+            Rows of their commands, stage by stage, (k, width).
+        """
+        outcomes = self._outcomes
+        self._outcomes = []
+        count = len(outcomes)
+        rows = np.array([command.row for each in outcomes for command in each.commands])
+        if not count:
+            return rows.reshape(0, self.layout.width)
+        steps = slice(self._done, self._done + count)
+        arrays = self.arrays
+        arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
+        arrays["dq"][steps] = [each.dq for each in outcomes]
+        arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
+        stages = len(rows) // count
+        figures = self.layout.view(rows, "figures").reshape(count, stages, -1)
+        arrays["iterations"][steps] = figures[..., 0].sum(axis=1)
+        arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
+        first = rows[::stages]  # pose, target and multipliers are the first stage's
+        self._add_samples(
+            self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
+        )
+        for name, values in (
+            ("bound_multiplier", self.layout.bound_multipliers(first)),
+            ("row_multiplier", self.layout.row_multipliers(first)),
+        ):
+            if values.any():
+                self._array(name, m=values.shape[1])[steps] = values
+        for k, outcome in enumerate(outcomes, steps.start):
+            self._add_incident(k, outcome)
+        self._add_kinetic_index(steps, outcomes[-1].ends)
+        self._done += count
+        return rows
+
+    def finish(self, targets: Matrix) -> dict[str, NDArray[Any]]:
+        """Return the columns, cut to the steps that were taken.
+
+        Args:
+            targets: Targets at the end, (k, 18).
+        """
+        q = self.arrays["q"][self._done]
+        placement = self._controller.placement(q)
+        self._add_samples(self._done, placement[np.newaxis], targets.reshape(1, -1))
+        return cut(self.arrays, self._done)
+
+    def stop_reason(self, k: int) -> str:
+        """Describe the limits that stood in the way at step k, at which a policy stopped."""
+        kinds = bound_kinds(self._settings)
+        against = [
+            describe(
+                {
+                    "joint": i + 1,
+                    "side": "upper" if code > 0 else "lower",
+                    "limit": kinds[abs(code) - 1],
+                }
+            )
+            for i, code in enumerate(self.arrays["blocking"][k].tolist())
+            if code
+        ]
+        if "blocking_rows" in self.arrays:
+            rows = np.flatnonzero(self.arrays["blocking_rows"][k])
+            against += [describe(self._settings["rows"][i]) for i in rows]
+        return f", against {', '.join(against)}" if against else ""
+
+    def _array(self, name: str, **sizes: int) -> NDArray[Any]:
+        """Return a column, allocated when it is first asked for."""
+        if name not in self.arrays:
+            n = self._controller.robot.dof
+            known = {"n": n, "f": len(self._frame_ids)} | sizes
+            self.arrays[name] = COLUMNS[name].allocate(self._steps, **known)
+        return self.arrays[name]
+
+    def _count_fallbacks(self, k: int, action: Action) -> None:
+        """Warn of a long series of fallbacks."""
+        self._series = self._series + 1 if action is Action.FALLBACK else 0
+        if self._series == PATIENCE:
+            warnings.warn(
+                f"step {k}: the network did not settle in {PATIENCE} steps in a row, and the "
+                "reference solver answered in its place",
+                stacklevel=2,
+            )
+
+    def _add_incident(self, k: int, outcome: Outcome) -> None:
+        """Note what did not go as planned in step k."""
+        if outcome.acceleration is not None:
+            self._array("ddq")[k] = outcome.acceleration
+        if outcome.torque is not None:
+            self._array("torque")[k] = outcome.torque
+        if outcome.clipped is not None and outcome.clipped.any():
+            self._array("clipped")[k] = outcome.clipped
+        for stage, levels in enumerate(outcome.levels):
+            residual = self._array("level_residual", l=len(levels))[k]
+            worst = np.array([missing.max() for _, missing in levels])
+            residual[:] = worst if stage == 0 else np.maximum(residual, worst)
+        if outcome.action is not Action.NONE:
+            self._array("action")[k] = outcome.action
+        resolution = outcome.resolution
+        if resolution is None:
+            return
+        self._array("fraction")[k] = resolution.fraction
+        robot = self._controller.robot
+        n = robot.dof
+        qp = resolution.qp
+        sides = resolution.sides[:n]
+        bound = np.where(sides > 0, qp.ub[:n], qp.lb[:n])
+        # Bounds that cross are others' than the robot's.
+        at_velocity = (np.abs(bound) >= robot.dq_max) & (qp.lb <= qp.ub)[:n]
+        self._array("blocking")[k] = sides * (1 + at_velocity)
+        if resolution.rows.any():
+            self._array("blocking_rows", m=resolution.rows.size)[k] = resolution.rows
+
+    def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
+        """Compute the kinetic index; a scheme of one's own may have its own, or none."""
+        scheme = self._controller.scheme
+        robot = self._controller.robot
+        index = getattr(type(scheme), "kinetic_index", None)
+        column = self.arrays["kinetic_index"]
+        if index is None or (index is Scheme.kinetic_index and scheme.kinetic == "identity"):
+            column[steps] = np.square(self.arrays["dq"][steps]).sum(axis=1)
+            return
+        for k in range(steps.start, steps.stop - ended):
+            conf = Configuration(robot, self.arrays["q"][k])
+            column[k] = scheme.kinetic_index(conf, self.arrays["dq"][k])
+
+    def _add_samples(self, first: int, placements: Matrix, targets: Matrix) -> None:
+        """Take in samples from number `first` on: placements (k, 12) and targets (k, 18 frames)."""
+        samples = slice(first, first + len(placements))
+        arrays = self.arrays
+        arrays["position"][samples] = placements[:, 9:]
+        # A placement holds the rotation column by column, a target row by row.
+        arrays["rotation"][samples] = placements[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)
+        arrays["position_desired"][samples] = targets[:, :3]
+        arrays["rotation_desired"][samples] = targets[:, 3:12].reshape(-1, 3, 3)
+        if not self._frame_ids:
+            return
+        desired = targets.reshape(len(targets), -1, 18)[:, 1:]
+        turned = desired[..., 3:12].reshape(len(targets), -1, 3, 3)
+        self._array("frame_position_desired")[samples] = desired[..., :3]
+        self._array("frame_rotation_desired")[samples] = turned
+        positions = self._array("frame_position")
+        rotations = self._array("frame_rotation")
+        for k in range(samples.start, samples.stop):
+            self._kinematics.update(arrays["q"][k])
+            further = self._kinematics.placements[self._frame_ids]
+            positions[k] = further[:, 9:]
+            rotations[k] = further[:, :9].reshape(-1, 3, 3).swapaxes(1, 2)

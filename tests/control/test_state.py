@@ -1,0 +1,233 @@
+"""The controller's state: nothing that is set, interrupted, copied or pickled makes it forget."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+import signal
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import heart, paper_robot, paper_start
+from iiwa_dnn import (
+    AccelerationLimits,
+    Controller,
+    DNNSolver,
+    DoubleIndicator,
+    Heart,
+    InvalidInputError,
+    JerkLimits,
+    MovingTarget,
+    Reference,
+    Target,
+    simulate,
+)
+from iiwa_dnn.qp.crosscheck import CrossCheck
+
+DT = 1e-3
+ACCELERATION = 5.0
+LIMITED = DoubleIndicator(extra_limits=(AccelerationLimits(ACCELERATION),), home=PAPER_Q0)
+
+
+def fast_heart() -> Reference:
+    return Heart(period=2.0).anchored(paper_start())
+
+
+def moving() -> tuple[Controller, np.ndarray, int]:
+    """A controller in motion, the joint positions and the number of the next step."""
+    controller = Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
+    q = np.array(PAPER_Q0)
+    for k in range(400):
+        q = q + DT * controller.step(q, k * DT).dq
+    return controller, q, 400
+
+
+CHANGES: dict[str, Any] = {
+    "policy": lambda controller: setattr(controller, "policy", "relax"),
+    "reference": lambda controller: setattr(controller, "reference", heart()),
+    "scheme": lambda controller: setattr(
+        controller,
+        "scheme",
+        DoubleIndicator(weight=0.9, extra_limits=LIMITED.extra_limits, home=PAPER_Q0),
+    ),
+    "robot": lambda controller: setattr(controller, "robot", paper_robot().with_limits(velocity=1)),
+    "tol": lambda controller: setattr(controller.solver, "tol", 1e-10),
+    "solver": lambda controller: setattr(controller, "solver", DNNSolver()),
+    "dt": lambda controller: setattr(controller, "dt", 0.9 * DT),
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_an_attribute_that_is_set_in_motion_keeps_the_last_command(name: str) -> None:
+    controller, q, k = moving()
+    before = controller.step(q, k * DT).dq.copy()
+    q = q + DT * before
+    CHANGES[name](controller)
+    after = controller.step(q, (k + 1) * DT).dq
+    assert np.abs(before).max() > 0.02  # far more than one step of the limit
+    assert np.abs(after - before).max() <= ACCELERATION * DT * (1.0 + 1e-9)
+
+
+def test_a_command_that_was_never_returned_does_not_count(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    controller, q, k = moving()
+    last = controller.step(q, k * DT).dq.copy()
+    q = q + DT * last
+    monkeypatch.setattr(
+        "iiwa_dnn.control.state.ControllerState.commit", _commit_and_interrupt, raising=True
+    )
+    with pytest.raises(KeyboardInterrupt):
+        controller.step(q, (k + 1) * DT)
+    monkeypatch.undo()
+    again = controller.step(q, (k + 1) * DT).dq
+    assert np.abs(again - last).max() <= ACCELERATION * DT * (1.0 + 1e-9)
+
+
+def _commit_and_interrupt(state: Any) -> None:
+    if not _commit_and_interrupt.__dict__.pop("done", False):
+        state.past, state.following = state.following, state.past
+        _commit_and_interrupt.__dict__["done"] = True
+        raise KeyboardInterrupt
+    state.past, state.following = state.following, state.past
+
+
+def test_interrupts_at_any_time_keep_the_acceleration_limit() -> None:
+    controller, q, k = moving()
+    sent = controller.step(q, k * DT).dq.copy()
+    previous = signal.getsignal(signal.SIGALRM)
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGALRM, interrupt)
+    interrupted = 0
+    rng = np.random.default_rng(2)
+    try:
+        for i in range(1500):
+            t = (k + 1 + i) * DT
+            command = None
+            try:
+                signal.setitimer(signal.ITIMER_REAL, float(rng.uniform(1e-6, 6e-5)))
+                command = controller.step(q, t)
+                signal.setitimer(signal.ITIMER_REAL, 0.0)
+            except KeyboardInterrupt:
+                interrupted += 1
+            if command is not None:
+                assert np.abs(command.dq - sent).max() <= ACCELERATION * DT * (1.0 + 1e-9)
+                sent = command.dq.copy()
+                q = q + DT * sent
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, previous)
+    assert interrupted > 50
+
+
+def test_a_copy_goes_its_own_way() -> None:
+    controller, q, k = moving()
+    twin = copy.copy(controller)
+    expected = controller.step(q, k * DT).dq.copy()
+    far = Target(paper_start().position + [0.1, 0.0, 0.0], paper_start().rotation)
+    other = Controller(paper_robot(), LIMITED, fast_heart(), dt=DT)
+    for _ in range(5):
+        other.step(q, 0.0, far)
+        controller.step(q, k * DT, far)
+    np.testing.assert_allclose(twin.step(q, k * DT).dq, expected, rtol=0, atol=1e-9)
+
+
+def test_controllers_and_commands_go_through_pickle() -> None:
+    controller, q, k = moving()
+    twin = pickle.loads(pickle.dumps(controller))
+    command = controller.step(q, k * DT)
+    np.testing.assert_allclose(twin.step(q, k * DT).dq, command.dq, rtol=0, atol=1e-9)
+    kept = pickle.loads(pickle.dumps(command))
+    np.testing.assert_array_equal(kept.dq, command.dq)
+    np.testing.assert_array_equal(kept.qp.data, command.qp.data)
+    assert kept.solution.found
+    assert kept.ok
+
+
+def test_two_threads_keep_the_acceleration_limit_between_them() -> None:
+    controller, q, k = moving()
+    commands: list[np.ndarray] = []
+    failures: list[BaseException] = []
+    lock = threading.Lock()
+
+    def drive() -> None:
+        try:
+            for _ in range(300):
+                command = controller.step(q, k * DT)
+                with lock:
+                    commands.append(command.dq)
+        except BaseException as error:
+            failures.append(error)
+
+    threads = [threading.Thread(target=drive) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert failures == []
+    assert len(commands) == 600
+
+
+@pytest.mark.parametrize(
+    "q",
+    [
+        np.array(PAPER_Q0) + 0j,
+        np.ma.masked_array(PAPER_Q0, mask=[True, False, False, False, False, False, False]),
+        np.array(PAPER_Q0)[:6],
+        np.full(7, np.nan),
+        ["a"] * 7,
+    ],
+    ids=["complex", "masked", "short", "nan", "text"],
+)
+def test_joint_positions_that_are_none_are_refused(q: Any) -> None:
+    controller = Controller(paper_robot(), LIMITED, heart(), dt=DT)
+    controller.step(PAPER_Q0, 0.0)
+    with pytest.raises(InvalidInputError, match=r"^q\b"):
+        controller.step(q, DT)
+
+
+def teleoperated() -> MovingTarget:
+    target = MovingTarget(paper_start(), speed=0.25)
+    target.set(paper_start().position + [0.0, 0.9, 0.3])
+    return target
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        heart,
+        fast_heart,
+        lambda: Heart(scale=0.02, period=3.0).anchored(paper_start()),
+        teleoperated,
+    ],
+    ids=["heart", "fast", "too fast", "moving target"],
+)
+@pytest.mark.parametrize("limits", [(), (AccelerationLimits(5.0), JerkLimits(500.0))])
+def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(make: Any, limits: Any) -> None:
+    scheme = DoubleIndicator(extra_limits=limits)
+    record = simulate(
+        paper_robot(), scheme, make(), PAPER_Q0, dt=2e-3, duration=1.2, check=CrossCheck(())
+    )
+    controller = Controller(paper_robot(), scheme, make(), dt=2e-3)
+    q = np.array(PAPER_Q0)
+    for k in range(record.steps):
+        np.testing.assert_array_equal(q, record.q[k])
+        q = q + 2e-3 * controller.step(q, k * 2e-3).dq
+    np.testing.assert_array_equal(q, record.q[-1])
+
+
+def test_a_slowed_moving_target_does_not_jump() -> None:
+    record = simulate(
+        paper_robot(), DoubleIndicator(), teleoperated(), PAPER_Q0, dt=1e-3, duration=4.0,
+        check=CrossCheck(()),
+    )  # fmt: skip
+    assert record.fraction is not None
+    steps = np.linalg.norm(np.diff(record.position_desired, axis=0), axis=1)
+    assert steps.max() <= 0.25 * 1e-3 * (1.0 + 1e-9)
