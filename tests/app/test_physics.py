@@ -135,8 +135,7 @@ def test_bad_input_is_one_line_and_2(capsys, tmp_path, arguments, words):
 @needs_mujoco
 def test_without_opengl_one_line_names_the_package_before_the_run(capsys, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr(offscreen, "egl_works", lambda: False)
-    monkeypatch.setattr(offscreen, "osmesa_works", lambda: False)
+    monkeypatch.setattr(offscreen, "opens", lambda library: False)
     code, _, err = run(capsys, *QUICK, "--out", str(tmp_path / "run"))
     assert code == 2
     assert "apt-get install libosmesa6" in err
@@ -165,7 +164,7 @@ def test_without_the_extra_one_line_says_what_to_install(tmp_path, missing, argu
 
 
 def offscreen_is_missing() -> bool:
-    return not (offscreen.egl_works() or offscreen.osmesa_works())
+    return not any(map(offscreen.opens, ("egl", "osmesa")))
 
 
 @needs_mujoco
