@@ -35,7 +35,7 @@ def run(options: NoiseOptions) -> int:
         raise InvalidInputError("duration", problem)
     cells = noise_study.cells(seeds, duration)
     _, results = run_sweep(options, noise_study.measure, cells)
-    rows = noise_study.tabulate(seeds, duration, results)
+    rows = noise_study.tabulate(cells, results)
     write_json(options.out / "noise.json", rows)
     write_figures({"noise": partial(noise_study.noise_figure, rows)}, options.out)
     text = _report(rows, seeds, duration)

@@ -86,10 +86,8 @@ class Column:
 
 
 def _is_protected(array: NDArray[Any]) -> bool:
-    """Test that neither the array nor any that it is a view of can be written into."""
-    view: Any = array
-    while isinstance(view, np.ndarray):
-        if view.flags.writeable:
-            return False
-        view = view.base
-    return view is None
+    """Test that neither the array nor the one that it is a view of can be written into."""
+    # NumPy makes the owner of the memory the base of a view of a view.
+    owner: Any = array if array.base is None else array.base
+    whole = isinstance(owner, np.ndarray) and owner.base is None
+    return whole and not owner.flags.writeable and not array.flags.writeable

@@ -66,7 +66,7 @@ def describe(limit: Mapping[str, Any]) -> str:
 
 
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
-    """Say that a path is incomplete, as ``path completed 12.3 %``; no line for a completed one."""
+    """Report an incomplete path as ``path completed 12.3 %``; a completed one has no line."""
     fraction = metrics.get("path_completed", 1.0)  # older metrics lack it
     return [f"path completed {percent(fraction)}"] if fraction < 1.0 else []
 

@@ -42,7 +42,7 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
     """Compute the angle between two orientations (..., 3, 3) [rad], (...), in [0, π].
 
     With R_e = R_desiredᵀ R the angle is atan2(‖vee((R_e − R_eᵀ)/2)‖, (tr R_e − 1)/2). The usual
-    arccos of the second argument alone cannot tell angles below 1e-8 rad from zero.
+    arccos of the second argument alone is the same for all angles below 1e-8 rad.
     """
     relative = np.swapaxes(desired, -1, -2) @ rotation
     skew = 0.5 * (relative - np.swapaxes(relative, -1, -2))
@@ -268,7 +268,7 @@ def _first_disagreement(record: Record, disagrees: BoolArray) -> dict[str, Any] 
 
 
 def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
-    """Sum up torques, settled error and recovery, given the distance to the path [m], (N+1,)."""
+    """Sum up torques, settled error and recovery from the distance to the path [m], (N+1,)."""
     if record.torque is None:
         return {}
     largest = np.abs(record.torque).max(axis=0, initial=0.0)

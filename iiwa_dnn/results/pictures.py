@@ -22,7 +22,7 @@ from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, IntArray, Record
-from iiwa_dnn.results.scenery import SCENERY_GROUP, add_meshes, add_obstacles, add_scenery
+from iiwa_dnn.results.scenery import SCENERY_GROUP, add_meshes, add_obstacles, make_scenery
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
 from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
 from iiwa_dnn.robot.robot import Robot
@@ -195,11 +195,12 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         self._record = record
         self._view = view
         self._paths = _paths(record, view)
-        spec = build_spec(robot)
-        add_scenery(self._mj, spec, record)
-        self._obstacles = add_obstacles(self._mj, spec, record)
+        arm = build_spec(robot)
         if view == "arm":
-            add_meshes(self._mj, spec, robot)
+            add_meshes(self._mj, arm, robot)
+        spec = make_scenery(self._mj, record)
+        spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
+        self._obstacles = add_obstacles(self._mj, spec, record)
         self._model = spec.compile()
         self._data = self._mj.MjData(self._model)
         if view == "arm":

@@ -26,7 +26,8 @@ IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
 MODES = ("converged", "continuous")
-LIMITS, RATES = ("q_lower", "q_upper", "dq_max"), ("ddq_max", "dddq_max")
+LIMITS = ("q_lower", "q_upper", "dq_max")
+RATES = ("ddq_max", "dddq_max")
 
 # Errors of NumPy, zip and JSON on a missing or damaged file; InvalidInputError is a ValueError.
 _UNREADABLE = (
@@ -350,8 +351,8 @@ def _check_limits(
     """Check that each limit has a number or None for every joint."""
     for key in keys:
         values = settings[key]
-        numbers = [value for value in values if value is not None]
-        if len(values) != sizes["n"] or not np.isfinite(np.array(numbers)).all():
+        finite = [value for value in values if value is not None]
+        if len(values) != sizes["n"] or not np.isfinite(np.array(finite)).all():
             problem = f"must hold {sizes['n']} limits"
             raise InvalidInputError(f"settings[{key!r}]", problem, values)
 

@@ -14,6 +14,7 @@ from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
 
+Row = tuple[str, ...]
 Table = Sequence[tuple[str, str, str]]
 
 # Names of the settings in the report; one that is not here keeps its own.
@@ -63,6 +64,8 @@ _SUMMARY = {
 }
 _FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"
 _NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
+_SETTLED = "max {max_position_error_settled_m} m from {settled_after_s} s on"
+_PUSHED = "error max {max_position_error_m} m, back within {recovered_below_m} m {recovery}"
 _ACTED = {
     "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
     "active_rows": "{name} active for {time_s} s, multiplier up to {max_multiplier}",
@@ -101,6 +104,21 @@ _INCIDENTS: Table = (
     ("steps with a clipped command", "clipped_steps", ""),
     *((f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()),
     ("path time reached", "path_time_s", "s"),
+)
+_PHYSICS: Table = (
+    (
+        "largest position error from {settled_after_s:g} s on",
+        "max_position_error_settled_m",
+        "m",
+    ),
+)
+_PUSH: Table = (
+    ("largest position error since the push", "max_position_error_m", "m"),
+    (
+        "time from the push's end until back within {recovered_below_m:g} m",
+        "recovery_s",
+        "s",
+    ),
 )
 _HEAD = ("quantity", "value", "unit")
 
@@ -146,7 +164,7 @@ def write_report(
     Raises:
         FileError: If it cannot be written.
     """
-    settings, near = metrics["settings"], "collisions" in metrics
+    settings = metrics["settings"]
     results = _rows(metrics, _RESULTS) + _frames(metrics) + _physics(metrics.get("physics"))
     versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
     lag = "Continuous mode: the gap is the network's lag, reported and not judged."
@@ -159,7 +177,7 @@ def write_report(
         "## Cross-check",
         markdown_table(_HEAD, _rows(metrics["crosscheck"], _CROSSCHECK)),
         *_incidents(metrics.get("incidents")),
-        *(["Nearest pair: " + _fill(_NEAREST, metrics["collisions"]) + "."] if near else []),
+        *(f"Nearest pair: {pair}." for pair in _nearest_pair(metrics)),
         *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
@@ -178,10 +196,11 @@ def settings_lines(metrics: Mapping[str, Any]) -> str:
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
     """Sum up a run in about ten aligned lines of ASCII, for the terminal.
 
-    An incomplete path is its first line. The reasons of a failure are those that the metrics tell,
-    or more detailed ones: `failures` of the record itself.
+    An incomplete path is its first line. The reasons of a failure are those of the metrics, or
+    more detailed ones: `failures` of the record itself.
     """
-    settings, check = metrics["settings"], metrics["crosscheck"]
+    settings = metrics["settings"]
+    check = metrics["crosscheck"]
     reasons = failures(metrics) if reasons is None else reasons
     more = {
         "gap": "gap" if check["judged"] else "lag (not judged)",
@@ -194,8 +213,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     lines |= {name: _fill(_FRAME, errors) for name, errors in frames}
     lines |= _physics_lines(metrics.get("physics"))
     lines |= _incident_lines(metrics.get("incidents", {}))
-    if "collisions" in metrics:
-        lines["nearest pair"] = _fill(_NEAREST, metrics["collisions"])
+    for pair in _nearest_pair(metrics):
+        lines["nearest pair"] = pair
     lines["wall time"] = lines.pop("wall time")
     lines["verdict"] = "\n".join(reasons) or _success(metrics)
     width = max(map(len, lines)) + 2
@@ -207,15 +226,16 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
 
 def _success(metrics: Mapping[str, Any]) -> str:
     """State the verdict on a run without failures, no stronger than the check."""
-    check, steps = metrics["crosscheck"], f"{metrics['steps']:,}"
-    if check["solver"] == "none":
+    check = metrics["crosscheck"]
+    solver = check["solver"]
+    if check["judged"]:
+        steps = f"all {metrics['steps']:,} steps solved"
+        return f"{steps}, within all limits and in agreement with {solver}"
+    if solver == "none":
         return "completed within all limits; no reference solver was asked"
-    if not check["judged"]:
-        failed = check["reference_failures"]
-        doubt = f"; {failed:,} reference answers not to be believed" if failed else ""
-        lag = f"the gap to {check['solver']} is a lag, not judged"
-        return f"completed within all limits; {lag}{doubt}"
-    return f"all {steps} steps solved, within all limits and in agreement with {check['solver']}"
+    failed = check["reference_failures"]
+    doubt = f"; {failed:,} reference answers not to be believed" if failed else ""
+    return f"completed within all limits; the gap to {solver} is a lag, not judged{doubt}"
 
 
 def _fill(text: str, *values: Mapping[str, Any]) -> str:
@@ -223,19 +243,23 @@ def _fill(text: str, *values: Mapping[str, Any]) -> str:
     return text.format_map({key: _short(value) for part in values for key, value in part.items()})
 
 
+def _nearest_pair(metrics: Mapping[str, Any]) -> list[str]:
+    """Name the nearest pair of bodies of a run that avoids collisions."""
+    return [_fill(_NEAREST, metrics["collisions"])] if "collisions" in metrics else []
+
+
 def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
     """Lay out the summary's lines on torques and recovery."""
     if physics is None:
         return {}
-    settled = "max {max_position_error_settled_m} m from {settled_after_s} s on"
-    lines = {
-        "settled error": _fill(settled, physics),
-        "torque": f"max {physics['max_torque_share']:.0%} of a joint's limit",
-    }
-    if (push := physics["push"]) is not None:
-        back = "never" if push["recovery_s"] is None else "after {recovery_s} s"
-        text = f"error max {{max_position_error_m}} m, back within {{recovered_below_m}} m {back}"
-        lines["push"] = _fill(text, push)
+    torque = f"max {physics['max_torque_share']:.0%} of a joint's limit"
+    lines = {"settled error": _fill(_SETTLED, physics), "torque": torque}
+    push = physics["push"]
+    if push is not None:
+        recovery = (
+            "never" if push["recovery_s"] is None else f"after {_short(push['recovery_s'])} s"
+        )
+        lines["push"] = _fill(_PUSHED, push, {"recovery": recovery})
     return lines
 
 
@@ -263,40 +287,36 @@ def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
     return ["## Limits and policies", counts, *([bullets(lines)] if lines else [])]
 
 
-def _frames(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+def _frames(metrics: Mapping[str, Any]) -> list[Row]:
     """Lay out the report's rows on further frames and levels of priority."""
     rows = []
     for frame, errors in metrics.get("frames", {}).items():
-        table = [(f"{name}, {frame}", key, unit) for name, key, unit in _RESULTS if key in errors]
-        rows += _rows(errors, table)
+        rows += [(f"{name}, {frame}", *cells) for name, *cells in _rows(errors, _RESULTS)]
     levels = enumerate(metrics.get("level_residual", ()), 1)
     return rows + [(f"largest residual, priority {k}", _number(left), "") for k, left in levels]
 
 
-def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str, str]]:
+def _physics(physics: Mapping[str, Any] | None) -> list[Row]:
     """Lay out the report's rows on torques and recovery."""
     if physics is None:
         return []
+    rows = _rows(physics, _PHYSICS)
     torques = zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True)
-    since = f"largest position error from {physics['settled_after_s']:g} s on"
-    rows = [(since, _number(physics["max_position_error_settled_m"]), "m")]
-    rows += [
-        (f"largest torque of joint {joint}, limit {_number(limit)}", _number(torque), "N m")
-        for joint, (torque, limit) in enumerate(torques, 1)
-    ]
-    if (push := physics["push"]) is not None:
-        back = f"time from the push's end until back within {push['recovered_below_m']:g} m"
-        recovery = "never" if push["recovery_s"] is None else _number(push["recovery_s"])
-        largest = _number(push["max_position_error_m"])
-        rows += [("largest position error since the push", largest, "m"), (back, recovery, "s")]
-    return rows
+    for joint, (torque, limit) in enumerate(torques, 1):
+        name = f"largest torque of joint {joint}, limit {_number(limit)}"
+        rows.append((name, _number(torque), "N m"))
+    push = physics["push"]
+    if push is None:
+        return rows
+    never = {"recovery_s": "never"} if push["recovery_s"] is None else {}
+    return rows + _rows(push | never, _PUSH)
 
 
-def _rows(values: Mapping[str, Any], table: Table) -> list[tuple[str, str, str]]:
+def _rows(values: Mapping[str, Any], table: Table) -> list[Row]:
     """Look up the numbers of a table; the unit of the kinetic index depends on the scheme."""
     units = {"kinetic": _kinetic_unit(values.get("settings", {}))}
     return [
-        (name, _number(values[key]), units.get(unit, unit))
+        (name.format_map(values), _number(values[key]), units.get(unit, unit))
         for name, key, unit in table
         if key in values
     ]

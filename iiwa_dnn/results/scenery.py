@@ -17,6 +17,28 @@ if TYPE_CHECKING:
 
 SCENERY_GROUP = 2
 OBSTACLE_COLOR = (0.25, 0.45, 0.75)
+_SCENERY = f"""
+<mujoco>
+  <visual>
+    <headlight ambient="0.4 0.4 0.4" diffuse="0.3 0.3 0.3" specular="0.1 0.1 0.1"/>
+  </visual>
+  <statistic center="0 0 0.4" extent="1.2"/>
+  <asset>
+    <texture name="sky" type="skybox" builtin="flat" rgb1="1 1 1" rgb2="1 1 1"
+      width="16" height="16"/>
+    <texture name="tiles" type="2d" builtin="checker" rgb1="0.90 0.91 0.93" rgb2="0.84 0.86 0.89"
+      width="256" height="256"/>
+    <!-- A repeat has two tiles a side: they are 0.25 m wide. -->
+    <material name="floor" texture="tiles" texuniform="true" texrepeat="2 2"/>
+  </asset>
+  <worldbody>
+    <geom type="plane" size="1.25 1.25 0.1" material="floor" group="{SCENERY_GROUP}"
+      contype="0" conaffinity="0"/>
+    <light type="spot" pos="0.8 -0.6 2.6" dir="-0.25 0.2 -1" diffuse="0.55 0.55 0.55"
+      cutoff="60" exponent="1"/>
+  </worldbody>
+</mujoco>
+"""
 _NO_CONTACT: dict[str, Any] = {"contype": 0, "conaffinity": 0}
 
 
@@ -79,50 +101,9 @@ def add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
         )
 
 
-def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
-    """Add floor, light and, under a path in a horizontal plane, a sheet of paper."""
-    spec.visual.headlight.ambient[:] = 0.4
-    spec.visual.headlight.diffuse[:] = 0.3
-    spec.visual.headlight.specular[:] = 0.1
-    spec.stat.center = [0.0, 0.0, 0.4]
-    spec.stat.extent = 1.2
-    spec.add_texture(
-        name="sky",
-        type=mj.mjtTexture.mjTEXTURE_SKYBOX,
-        builtin=mj.mjtBuiltin.mjBUILTIN_FLAT,
-        rgb1=[1.0, 1.0, 1.0],
-        rgb2=[1.0, 1.0, 1.0],
-        width=16,
-        height=16,
-    )
-    spec.add_texture(
-        name="tiles",
-        type=mj.mjtTexture.mjTEXTURE_2D,
-        builtin=mj.mjtBuiltin.mjBUILTIN_CHECKER,
-        rgb1=[0.90, 0.91, 0.93],
-        rgb2=[0.84, 0.86, 0.89],
-        width=256,
-        height=256,
-    )
-    # A repeat has two tiles a side: they are 0.25 m wide.
-    floor = spec.add_material(name="floor", texuniform=True, texrepeat=[2.0, 2.0])
-    floor.textures[mj.mjtTextureRole.mjTEXROLE_RGB] = "tiles"
-    spec.worldbody.add_geom(
-        type=mj.mjtGeom.mjGEOM_PLANE,
-        size=[1.25, 1.25, 0.1],
-        material="floor",
-        group=SCENERY_GROUP,
-        **_NO_CONTACT,
-    )
-    spec.worldbody.add_light(
-        pos=[0.8, -0.6, 2.6],
-        dir=[-0.25, 0.2, -1.0],
-        diffuse=[0.55, 0.55, 0.55],
-        castshadow=True,
-        type=mj.mjtLightType.mjLIGHT_SPOT,
-        cutoff=60.0,
-        exponent=1.0,
-    )
+def make_scenery(mj: Any, record: Record) -> mujoco.MjSpec:
+    """Make floor, light and, under a path in a horizontal plane, a sheet of paper."""
+    spec = mj.MjSpec.from_string(_SCENERY)
     low = record.position_desired.min(axis=0)
     high = record.position_desired.max(axis=0)
     if high[2] - low[2] < 1e-3 < high[0] - low[0]:
@@ -134,3 +115,4 @@ def add_scenery(mj: Any, spec: mujoco.MjSpec, record: Record) -> None:
             group=SCENERY_GROUP,
             **_NO_CONTACT,
         )
+    return spec

@@ -57,7 +57,7 @@ def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str
         rows.append(row | {"stable": growth is None or growth <= 1.0})
 
     def distance(row: Mapping[str, Any]) -> float:
-        """Powers of e between the drifts; infinite if one is missing or zero."""
+        """Compute the powers of e between the drifts; infinite if one is missing or zero."""
         ours = row["joint_drift_rad"]
         return abs(math.log(ours / drift)) if ours and drift else math.inf
 

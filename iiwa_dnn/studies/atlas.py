@@ -9,6 +9,7 @@ A network of one's own is one line in `NETWORKS`.
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,14 +51,17 @@ from iiwa_dnn.studies.atlas_disturbances import (
     learn,
     noise_of,
     other_arm,
-    place,
+    pose_of,
 )
 from iiwa_dnn.studies.atlas_schemes import SCHEMES
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.sweeps import Outcome
 
-DURATION, PERIOD = 0.5, 2.0
-"""Length of a run and time of a whole heart [s]."""
+DURATION = 0.5
+"""Length of a run [s]."""
+
+PERIOD = 2.0
+"""Time of a whole heart [s]."""
 
 
 @dataclass(frozen=True)
@@ -76,10 +80,11 @@ class Paced(ExplicitEuler):
         Raises:
             InvalidInputError: The network knows no stable step.
         """
-        step, count = SAFETY * (self.base or network).stable_step(qp, state), self.substeps or 1
+        step = SAFETY * (self.base or network).stable_step(qp, state)
         if not step > 0.0:
             raise InvalidInputError("network", "knows no stable step: take `settled`", network)
         rates = network.flow(qp).rates
+        count = self.substeps or 1
         for _ in range(count):
             state += step * rates(state)
         return count
@@ -196,29 +201,26 @@ def cells(
         InvalidInputError: A scheme is not one of `SCHEMES`, or there is none.
         NotFoundError: A network is not one of `NETWORKS`.
     """
-    for name in schemes or [""]:
-        if name not in SCHEMES:
-            raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {name!r}")
+    if not schemes or not set(schemes) <= SCHEMES.keys():
+        raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {list(schemes)}")
     networks = networks or tuple(NETWORKS)
     for name in networks:
         if name not in NETWORKS:
             raise NotFoundError("network", name, NETWORKS)
     middle = evaluations[len(evaluations) // 2]
-    whole = [
-        cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
+    by_scheme = [
+        [
+            cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
+            for network, kind in product(networks, DISTURBANCES)
+        ]
         for scheme in schemes
-        for network in networks
-        for kind in DISTURBANCES
     ]
     budgets = [
         cell(network, schemes[0], kind, count, others)
-        for network in networks
-        for kind in ("none", "white")
-        for count in evaluations
+        for network, kind, count in product(networks, ("none", "white"), evaluations)
         if count != middle
     ]
-    first = len(networks) * len(DISTURBANCES)
-    return whole[:first] + budgets + whole[first:]
+    return [*by_scheme[0], *budgets, *chain(*by_scheme[1:])]
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
@@ -230,7 +232,8 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
         residual of the answers over that half, and the time of an answer [us]; ``failures``, the
         reasons.
     """
-    runs, failures = [], []
+    runs = []
+    failures = []
     for seed in range(settings["seeds"]):
         try:
             with np.errstate(all="ignore"):  # a network that diverges ends its run
@@ -277,7 +280,7 @@ def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
             if k == 0:
                 believed = arm.jacobian * (1.0 + 0.1 * rng.standard_normal((q.size, 6)))
             else:
-                learn(believed, q - before, place(tool) * place(was).inverse())
+                learn(believed, q - before, pose_of(tool) * pose_of(was).inverse())
             program.kinematics.jacobian[:] = believed
             was = tool
             before = q

@@ -12,9 +12,16 @@ DT = 2e-3
 """Control period [s]."""
 
 DISTURBANCES = (
-    "none", "constant", "ramp", "sinusoid", "white", "measurement", "parameter", "locked",
+    "none",
+    "constant",
+    "ramp",
+    "sinusoid",
+    "white",
+    "measurement",
+    "parameter",
+    "locked",
     "estimated",
-)  # fmt: skip
+)
 """The first five but none disturb the network's rates, the others the loop around it:
 
 constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
@@ -28,7 +35,8 @@ which is learned from the motion alone (`learn`).
 
 def noise_of(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
     """Draw what is added to the states after each step, (steps, 100)."""
-    direction, t = rng.standard_normal(100) / np.sqrt(7.0), DT * np.arange(steps)
+    direction = rng.standard_normal(100) / np.sqrt(7.0)
+    t = DT * np.arange(steps)
     shapes = {"constant": np.ones(steps), "ramp": t, "sinusoid": np.sin(10.0 * np.pi * t)}
     if kind in shapes:
         return DT * np.outer(shapes[kind], direction)
@@ -39,9 +47,9 @@ def other_arm(robot: Robot, rng: np.random.Generator) -> Robot:
     """Return an arm whose links are 5 % longer or shorter."""
     model = pin.Model(robot.model)
     for i, sign in enumerate(rng.choice([-1.0, 1.0], robot.dof)):
-        place = model.jointPlacements[i + 1]
-        place.translation = (1.0 + 0.05 * sign) * place.translation
-        model.jointPlacements[i + 1] = place
+        placement = model.jointPlacements[i + 1]
+        placement.translation = (1.0 + 0.05 * sign) * placement.translation
+        model.jointPlacements[i + 1] = placement
     return replace(robot, model=model)
 
 
@@ -54,14 +62,15 @@ def learn(jacobian: Matrix, moved: Vector, motion: pin.SE3) -> None:
     The estimate is as `Kinematics.jacobian`, (n, 6); the joints moved by (n,) [rad], the tool by a
     measured motion of the world's frame.
     """
-    if (square := moved @ moved) > 0.0:
+    square = moved @ moved
+    if square > 0.0:
         missing = pin.log6(motion).vector - moved @ jacobian
         jacobian += np.outer(moved, missing) / square
 
 
-def place(numbers: Vector) -> pin.SE3:
+def pose_of(placement: Vector) -> pin.SE3:
     """Return a placement (12,) of `Kinematics.placements` as Pinocchio has it."""
-    return pin.SE3(numbers[:9].reshape(3, 3).T, numbers[9:])
+    return pin.SE3(placement[:9].reshape(3, 3).T, placement[9:])
 
 
 def as_measured(target: Vector, tool: Vector, believed: Vector) -> None:

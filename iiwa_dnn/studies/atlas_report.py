@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import matplotlib
 import numpy as np
 
-from iiwa_dnn.results.markdown import markdown_table, save_markdown
+from iiwa_dnn.results.markdown import markdown_table, number, save_markdown
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.studies.atlas import MEASURES, NETWORKS
 from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 Row = Mapping[str, Any]
 PAPER = "projection (the paper's)"
 _MARKERS = "os^vD*P"
+
+_number = partial(number, form=".2e", unknown="–")
 
 
 class Claim(NamedTuple):
@@ -94,49 +96,55 @@ def judge(rows: Sequence[Row], claim: Claim) -> dict[str, Any]:
         The claim, both means and the verdict: ``holds`` or ``does not hold`` where the whole
         interval of the difference says so or a network lost runs, else ``undecided``.
     """
-    sides = [find(rows, name, claim.disturbance) for name in (claim.better, claim.worse)]
-    values = [side[claim.measure] for side in sides]
+    # A failed run, None, is NaN here.
     better, worse = (
-        float(np.mean([np.inf if value is None else value for value in side])) for side in values
+        np.array(find(rows, name, claim.disturbance)[claim.measure], float)
+        for name in (claim.better, claim.worse)
     )
-    sign = 0 if better == worse else int(np.sign(better - worse))
-    if np.isfinite([better, worse]).all() and len(values[0]) > 1:
-        sign = paired_difference(values[0], values[1]).sign
+    means = [float(np.mean(values)) for values in (better, worse)]
+    first, second = np.nan_to_num(means, nan=np.inf)
+    sign = int(first > second) - int(first < second)
+    if np.isfinite(means).all() and len(better) > 1:
+        sign = paired_difference(better, worse).sign
     verdict = {-1: "holds", 0: "undecided", 1: "does not hold"}[sign]
-    known = [value if np.isfinite(value) else None for value in (better, worse)]
+    known = [None if np.isnan(mean) else mean for mean in means]
     return {**claim._asdict(), "values": known, "verdict": verdict}
 
 
 def find(rows: Sequence[Row], network: str, disturbance: str, scheme: str = "") -> Row:
     """Find the row of a network at the middle budget; the first scheme by default."""
-    first = rows[0]
-    wanted = (network, disturbance, scheme or first["scheme"], first["evaluations"])
-    names = ("network", "disturbance", "scheme", "evaluations")
-    return next(row for row in rows if tuple(row[name] for name in names) == wanted)
+    wanted = {
+        "network": network,
+        "disturbance": disturbance,
+        "scheme": scheme or rows[0]["scheme"],
+        "evaluations": rows[0]["evaluations"],
+    }
+    return next(row for row in rows if wanted.items() <= row.items())
 
 
 def figure(rows: Sequence[Row]) -> Figure:
     """Draw error against evaluations, a curve a network: undisturbed, and with white noise."""
     drawn = new_figure(DOUBLE_COLUMN, 4.6)
     axes = drawn.subplots(1, 2, sharey=True)
-    scheme, names = rows[0]["scheme"], list(NETWORKS)
+    names = list(NETWORKS)
     budgets = sorted({row["evaluations"] for row in rows})
-    colours = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
+    colors = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
     for axis, kind in zip(axes, ("none", "white"), strict=True):
         for i, name in enumerate(names):
-            found = [
-                (row["evaluations"], row["mean"]["rms_error_m"])
-                for row in rows
-                if (row["network"], row["scheme"], row["disturbance"]) == (name, scheme, kind)
-                and row["mean"]["rms_error_m"] is not None
-            ]
-            if found:
-                style = "-" if NETWORKS[name].systems else "--"
-                colour = colours[i] if name != PAPER else "black"
+            wanted = {"network": name, "scheme": rows[0]["scheme"], "disturbance": kind}
+            found = [row for row in rows if wanted.items() <= row.items()]
+            errors = {row["evaluations"]: row["mean"]["rms_error_m"] for row in found}
+            known = sorted(pair for pair in errors.items() if pair[1] is not None)
+            if known:
                 axis.loglog(
-                    *zip(*sorted(found), strict=True), style, color=colour, marker=_MARKERS[i % 7],
-                    markersize=3, linewidth=2.0 if name == PAPER else 0.9, label=name,
-                )  # fmt: skip
+                    *np.transpose(known),
+                    "-" if NETWORKS[name].systems else "--",
+                    color="black" if name == PAPER else colors[i],
+                    marker=_MARKERS[i % 7],
+                    markersize=3,
+                    linewidth=2.0 if name == PAPER else 0.9,
+                    label=name,
+                )
         axis.set_xticks(budgets, [str(count) for count in budgets])
         axis.minorticks_off()
         axis.set_title(f"disturbance: {kind}")
@@ -149,48 +157,59 @@ def figure(rows: Sequence[Row]) -> Figure:
 
 def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> str:
     """Write ``report.md`` and, where asked for, the figure; returns the text."""
-    first, middle = rows[0]["scheme"], rows[0]["evaluations"]
-    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
     names = dict.fromkeys(row["network"] for row in rows)
-    claims = [claim for claim in CLAIMS if {claim.better, claim.worse} <= names.keys()]
     league = sorted(names, key=lambda name: _rank(rows, name))
-    kinds = markdown_table(
-        ("network", "evaluation", *DISTURBANCES),
-        ([name, "system" if NETWORKS[name].systems else "product",
-          *(_shown(find(rows, name, kind)) for kind in DISTURBANCES)] for name in league),
-    )  # fmt: skip
-    others = markdown_table(
-        ("network", *schemes),
-        ([name, *(_shown(find(rows, name, "none", s)) for s in schemes)] for name in league),
-    )
-    everywhere = markdown_table(
-        ("network", "combinations", "with a failed run", "median", "worst"),
-        (_summed(rows, name) for name in league),
-    )
-    verdicts = markdown_table(
-        ("claim", "disturbance", "measure", "ours", "beside", "verdict"),
-        (
-            [v["text"], v["disturbance"], v["measure"], *map(_number, v["values"]), v["verdict"]]
-            for v in (judge(rows, claim) for claim in claims)
-        ),
-    )
+    claims = [claim for claim in CLAIMS if {claim.better, claim.worse} <= names.keys()]
     parts = ["# Atlas of neurodynamic control", head]
     if plots:
         write_figures({"atlas": partial(figure, rows)}, folder)
         parts.append("![Error against evaluations; dashed: products, solid: systems](atlas.png)")
     parts += [
-        f"## League: RMS position error [m], {first}, {middle} evaluations a period of {DT:g} s",
-        kinds, "A number in brackets counts runs that failed.",
-        "## Schemes: RMS position error [m], undisturbed", others,
+        f"## League: RMS position error [m], {rows[0]['scheme']}, {rows[0]['evaluations']} "
+        f"evaluations a period of {DT:g} s",
+        _league_table(rows, league),
+        "A number in brackets counts runs that failed.",
+        "## Schemes: RMS position error [m], undisturbed",
+        _scheme_table(rows, league),
         "## Every scheme with every disturbance: RMS position error [m]",
-        everywhere, "## Verdicts", verdicts,
-    ]  # fmt: skip
+        markdown_table(
+            ("network", "combinations", "with a failed run", "median", "worst"),
+            (_summed(rows, name) for name in league),
+        ),
+        "## Verdicts",
+        _verdict_table(rows, claims),
+    ]
     save_markdown(folder, parts)
     return "\n\n".join(parts)
 
 
+def _league_table(rows: Sequence[Row], league: Sequence[str]) -> str:
+    lines = []
+    for name in league:
+        errors = [_shown(find(rows, name, kind)) for kind in DISTURBANCES]
+        lines.append([name, "system" if NETWORKS[name].systems else "product", *errors])
+    return markdown_table(("network", "evaluation", *DISTURBANCES), lines)
+
+
+def _scheme_table(rows: Sequence[Row], league: Sequence[str]) -> str:
+    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+    lines = [
+        [name, *(_shown(find(rows, name, "none", scheme)) for scheme in schemes)] for name in league
+    ]
+    return markdown_table(("network", *schemes), lines)
+
+
+def _verdict_table(rows: Sequence[Row], claims: Sequence[Claim]) -> str:
+    lines = []
+    for claim in claims:
+        found = judge(rows, claim)
+        means = map(_number, found["values"])
+        lines.append([claim.text, claim.disturbance, claim.measure, *means, found["verdict"]])
+    return markdown_table(("claim", "disturbance", "measure", "ours", "beside", "verdict"), lines)
+
+
 def _rank(rows: Sequence[Row], name: str) -> float:
-    """Mean logarithm of the error over the disturbances; inf where a run was lost."""
+    """Compute the mean logarithm of the error over the disturbances; inf if a run was lost."""
     found = [find(rows, name, kind) for kind in DISTURBANCES]
     if any(row["lost"] for row in found):
         return np.inf
@@ -199,16 +218,13 @@ def _rank(rows: Sequence[Row], name: str) -> float:
 
 def _summed(rows: Sequence[Row], name: str) -> list[str]:
     """Sum a network up over all schemes and disturbances at the middle budget."""
-    own = [r for r in rows if (r["network"], r["evaluations"]) == (name, rows[0]["evaluations"])]
-    errors = [r["mean"]["rms_error_m"] for r in own if not r["lost"]]
-    ends = [_number(float(of(errors)) if errors else None) for of in (np.median, np.max)]
-    return [name, str(len(own)), str(len(own) - len(errors)), *ends]
+    wanted = {"network": name, "evaluations": rows[0]["evaluations"]}
+    own = [row for row in rows if wanted.items() <= row.items()]
+    errors = [row["mean"]["rms_error_m"] for row in own if not row["lost"]]
+    ends = [float(np.median(errors)), max(errors)] if errors else [None, None]
+    return [name, str(len(own)), str(len(own) - len(errors)), *map(_number, ends)]
 
 
 def _shown(row: Row) -> str:
     lost = f" ({row['lost']} of {row['seeds']})" if row["lost"] else ""
     return _number(row["mean"]["rms_error_m"]) + lost
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2e}"

@@ -7,7 +7,7 @@ with chance in them share their seeds, so a countermeasure is compared with none
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import islice, product
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,14 +69,9 @@ def cells(seeds: int, duration: float) -> list[dict[str, Any]]:
     """List the settings of all runs of this duration [s]: one without chance, else every seed."""
     return [
         {"disturbance": kind, "countermeasure": means, "seed": seed, "duration": duration}
-        for kind, means in pairs()
-        for seed in range(_runs(kind, seeds))
+        for kind, means in product(DISTURBANCES, COUNTERMEASURES)
+        for seed in range(seeds if "noise" in DISTURBANCES[kind] else 1)
     ]
-
-
-def pairs() -> list[tuple[str, str]]:
-    """List disturbance and countermeasure of each row of the table."""
-    return list(product(DISTURBANCES, COUNTERMEASURES))
 
 
 def measure(settings: Mapping[str, Any]) -> Outcome:
@@ -107,7 +102,8 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
         **asked,
         **means,
     )
-    settled, error = record.t >= SETTLED_AFTER, position_error(record)
+    settled = record.t >= SETTLED_AFTER
+    error = position_error(record)
     distance = np.linalg.norm(error, axis=1)
     return Outcome(
         {
@@ -128,19 +124,20 @@ def _roughness(velocity: FloatArray) -> float:
 
 
 def tabulate(
-    seeds: int, duration: float, results: Sequence[Mapping[str, Any]]
+    cells: Sequence[Mapping[str, Any]], results: Sequence[Mapping[str, Any]]
 ) -> list[dict[str, Any]]:
     """Lay the results of `cells` out in a row for each pair, in JSON types.
 
     It has the names, the measures' means, with 95 % intervals where there is chance, and
     ``mse_ratio``, the mean squared error without a countermeasure over that with it.
     """
-    left, rows = iter(results), []
-    plain: dict[str, FloatArray] = {}
-    for kind, means in pairs():
-        runs = list(islice(left, _runs(kind, seeds)))
+    pairs: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    for cell, result in zip(cells, results, strict=True):
+        pairs.setdefault((cell["disturbance"], cell["countermeasure"]), []).append(result)
+    rows = []
+    for (kind, means), runs in pairs.items():
         mse = np.array([run["mse_m2"] for run in runs])
-        base = plain.setdefault(kind, mse)  # the first countermeasure is none
+        base = np.array([run["mse_m2"] for run in pairs[kind, "none"]])
         row = {"disturbance": kind, "countermeasure": means, "runs": len(runs)}
         row |= {name: float(np.mean([run[name] for run in runs])) for name in MEASURES}
         row["completed"] = all(run["status"] == "completed" for run in runs)
@@ -155,25 +152,20 @@ def tabulate(
 def noise_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
     """Draw the mean squared error and the command's roughness of every row of `tabulate`."""
     figure = new_figure(DOUBLE_COLUMN, 3.4)
-    panels, places = figure.subplots(1, 2, sharey=True), range(len(COUNTERMEASURES))
+    panels = figure.subplots(1, 2, sharey=True)
+    heights = np.arange(len(COUNTERMEASURES))
     for axes, name, label in (
         (panels[0], "mse_m2", "Mean squared error [m²]"),
         (panels[1], "command_roughness", "Roughness of the command [rad/s²]"),
     ):
         for i, kind in enumerate(DISTURBANCES):
             values = [row[name] for row in rows if row["disturbance"] == kind]
-            # A little apart, so that none hides another.
-            heights = [place + 0.1 * (i - 2.5) for place in places]
-            axes.plot(values, heights, "o^sDvX"[i], linestyle="", label=kind)
+            # With a small distance, so that none hides another.
+            axes.plot(values, heights + 0.1 * (i - 2.5), "o^sDvX"[i], linestyle="", label=kind)
         axes.set_xscale("log")
         axes.set_xlabel(label)
-    panels[0].set_yticks(places, list(COUNTERMEASURES))
+    panels[0].set_yticks(heights, list(COUNTERMEASURES))
     panels[0].invert_yaxis()
     handles, names = panels[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside upper center", ncols=len(names))
     return figure
-
-
-def _runs(kind: str, seeds: int) -> int:
-    """Count the runs of a disturbance: only noise has chance in it."""
-    return seeds if "noise" in DISTURBANCES[kind] else 1

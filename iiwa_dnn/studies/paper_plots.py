@@ -34,7 +34,7 @@ PANELS = ("no noise, no filter", "noise, no filter", "no noise, filter", "noise,
 FAR = 100.0
 """A change by more than this [%] is named at the edge and not drawn to scale."""
 
-_STYLES = (("o", "-", "0.0"), ("s", "--", "0.5"))  # marker, line and colour of two curves
+_STYLES = (("o", "-", "0.0"), ("s", "--", "0.5"))  # marker, line and color of two curves
 
 Table = Mapping[str, Any]
 
@@ -86,9 +86,9 @@ def _draw_row(axes: Axes, table: Table, key: str, label: str) -> None:
         (name, table["variants"][name]["rows"][key], *style)
         for name, style in zip(ours, _STYLES, strict=False)
     ]
-    for name, values, marker, line, colour in rows:
+    for name, values, marker, line, color in rows:
         known = [pair for pair in zip(table["weights"], values, strict=True) if pair[1] is not None]
-        _draw_points(axes, known, marker=marker, linestyle=line, color=colour, label=name)
+        _draw_points(axes, known, marker=marker, linestyle=line, color=color, label=name)
     axes.set_yscale("log")
     axes.set_xlabel("Weight ξ")
     axes.set_ylabel(label)
@@ -102,20 +102,21 @@ def _draw_filter(axes: Axes, table: Table) -> None:
     """Draw the filter's effect under noise, in per cent, with its interval; and the paper's."""
     measures = (("max_position_error_m", "MAX E", -0.14), ("mse_position_error_m2", "MSE", 0.14))
     names = [(mode, entry) for mode, entries in table["modes"].items() for entry in entries]
-    for (key, label, offset), (marker, _, colour) in zip(measures, _STYLES, strict=True):
+    for (key, label, offset), (marker, _, color) in zip(measures, _STYLES, strict=True):
         for row, (mode, entry) in enumerate(names):
             change = table["modes"][mode][entry][key]["changes"]["filter, with noise"]
-            at, mean = row + offset, 100.0 * change["mean"]
+            at = row + offset
+            mean = 100.0 * change["mean"]
             if mean > FAR:  # one far off would hide the others
                 edge = axes.get_yaxis_transform()
-                axes.text(0.98, at, f"× {1.0 + change['mean']:.3g} →", color=colour,
-                          transform=edge, ha="right", va="center", fontsize=7)  # fmt: skip
+                text = axes.text(0.98, at, f"× {1.0 + change['mean']:.3g} →", transform=edge)
+                text.set(ha="right", va="center", fontsize=7, color=color)
                 continue
-            reach = [[mean - 100.0 * change["low"]], [100.0 * change["high"] - mean]]
-            axes.errorbar([mean], [at], xerr=reach, fmt=marker, color=colour, capsize=2)
+            interval = [[mean - 100.0 * change["low"]], [100.0 * change["high"] - mean]]
+            axes.errorbar([mean], [at], xerr=interval, fmt=marker, color=color, capsize=2)
         paper = 100.0 * table["paper_changes"][key]["filter, with noise"]
-        axes.axvline(paper, color=colour, linestyle=":", label=f"{label}, paper")
-        axes.plot([], [], linestyle="", marker=marker, color=colour, label=label)
+        axes.axvline(paper, color=color, linestyle=":", label=f"{label}, paper")
+        axes.plot([], [], linestyle="", marker=marker, color=color, label=label)
     axes.axvline(0.0, color="0.0", linewidth=0.6)
     # By their first words, to leave room for the data.
     axes.set_yticks(range(len(names)), [f"{mode.split(',')[0]},\n{entry}" for mode, entry in names])
@@ -128,19 +129,19 @@ def _draw_filter(axes: Axes, table: Table) -> None:
 def _draw_substeps(axes: Axes, table: Table) -> None:
     """Draw the drift without noise over the sub-steps; hollow where a sub-step is unstable."""
     names = list(dict.fromkeys(str(row["substeps"]) for row in table["rows"]))
-    for orientation, (marker, line, colour) in zip(("block", "so3"), _STYLES, strict=True):
+    for orientation, (marker, line, color) in zip(("block", "so3"), _STYLES, strict=True):
         points = [
             ((names.index(str(row["substeps"])), row["joint_drift_rad"]), row["stable"])
             for row in table["rows"]
             if row["orientation"] == orientation and row["noise_at"] == "none"
         ]
         known = [point for point, _ in points if point[1] is not None]
-        _draw_points(axes, known, linestyle=line, color=colour, label="")
-        for stable, face in ((True, colour), (False, "1.0")):
+        _draw_points(axes, known, linestyle=line, color=color, label="")
+        for stable, face in ((True, color), (False, "1.0")):
             part = [point for point, is_stable in points if is_stable is stable]
             label = f"{orientation}, {'stable' if stable else 'unstable'}"
-            _draw_points(axes, part, linestyle="", marker=marker, color=colour,
-                         markerfacecolor=face, label=label)  # fmt: skip
+            style = {"marker": marker, "color": color, "markerfacecolor": face, "label": label}
+            _draw_points(axes, part, linestyle="", **style)
     axes.axhline(table["paper"]["joint_drift_rad"], color="0.0", linestyle=":", label="paper")
     axes.set_yscale("log")
     axes.set_xticks(range(len(names)), names)

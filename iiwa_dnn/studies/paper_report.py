@@ -6,10 +6,12 @@ and every sentence about an experiment's outcome is put together from a table's 
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial, reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
+from iiwa_dnn.results.markdown import bullets, markdown_table, number, save_markdown, show_figures
 
 Table = Mapping[str, Any]
 
@@ -26,12 +28,14 @@ _ROWS = {
     "total_variation_rad_s": "total variation of q̇ [rad/s]",
     "max_kkt_residual": "MAX KKT residual",
 }
-_JUDGED = ("max_position_error_m", "joint_drift_rad", "max_kinetic_index",
-           "max_kinetic_index_times_dt")  # fmt: skip
-_TABLE2_HEAD = (
-    "case", "MAX E [m], paper", "ours", "ours / paper's",
-    "MSE [m²], paper", "ours", "ours / paper's",
-)  # fmt: skip
+_JUDGED = (
+    "max_position_error_m",
+    "joint_drift_rad",
+    "max_kinetic_index",
+    "max_kinetic_index_times_dt",
+)
+_OURS = ("ours", "ours / paper's")
+_TABLE2_HEAD = ("case", "MAX E [m], paper", *_OURS, "MSE [m²], paper", *_OURS)
 _ABLATION = {
     "max_position_error_m": "MAX E [m]",
     "max_orientation_error_rad": "orientation error [rad]",
@@ -39,8 +43,11 @@ _ABLATION = {
     "total_variation_rad_s": "total variation [rad/s]",
     "max_kinetic_index": "MAX q̇ᵀq̇ [rad²/s²]",
 }
-_WAYS = {"lowers": "lowered", "raises": "raised", "no effect shown": "no effect shown"}
+_CHANGES = {"lowers": "lowered", "raises": "raised", "no effect shown": "no effect shown"}
 _FILTER = "filter, with noise"
+
+short = partial(number, form=".3g", unknown="–")
+
 _CAPTIONS = {
     "fig1": "The paper's Fig. 1: path, joint angles, joint velocities and position error, with "
     "noise and filter.",
@@ -75,7 +82,8 @@ def write_paper_report(
     It begins with `head` (date, machine, versions by names) and shows the PNG files of `figures`;
     the tables are ``table1``, ``table2`` and ``ablation``. Raises FileError if it cannot.
     """
-    table1, table2 = tables["table1"], tables["table2"]
+    table1 = tables["table1"]
+    table2 = tables["table2"]
     names = list(dict.fromkeys([*table1["variants"], *table2["modes"]]))
     parts = [
         "# The paper's experiments, run again",
@@ -108,8 +116,8 @@ def findings(tables: Mapping[str, Table]) -> list[str]:
             verdict = variant["verdicts"][key]
             known = [ratio for ratio in verdict["ours_over_paper"] if ratio is not None]
             ratios = f"{short(min(known))} to {short(max(known))}" if known else "–"
-            ways = f"{verdict['our_trend']} with ξ (paper: {verdict['paper_trend']})"
-            said.append(f"{label} {ways}, {ratios} times the paper's")
+            trends = f"{verdict['our_trend']} with ξ (paper: {verdict['paper_trend']})"
+            said.append(f"{label} {trends}, {ratios} times the paper's")
         lines.append(f"Table I, {name}: {'; '.join(said)}.")
     for mode, entries in table2["modes"].items():
         for entry, measures in entries.items():
@@ -118,7 +126,8 @@ def findings(tables: Mapping[str, Table]) -> list[str]:
                 for key, label in MEASURES.items()
             ]
             lines.append(f"Filter under noise at {entry}, {mode}: {', '.join(said)}.")
-    closest, stable = ablation["closest_to_the_papers_drift"], ablation["closest_stable"]
+    closest = ablation["closest_to_the_papers_drift"]
+    stable = ablation["closest_stable"]
     growth = closest["amplification"]
     grows = f"a sub-step multiplies errors by {growth or 0.0:.2f}"
     return [
@@ -133,11 +142,6 @@ def findings(tables: Mapping[str, Table]) -> list[str]:
     ]
 
 
-def short(value: float | None) -> str:
-    """Show a number in three digits; a dash where there is none."""
-    return "–" if value is None else f"{value:.3g}"
-
-
 def _claim(table: Table) -> str:
     """Judge the claim that the filter helps by all comparisons of Table II together."""
     found = [
@@ -146,8 +150,8 @@ def _claim(table: Table) -> str:
         for measures in entries.values()
         for key in MEASURES
     ]
-    counts = {way: sum(change["our_trend"] == way for change in found) for way in _WAYS}
-    said = ", ".join(f"{word} in {counts[way]}" for way, word in _WAYS.items())
+    counts = {trend: sum(change["our_trend"] == trend for change in found) for trend in _CHANGES}
+    said = ", ".join(f"{word} in {counts[trend]}" for trend, word in _CHANGES.items())
     best = 100.0 * max(-min(change["mean"] for change in found), 0.0)
     papers = [changes[_FILTER] for changes in table["paper_changes"].values()]
     return (
@@ -166,7 +170,7 @@ def _change(change: Mapping[str, Any]) -> str:
         size = f"{100.0 * mean:+.2f} %"
         if change["samples"] > 1:
             size += f" [{100.0 * low:+.2f}, {100.0 * high:+.2f}]"
-    return f"{_WAYS[change['our_trend']]}, {size}: {change['verdict']}"
+    return f"{_CHANGES[change['our_trend']]}, {size}: {change['verdict']}"
 
 
 def _choice(row: Mapping[str, Any]) -> str:
@@ -188,16 +192,12 @@ def _verdicts(table1: Table, table2: Table, names: Sequence[str]) -> list[list[s
                 paths[title] = (*row, "changes", change, "verdict")
     lines = []
     for title, (kind, *path) in paths.items():
-        table = table1 if kind == "variants" else table2
-        lines.append([title, *(_at(table[kind].get(name), path) for name in names)])
+        entries = (table1 if kind == "variants" else table2)[kind]
+        verdicts = (
+            reduce(getitem, path, entries[name]) if name in entries else "–" for name in names
+        )
+        lines.append([title, *verdicts])
     return lines
-
-
-def _at(table: Any, path: Sequence[str]) -> str:
-    """Look up a path in nested tables; a dash where there is no table."""
-    for key in path if table is not None else ():
-        table = table[key]
-    return "–" if table is None else str(table)
 
 
 def _table1(table: Table) -> list[str]:
@@ -226,7 +226,9 @@ def _table2(table: Table) -> list[str]:
     parts = []
     for mode, entries in table["modes"].items():
         for entry, measures in entries.items():
-            rows, effects, pairs = [[case] for case in table["cases"]], [], []
+            rows = [[case] for case in table["cases"]]
+            effects = []
+            pairs = []
             for key, label in MEASURES.items():
                 ours = measures[key]
                 ratios = ours["verdict"]["ours_over_paper"]
@@ -254,15 +256,14 @@ def _table2(table: Table) -> list[str]:
 
 
 def _ablation(table: Table) -> str:
-    head = ("orientation", "noise at", "sub-steps", "stable", *_ABLATION.values(),
-            "growth of a sub-step")  # fmt: skip
+    named = ("orientation", "noise at", "sub-steps", "stable")
     rows = []
     for row in table["rows"]:
-        growth, stable = row["amplification"], "yes" if row["stable"] else "no"
-        named = [row["orientation"], row["noise_at"], str(row["substeps"]), stable]
-        numbers = [short(row[key]) for key in _ABLATION]
-        rows.append([*named, *numbers, "–" if growth is None else f"{growth:.4f}"])
-    return markdown_table(head, rows)
+        stable = "yes" if row["stable"] else "no"
+        choice = [row["orientation"], row["noise_at"], str(row["substeps"]), stable]
+        growth = number(row["amplification"], ".4f", "–")
+        rows.append([*choice, *(short(row[key]) for key in _ABLATION), growth])
+    return markdown_table((*named, *_ABLATION.values(), "growth of a sub-step"), rows)
 
 
 def _interval(estimate: Mapping[str, Any]) -> str:

@@ -30,8 +30,14 @@ START = tuple(np.deg2rad([-262.6, 170.0, 176.0, 228.0, -76.0, 238.0]).tolist())
 CIRCLE = Circle(radius=0.12, period=10.0)
 """The path, kinovaNet.m."""
 
-OBSTACLE, OUTER, INNER = (-0.05, -0.4, 0.28), 0.10, 0.05
-"""The point [m], the distance d2 [m] at which its rows begin, and d1 [m], where approach ends."""
+OBSTACLE = (-0.05, -0.4, 0.28)
+"""The point [m]."""
+
+OUTER = 0.10
+"""The distance d2 [m] at which its rows begin."""
+
+INNER = 0.05
+"""The distance d1 [m] where approach ends."""
 
 VARIANTS = {"UOA-UPF": (0, False), "AOA-UPF": (0, True), "AOA-2PF": (2, True), "AOA-3PF": (3, True)}
 """Rows of posture and whether the point is avoided, in the order of QALL1.mat to QALL4.mat."""
@@ -44,10 +50,23 @@ RECORDED = {
 }
 """What `measure` finds in the authors' joint angles, QALL1.mat to QALL4.mat."""
 
-ANGLE, FACTOR, PATH, POSTURE = 0.05, 2.0, 1e-3, np.deg2rad(1.0)
-"""Bounds of `judge`: angles [rad], other numbers, path error [m] and posture error [rad]."""
+ANGLE = 0.05
+"""Largest difference of angles that `judge` calls reproduced [rad]."""
 
-_UPPER_ARM, _FOREARM, _WRIST, _HAND, _SHIFT = 0.41, 0.2073, 0.0741, 0.1425, 0.0098
+FACTOR = 2.0
+"""Largest factor between other numbers that it calls reproduced."""
+
+PATH = 1e-3
+"""Path error below which the path is kept [m]."""
+
+POSTURE = np.deg2rad(1.0)
+"""Posture error below which the posture is kept [rad]."""
+
+_UPPER_ARM = 0.41
+_FOREARM = 0.2073
+_WRIST = 0.0741
+_HAND = 0.1425
+_SHIFT = 0.0098
 _BEND = 0.5 / np.cos(np.pi / 6.0)
 _LINKS = ("base", *(f"link_{i}" for i in range(1, 7)))
 _ALONG = (0.0, 0.0, 0.0, -_FOREARM, -0.07433 * _BEND, -0.07433 * _BEND, 0.0)  # positionN.m
@@ -64,8 +83,10 @@ def arm() -> Robot:
         (0.0, turn / 3, -2.0 * _BEND * _WRIST, 0.0),
         (0.0, turn, -_BEND * _WRIST - _HAND, 0.0),
     ]
-    lower, upper = np.full(6, -np.inf), np.full(6, np.inf)
-    lower[1:3], upper[1:3] = np.deg2rad([-43.0, 109.0]), np.deg2rad([223.0, 431.0])
+    lower = np.full(6, -np.inf)
+    lower[1:3] = np.deg2rad([-43.0, 109.0])
+    upper = np.full(6, np.inf)
+    upper[1:3] = np.deg2rad([223.0, 431.0])
     return robot_from_dh(table, lower=lower, upper=upper, velocity=1.5, name="kinova_tii")
 
 
@@ -117,7 +138,8 @@ class PointAvoidance(Limit):
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (18, n) and h (18,)."""
-        G, h, k = np.zeros((18, step.q.size)), np.zeros(18), 0
+        G: list[Matrix] = []
+        h: list[Vector] = []
         frames = [step.frame(name) for name in _LINKS]
         critical, distance = nearest_points(frames)
         for i, d in enumerate(distance):
@@ -130,13 +152,15 @@ class PointAvoidance(Limit):
                 self.approach[i] = np.maximum(rows @ step.dq, 0.0)
             else:
                 scale = max(d - INNER, 0.0) / (OUTER - INNER)
-            G[k : k + 3], h[k : k + 3] = rows, scale * self.approach[i]
-            k += 3
-        return G, h
+            G.append(rows)
+            h.append(scale * self.approach[i])
+        idle = np.zeros((18 - 3 * len(G), step.q.size))
+        return np.vstack([*G, idle]), np.concatenate([*h, np.zeros(len(idle))])
 
     def jacobian(self, frames: list[FrameState], critical: Matrix, i: int) -> Matrix:
         """Return the authors' Jacobian (3, n) of the nearest point of link i + 1."""
-        frame, point = frames[i + 1], critical[i]
+        frame = frames[i + 1]
+        point = critical[i]
         if i > 1:
             frame = frames[i]
             axis = frame.rotation[:, 2]
@@ -151,9 +175,10 @@ def nearest_points(frames: Iterable[FrameState]) -> tuple[Matrix, Vector]:
     """Find the point of each link nearest to the obstacle, (6, 3) [m], and its distance, (6,)."""
     ends = zip(frames, _ALONG, strict=True)
     joints = np.array([f.position + along * f.rotation[:, 2] for f, along in ends])
-    span, offset = np.diff(joints, axis=0), OBSTACLE - joints[:-1]
-    share = np.clip((offset * span).sum(axis=1) / (span * span).sum(axis=1), 0.0, 1.0)
-    points = joints[:-1] + share[:, None] * span
+    span = np.diff(joints, axis=0)
+    offset = OBSTACLE - joints[:-1]
+    along = np.clip((offset * span).sum(axis=1) / (span * span).sum(axis=1), 0.0, 1.0)
+    points = joints[:-1] + along[:, None] * span
     return points, np.linalg.norm(points - OBSTACLE, axis=1)
 
 
@@ -167,10 +192,16 @@ def run(variant: str, dt: float = 5e-4, duration: float = 10.0) -> Record:
     limits: list[Limit] = [JointLimits(gain=0.25), *([PointAvoidance()] if avoids else [])]
     robot = arm()
     return simulate(
-        robot, Scheme([], tasks, limits), CIRCLE.anchored(Configuration(robot, START)), START,
-        dt=dt, duration=duration, mode="continuous", check=CrossCheck(()),
+        robot,
+        Scheme([], tasks, limits),
+        CIRCLE.anchored(Configuration(robot, START)),
+        START,
+        dt=dt,
+        duration=duration,
+        mode="continuous",
+        check=CrossCheck(()),
         solver=DNNSolver(PrimalDualNetwork(rho=1e-4)),
-    )  # fmt: skip
+    )
 
 
 def over_time(q: Matrix) -> tuple[Vector, Vector]:
@@ -196,9 +227,9 @@ def measure(t: Vector, q: Matrix) -> tuple[float, ...]:
     position = [Configuration(start.robot, row).position for row in q]
     error = CIRCLE.anchored(start).sample(t).position - position
     distance, posture = over_time(q)
-    ranges = [limit for joint in q[:, 1:3].T for limit in (joint.min(), joint.max())]
-    largest = np.linalg.norm(error, axis=1).max(), posture.max()
-    return tuple(map(float, (*ranges, *largest, distance.min())))
+    ranges = np.transpose([q[:, 1:3].min(axis=0), q[:, 1:3].max(axis=0)])
+    path = np.linalg.norm(error, axis=1).max()
+    return tuple(map(float, (*ranges.ravel(), path, posture.max(), distance.min())))
 
 
 def judge(variant: str, ours: Sequence[float]) -> str:
@@ -225,8 +256,11 @@ def table(found: Mapping[str, Sequence[float]]) -> str:
     head += ["posture error [rad]", "distance [m]", "verdict"]
     rows: list[tuple[str, ...]] = []
     for variant, ours in found.items():
-        pairs = (("authors", RECORDED[variant], ""), ("ours", ours, judge(variant, ours)))
-        for run_by, x, verdict in pairs:
-            cells = f"{x[0]:.3f} to {x[1]:.3f}", f"{x[2]:.3f} to {x[3]:.3f}", f"{x[4]:.1e}"
-            rows.append((variant, run_by, *cells, f"{x[5]:.1e}", f"{x[6]:.4f}", verdict))
+        rows.append((variant, "authors", *_cells(RECORDED[variant]), ""))
+        rows.append((variant, "ours", *_cells(ours), judge(variant, ours)))
     return markdown_table(head, rows)
+
+
+def _cells(x: Sequence[float]) -> tuple[str, ...]:
+    angles = (f"{x[0]:.3f} to {x[1]:.3f}", f"{x[2]:.3f} to {x[3]:.3f}")
+    return (*angles, f"{x[4]:.1e}", f"{x[5]:.1e}", f"{x[6]:.4f}")

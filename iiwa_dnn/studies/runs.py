@@ -12,7 +12,6 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Mode
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
@@ -31,10 +30,16 @@ from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.sweeps import Outcome
 
 _KEPT = (
-    "max_position_error_m", "mse_position_error_m2", "max_orientation_error_rad",
-    "joint_drift_rad", "max_kinetic_index", "max_kkt_residual", "position_limit_violation_rad",
-    "velocity_limit_violation_rad_s", "wall_time_s",
-)  # fmt: skip
+    "max_position_error_m",
+    "mse_position_error_m2",
+    "max_orientation_error_rad",
+    "joint_drift_rad",
+    "max_kinetic_index",
+    "max_kkt_residual",
+    "position_limit_violation_rad",
+    "velocity_limit_violation_rad_s",
+    "wall_time_s",
+)
 _HANDED_ON = ("dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "seed")
 
 
@@ -60,10 +65,8 @@ class Scope:
         """Check the sizes; raises InvalidInputError naming the one that is wrong."""
         for name in ("duration", "laps_dt", "dt"):
             checks.positive(name, getattr(self, name))
-        for name, least in (("seeds", 2), ("laps", 1)):
-            if getattr(self, name) < least:
-                problem = f"must be at least {least}, not {getattr(self, name)}"
-                raise InvalidInputError(name, problem, getattr(self, name))
+        checks.integer("seeds", self.seeds, 2)
+        checks.integer("laps", self.laps, 1)
 
 
 FULL = Scope()
@@ -118,8 +121,8 @@ class HeartRun:
     def run(self) -> Record:
         """Carry out the run, without reference solvers."""
         options: dict[str, Any] = {name: getattr(self, name) for name in _HANDED_ON}
-        steps = None if isinstance(self.substeps, str) else self.substeps
         implicit = self.substeps == "implicit"
+        steps = None if isinstance(self.substeps, str) else self.substeps
         follower = ImplicitEuler() if implicit else ExplicitEuler(substeps=steps)
         # Implicit steps of the flow without the projection are convex problems, and compiled.
         solver = DNNSolver(ProjectionNetwork(primal_projection=not implicit), follower=follower)
@@ -196,7 +199,8 @@ def amplification(qp: QP, step: float) -> float:
     no error in x, are left out.
     """
     network = ProjectionNetwork(primal_projection=False)
-    jacobian, moving = network.flow(qp).jacobian(network.initial_state(qp)), qp.q.size + qp.b.size
+    jacobian = network.flow(qp).jacobian(network.initial_state(qp))
+    moving = qp.q.size + qp.b.size
     eigenvalues = np.linalg.eigvals(jacobian[:moving, :moving])
     growth = np.abs(1.0 + step * eigenvalues[np.abs(eigenvalues) > 1e-9])
     return float(growth.max(initial=0.0))
@@ -204,9 +208,11 @@ def amplification(qp: QP, step: float) -> float:
 
 def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
     """Evaluate Jacobian and stability at a hundred of the postures that the run went through."""
-    scheme, reference = run.scheme(), run.reference()
+    scheme = run.scheme()
+    reference = run.reference()
     explicit = run.mode == "continuous" and run.substeps != "implicit"
-    worst, squares = 0.0, []
+    worst = 0.0
+    squares = []
     # A hundred and one, or as many as there are.
     for k in np.unique(np.linspace(0, record.steps - 1, 101).astype(int)):
         conf = Configuration(paper_robot(), record.q[k])

@@ -103,7 +103,7 @@ def paired_difference(
 
 
 def trend(x: ArrayLike, y: ArrayLike) -> Trend:
-    """Tell the trend of y over x, (k,): the sign of Kendall's tau, or ``none`` where that is zero.
+    """Find the trend of y over x, (k,): the sign of Kendall's tau, or ``none`` if that is zero.
 
     It is ``constant`` if y spreads over at most ``FLAT`` of its mean.
 

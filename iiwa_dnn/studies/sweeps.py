@@ -170,7 +170,8 @@ class Sweep:
         """Compute the cells, each yielded as soon as it is done, in whatever order."""
         if not todo:
             return
-        compute, expected = joblib.delayed(_compute), fingerprint(self.task)
+        compute = joblib.delayed(_compute)
+        expected = fingerprint(self.task)
         calls = (compute(name, self.task, dict(cell), expected) for name, cell in todo.items())
         with _backend(min(workers or joblib.cpu_count(), len(todo)), dask):
             # One cell a message: a finished one is written at once.

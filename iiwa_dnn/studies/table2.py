@@ -88,13 +88,13 @@ def _measure(
     key: str, quiet: Sequence[Mapping[str, Any]], noisy: Sequence[Sequence[Mapping[str, Any]]]
 ) -> dict[str, Any]:
     """Lay out one measure of the four cases, and its changes by noise and filter."""
-    still = [values[key] for values in quiet]
-    plain, filtered = (np.array([values[key] for values in runs], float) for runs in noisy)
-    cases = [*map(Estimate.exact, still), estimate(plain), estimate(filtered)]
+    silent = [values[key] for values in quiet]
+    plain, filtered = np.array([[values[key] for values in runs] for runs in noisy], float)
+    cases = [*map(Estimate.exact, silent), estimate(plain), estimate(filtered)]
     changes = {
         "filter, with noise": _relative(paired_difference(filtered, plain), float(plain.mean())),
-        "filter, without noise": Estimate.exact(still[1] / still[0] - 1.0),
-        "noise, without filter": _relative(estimate(plain - still[0]), still[0]),
+        "filter, without noise": Estimate.exact(silent[1] / silent[0] - 1.0),
+        "noise, without filter": _relative(estimate(plain - silent[0]), silent[0]),
     }
     printed = _paper_changes(MEASURES[key])
     return {

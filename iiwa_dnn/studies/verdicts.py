@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.studies.statistics import Estimate, trend
 
@@ -59,18 +61,16 @@ def judge_row(
     """
     if not len(x) == len(paper) == len(ours):
         raise InvalidInputError("ours", f"has {len(ours)} entries for {len(x)}", ours)
-    ratios = tuple(
-        None if p is None or o is None else o / p for p, o in zip(paper, ours, strict=True)
-    )
-    known = [(i, p) for i, p in enumerate(paper) if p is not None]
-    at = [x[i] for i, _ in known]
-    paper_trend = trend(at, [p for _, p in known])
-    mine = [o for i, _ in known if (o := ours[i]) is not None]
-    if len(mine) < len(known):
+    # A number that is missing, of the paper's or of ours, is NaN here.
+    table = np.array([x, paper, ours], dtype=float)
+    ratios = tuple(None if np.isnan(ratio) else ratio for ratio in (table[2] / table[1]).tolist())
+    at, theirs, mine = table[:, ~np.isnan(table[1])]
+    paper_trend = trend(at, theirs)
+    if np.isnan(mine).any():
         return Verdict("not reproduced", ratios, "unknown", paper_trend)
     our_trend = trend(at, mine)
     level: Level = "same trend" if our_trend == paper_trend else "not reproduced"
-    if all(_within_factor(ratios[i]) for i, _ in known):
+    if all(map(_within_factor, mine / theirs)):
         level = "reproduced"
     return Verdict(level, ratios, our_trend, paper_trend)
 
@@ -82,11 +82,12 @@ def judge_change(paper: float, ours: Estimate) -> Verdict:
     factor 2, ``same trend`` if only the former, else ``not reproduced``.
     """
     ratio = ours.mean / paper if paper else None
-    mine, said = _direction(ours), _direction(Estimate.exact(paper))
+    mine = _direction(ours)
+    theirs = _direction(Estimate.exact(paper))
     level: Level = "not reproduced"
-    if mine == said and said != "no effect shown":
+    if mine == theirs and theirs != "no effect shown":
         level = "reproduced" if _within_factor(ratio) else "same trend"
-    return Verdict(level, (ratio,), mine, said)
+    return Verdict(level, (ratio,), mine, theirs)
 
 
 def _within_factor(ratio: float | None) -> bool:

@@ -12,7 +12,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
-from iiwa_dnn.studies.singular import stretched_run, tilted_run, vertical_start
+from scripts.draw_singular_poses import stretched_run, tilted_run, vertical_start
 
 JERK = JerkLimits(500.0)
 
