@@ -7,7 +7,6 @@ import pytest
 
 from helpers_kinematics import Array, finite_difference
 from iiwa_dnn import Circle, Configuration, Step
-from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.studies import posture_obstacle as study
 
 ARM = study.arm()
@@ -17,9 +16,7 @@ NEAR = np.array([-0.1, 0.05, 0.1, -0.2, 0.1, 0.3]) + study.START
 
 
 def step_at(q: Array, dq: Array) -> Step:
-    kinematics = Kinematics(ARM)
-    kinematics.update(q)
-    return Step(kinematics, {}, 0.0, 1e-3, q, dq)
+    return Step(ARM, q, dt=1e-3, dq=dq)
 
 
 def states(q: Array) -> list:
