@@ -101,9 +101,6 @@ class DNNSolver:
         kept = [(network, sizes, state.copy()) for network, sizes, state in tuple(self._kept)]
         return {**self.__dict__, "_kept": deque(kept, maxlen=1)}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-
     @property
     def state(self) -> Vector:
         """The network's state (size,), a copy; empty if the next call has no warm start."""

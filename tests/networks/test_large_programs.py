@@ -1,4 +1,4 @@
-"""Large sparse programs, and those in which rounding alone is left of the gap."""
+"""Large sparse programs."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import scipy.sparse as spa
 
 import iiwa_dnn
 from iiwa_dnn import QP
-from iiwa_dnn.networks.integrators.eliminations import Augmented, Condensed, elimination
+from iiwa_dnn.networks.integrators import barrier
 
 
 def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
@@ -34,34 +34,24 @@ def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
     return QP(P, q, G, h, A, A @ x, lb, ub), x
 
 
-def test_both_eliminations_solve_the_whole_system() -> None:
+def test_a_step_of_the_barrier_solves_the_whole_system() -> None:
     rng = np.random.default_rng(5)
-    qp, _ = blend(0, 160)
-    (n, m, p), delta = qp.sizes, 1e-4
-    w, box = 10.0 ** rng.uniform(-3.0, 3.0, m), rng.uniform(0.1, 1.0, n)
-    right = [rng.standard_normal(k) for k in (n, p, m)]
-    assert type(elimination(qp.P.copy(), qp.A.copy(), qp.G.copy())) is Augmented
-    dense = rng.standard_normal((n, n))
-    assert type(elimination(dense, qp.A.copy(), qp.G.copy())) is Condensed
-    for kind in (Condensed, Augmented):
-        system = kind(qp.P.copy(), qp.A.copy(), qp.G.copy())
-        (d, f, e), c = system.equilibrate(qp.q)
-        P, A, G = (np.asarray(spa.csr_matrix(v).todense()) for v in system.matrices)
-        np.testing.assert_allclose(P, c * d[:, None] * qp.P * d, rtol=1e-12)
-        np.testing.assert_allclose(A, f[:, None] * qp.A * d, rtol=1e-12)
-        np.testing.assert_allclose(G, e[:, None] * qp.G * d, rtol=1e-12)
-        assert system.factor(w, box, delta)
-        found = np.concatenate(system.solve(*right))
-        zeros = np.zeros((p, m))
-        K = np.block(
-            [
-                [P + np.diag(box), A.T, G.T],
-                [A, -delta * np.eye(p), zeros],
-                [G, zeros.T, -np.diag(1.0 / w)],
-            ]
-        )
-        known = np.linalg.solve(K, np.concatenate(right))
-        np.testing.assert_allclose(found, known, rtol=1e-6, atol=1e-8 * np.abs(known).max())
+    qp, _ = blend(0, 60)
+    program = barrier.equilibrate(qp)
+    P, _, A, _, omega, *_ = program
+    delta, w = 1e-4, 10.0 ** rng.uniform(-3.0, 3.0, len(omega))
+    right = [rng.standard_normal(len(v)) for v in (P, A, omega)]
+    found = np.concatenate(barrier.System(program, w, delta).solve(*right))
+    zeros = np.zeros((len(A), len(omega)))
+    K = np.block(
+        [
+            [P, A.T, omega.T],
+            [A, -delta * np.eye(len(A)), zeros],
+            [omega, zeros.T, -np.diag(1.0 / w)],
+        ]
+    )
+    known = np.linalg.solve(K, np.concatenate(right))
+    np.testing.assert_allclose(found, known, rtol=1e-6, atol=1e-8 * np.abs(known).max())
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -1,7 +1,10 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
+import copy
+import pickle
 import subprocess
 import sys
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -246,6 +249,23 @@ def test_what_is_set_later_is_used_by_the_next_call() -> None:
     with pytest.raises(InvalidInputError, match="tol"):
         solver.tol = -1.0
     assert (solver.tol, solver.version) == (1e-12, 9)
+
+
+@pytest.mark.parametrize(
+    "duplicate", [copy.copy, copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))]
+)
+def test_a_copy_has_a_warm_start_of_its_own(duplicate: Callable[[DNNSolver], DNNSolver]) -> None:
+    qp, _ = known_qp(np.random.default_rng(12), 7, 3, 2, inequalities=2)
+    solver = DNNSolver()
+    solver.solve(qp)
+    before = solver.state
+    other = duplicate(solver)
+    np.testing.assert_array_equal(other.state, before)
+    other.disturb(np.ones(7))
+    np.testing.assert_array_equal(solver.state, before)
+    assert other.solve(qp).found
+    other.tol = 1e-6
+    assert solver.tol == 1e-9
 
 
 def test_an_error_in_a_call_leaves_no_half_made_state() -> None:

@@ -187,6 +187,19 @@ def test_a_second_solver_is_asked_where_the_first_has_no_answer(
     assert np.isnan(agreement.solution_gap[2]).all()
 
 
+def test_a_third_solver_is_asked_and_the_first_of_the_table_where_it_fails() -> None:
+    qp, x = known_qp(np.random.default_rng(3), 7, 3, 2)
+    tight = {"primal_tol": 1e-10, "dual_tol": 1e-10}
+    for options, largest in ((tight, 1e-8), ({"iter_limit": 0, **tight}, 1e-8)):
+        table = {"daqp": options, "proxqp": CrossCheck().options("proxqp")}
+        agreement = CrossCheck(("daqp", "proxqp"), _options=table).check(qp, x)
+        assert agreement.solution_gap.shape == (1, 2)
+        assert agreement.solution_gap.max() < 1e-6
+        assert agreement.reference_residual.max() <= largest
+    with pytest.raises(InvalidInputError, match="gurobi"):
+        CrossCheck(("gurobi",))
+
+
 def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*args: object, **options: object) -> None:
         raise qpsolvers.exceptions.SolverError("out of order")

@@ -16,8 +16,8 @@ which is smooth and holds the multipliers positive; at rest :math:`\mu_j (\chi -
 Its linearly implicit steps of length :math:`1/\delta`, with the slack :math:`\nu/\mu` as a variable
 s of its own, are those of a proximal interior-point method; as :math:`\nu` falls, its equilibrium
 moves to that of the projection network. From there on linearly implicit steps of the projection
-network itself settle what is left, on the rows that are active. Each step's linear system is that
-of `iiwa_dnn.networks.integrators.eliminations`; variables whose bounds meet take no part.
+network itself settle what is left, on the rows that are active. Of each step's linear system all
+multipliers are eliminated. A variable whose bounds meet gets an equality row in their place.
 
 Sources: D. Ruiz, "A scaling algorithm to equilibrate both rows and columns norms in matrices",
 RAL-TR-2001-034; S. Mehrotra, "On the implementation of a primal-dual interior point method", SIAM
@@ -28,24 +28,26 @@ regularisation.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
 
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.networks.integrators.eliminations import elimination
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Matrix, Triple, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
 
 ATTEMPTS = ((1e-8, 0.99, 0.0), (1e-7, 0.9, 1e-3), (1e-6, 0.9, 1e-2), (1e-9, 0.9, 0.0))
-"""Inverse of the steps' length [1/rho], share of the way to the boundary that is gone, and
+"""Inverse of the steps' length [1/rho], fraction of the distance to the boundary that is gone, and
 least fall of the barrier, of one attempt after another."""
 EPS = 1e-16
 """Least eps times delta: below, rounding of A^T A/delta could make K indefinite."""
 REFINED = 4
 """Solutions of one system, the first and its refinements."""
 LEAST = 1e-30
-"""Least weight of a row, of one that takes no part."""
+"""Least weight of a row, of one that is not active."""
 NEAR = 1e-3
 """Size of the scaled residuals from which on the point is judged in the program's own units."""
 MOST = 150
@@ -56,211 +58,332 @@ NETWORK_STEPS = 10
 """Linearly implicit steps of the projection network after an attempt."""
 
 
-def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
-    """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s.
+class Scaled(NamedTuple):
+    """A program in coordinates x' = x / d, with rows and cost scaled, and only finite limits.
 
-    Works in numpy, LAPACK and SuperLU: it is meant for large programs and for those left over.
+    Attributes:
+        P: Cost matrix, (n, n).
+        q: Cost vector, (n,).
+        A: Equality rows, a row for each variable whose bounds meet among them, (rows, n).
+        b: Their right-hand sides.
+        omega: Inequality rows and bounds that are finite, (k, n).
+        chi: Their limits, (k,).
+        d: Scale of each variable, (n,).
+        f: Scale of each equality row.
+        e: Scale of each inequality row, (k,).
+        c: Scale of the cost.
+        used: True for the rows of [G; I; -I] that `omega` has, (m + 2n,).
     """
-    if (qp.lb == qp.ub).all():  # nothing is left to choose
-        state[:], state[: qp.q.size] = 0.0, qp.lb
-        return 0, 0.0, *point_of_state(qp.data, *qp.sizes, state, point)
-    run = _Run(qp, state, point, tol)
-    run.limit = max_systems
-    # Overflows end an attempt: they show in its residuals.
-    with np.errstate(all="ignore"):
-        for attempt in ATTEMPTS:
-            if run.systems >= max_systems or run.attempt(*attempt):
-                break
-    residuals, fixed = point_of_state(qp.data, *qp.sizes, state, point), qp.lb == qp.ub
-    z_box, bounds = point[-qp.q.size :], state[-2 * qp.q.size :].reshape(2, -1)
-    bounds[:, fixed] = np.maximum(z_box[fixed], 0.0), np.maximum(-z_box[fixed], 0.0)
-    return run.systems, run.time, *residuals
+
+    P: Matrix
+    q: Vector
+    A: Matrix
+    b: Vector
+    omega: Matrix
+    chi: Vector
+    d: Vector
+    f: Vector
+    e: Vector
+    c: float
+    used: NDArray[np.bool_]
 
 
-class _Run:
-    """The scaled program, its linear system, and the best point so far."""
+def equilibrate(qp: QP) -> Scaled:
+    """Scale a program until the largest entry of each row and column of P, A and G is near one."""
+    n, m, _ = qp.sizes
+    fixed = qp.lb == qp.ub
+    chi = np.concatenate([qp.h, qp.ub, -qp.lb])
+    used = np.isfinite(chi)
+    used[m:] &= ~np.tile(fixed, 2)
+    P = qp.P.copy()
+    A = np.vstack([qp.A, np.eye(n)[fixed]])
+    G = np.where(used[:m, None], qp.G, 0.0)
+    d = np.ones(n)
+    f = np.ones(len(A))
+    e = np.ones(m)
+    for _ in range(10):
+        x = _inverse_roots(np.vstack([P, A, G]), 0)
+        y = _inverse_roots(A, 1)
+        z = _inverse_roots(G, 1)
+        P *= x[:, None] * x
+        A *= y[:, None] * x
+        G *= z[:, None] * x
+        d *= x
+        f *= y
+        e *= z
+        if np.abs(1.0 - np.concatenate([x, y, z])).max() < 1e-2:
+            break
+    c = 1.0 / max(np.abs(P).max(axis=0).mean(), np.abs(qp.q * d).max(), 1e-300)
+    rows = np.concatenate([e, 1.0 / d, 1.0 / d])[used]
+    omega = np.vstack([G, np.eye(n), -np.eye(n)])[used]
+    b = np.concatenate([qp.b, qp.lb[fixed]])
+    return Scaled(c * P, c * qp.q * d, A, b * f, omega, chi[used] * rows, d, f, rows, c, used)
 
-    def __init__(self, qp: QP, state: Vector, point: Vector, tol: float) -> None:
-        self.qp, self.state, self.point, self.tol = qp, state, point, tol
-        self.systems, self.limit, self.time, self.best = 0, 0, 0.0, np.inf
-        self.residuals = (np.inf, np.inf, np.inf)
-        # A variable whose bounds meet is a number; its multiplier is what the others leave over.
-        self.moving, self.rows = np.flatnonzero(qp.lb < qp.ub), np.flatnonzero(np.isfinite(qp.h))
-        self.rest = rest = np.where(qp.lb < qp.ub, 0.0, qp.lb)
-        # Views where all take part, without a copy.
-        columns = slice(None) if self.moving.size == qp.q.size else self.moving
-        rows = slice(None) if self.rows.size == qp.h.size else self.rows
-        P, G = qp.P[columns], qp.G[rows]
-        q, b, h = qp.q[self.moving] + P @ rest, qp.b - qp.A @ rest, qp.h[self.rows] - G @ rest
-        self.system = elimination(*(v[:, columns] for v in (P, qp.A, G)))
-        (self.d, self.f, self.e), self.c = self.system.equilibrate(q)
-        self.P, self.A, self.G = self.system.matrices
-        self.AT, self.GT = self.A.T, self.G.T
-        self.q, self.b = q * self.d * self.c, b * self.f
-        lb, ub = qp.lb[self.moving] / self.d, qp.ub[self.moving] / self.d
-        self.upper, self.lower = np.flatnonzero(ub < np.inf), np.flatnonzero(lb > -np.inf)
-        self.chi = np.concatenate([h * self.e, ub[self.upper], -lb[self.lower]])
-        self.parts = h.size, h.size + self.upper.size
 
-    def times(self, x: Vector) -> Vector:
-        """Compute Omega x."""
-        return np.concatenate([self.G @ x, x[self.upper], -x[self.lower]])
+def _inverse_roots(matrix: Matrix, axis: int) -> Vector:
+    """Compute one over the root of the largest entry of each column (axis 0) or row (axis 1)."""
+    sizes = np.abs(matrix).max(axis=axis, initial=0.0)
+    roots: Vector = 1.0 / np.sqrt(np.where(sizes > 0.0, sizes, 1.0))
+    return roots
 
-    def transposed(self, mu: Vector) -> Vector:
-        """Compute Omega^T mu."""
-        first, second = self.parts
-        total: Vector = self.GT @ mu[:first]
-        total[self.upper] += mu[first:second]
-        total[self.lower] -= mu[second:]
-        return total
 
-    def factor(self, weights: Vector) -> bool:
-        """Factor the system for the weights of all rows; False if that is not possible.
+class Iterate(NamedTuple):
+    """A point of the smoothed flow: x, multipliers y and mu, and the slacks s of the limits."""
 
-        eps is enlarged until the matrix is positive definite to working precision.
-        """
-        first, second = self.parts
-        self.weights, self.box = np.maximum(weights, LEAST), np.zeros_like(self.q)
-        self.box[self.upper] += weights[first:second]
-        self.box[self.lower] += weights[second:]
-        self.eps = EPS / self.delta
-        while self.eps < 1.0 and self.systems < self.limit:
-            self.systems += 1
-            if self.system.factor(self.weights[:first], self.box + self.eps, self.delta):
-                return True
-            self.eps *= 10.0
-        return False
+    x: Vector
+    y: Vector
+    mu: Vector
+    s: Vector
+
+
+class System:
+    """The condensed linear system of one step, factored for the weights of all inequality rows.
+
+    Its lines are (P + eps) dx + A^T dy + Omega^T dmu = rx, A dx - delta dy = ry and
+    Omega dx - dmu / weights = rmu. eps is enlarged until the condensed matrix is positive definite
+    to working precision.
+
+    Attributes:
+        count: Factorizations that were tried.
+        usable: True if the last of them succeeded.
+    """
+
+    def __init__(self, program: Scaled, weights: Vector, delta: float) -> None:
+        self._program = program
+        self._weights = np.maximum(weights, LEAST)
+        self._delta = delta
+        self._eps = EPS / delta
+        self.count = 0
+        self.usable = False
+        A = program.A
+        omega = program.omega
+        K = program.P + A.T @ A / delta + omega.T @ (self._weights[:, None] * omega)
+        while self._eps < 1.0 and not self.usable:
+            self.count += 1
+            try:
+                self._factor = cho_factor(K + self._eps * np.eye(len(K)), check_finite=False)
+                self.usable = True
+            except np.linalg.LinAlgError:
+                self._eps *= 10.0
 
     def solve(self, rx: Vector, ry: Vector, rmu: Vector) -> tuple[Vector, Vector, Vector]:
-        """Solve one step's system for dx, dy and dmu, refined.
-
-        Its lines are (P + eps) dx + A^T dy + Omega^T dmu = rx, A dx - delta dy = ry and
-        Omega dx - dmu/W = rmu. The bounds' multipliers are eliminated, but refined with the rest.
-        """
-        first, w, delta, before = self.parts[0], self.weights, self.delta, np.inf
-        errors = rx, ry, rmu
-        dx, dy, dmu = (np.zeros_like(v) for v in errors)
-        scale = max(np.abs(v).max(initial=0.0) for v in errors)
+        """Solve for dx, dy and dmu, and refine them."""
+        P, _, A, _, omega, *_ = self._program
+        w = self._weights
+        dx = np.zeros_like(rx)
+        dy = np.zeros_like(ry)
+        dmu = np.zeros_like(rmu)
+        errors = (rx, ry, rmu)
+        scale = _largest(errors)
+        before = np.inf
         for _ in range(REFINED):
             ex, ey, emu = errors
-            pushed = w * emu
-            pushed[:first] = 0.0
-            x, y, g = self.system.solve(ex + self.transposed(pushed), ey, emu[:first])
-            mu = w * (self.times(x) - emu)
-            mu[:first] = g
-            dx, dy, dmu = dx + x, dy + y, dmu + mu
+            right = ex + A.T @ (ey / self._delta) + omega.T @ (w * emu)
+            x = cho_solve(self._factor, right, check_finite=False)
+            dx = dx + x
+            dy = dy + (A @ x - ey) / self._delta
+            dmu = dmu + w * (omega @ x - emu)
             errors = (
-                rx - (self.P @ dx + self.eps * dx + self.AT @ dy + self.transposed(dmu)),
-                ry - self.A @ dx + delta * dy,
-                rmu - self.times(dx) + dmu / w,
+                rx - (P @ dx + self._eps * dx + A.T @ dy + omega.T @ dmu),
+                ry - A @ dx + self._delta * dy,
+                rmu - omega @ dx + dmu / w,
             )
-            error = max(np.abs(v).max(initial=0.0) for v in errors)
+            error = _largest(errors)
             if not 1e-13 * scale < error < 0.5 * before:
                 break
             before = error
         return dx, dy, dmu
 
-    def judge(self, x: Vector, y: Vector, mu: Vector) -> float:
-        """Judge the point in the program's own units and keep it if it is the best so far.
 
-        Returns:
-            Its largest residual.
-        """
-        n, m, p = self.qp.sizes
-        s, z_u_l = np.zeros_like(self.state), np.split(mu, self.parts)
-        s[:n] = self.rest
-        s[self.moving], s[n : n + p] = x * self.d, y * self.f / self.c
-        s[n + p + self.rows] = z_u_l[0] * self.e / self.c
-        bounds = s[n + p + m :].reshape(2, n)
-        bounds[0, self.moving[self.upper]] = z_u_l[1] / (self.d[self.upper] * self.c)
-        bounds[1, self.moving[self.lower]] = z_u_l[2] / (self.d[self.lower] * self.c)
-        return self.keep(s)
+def settle(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
+    """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s.
 
-    def keep(self, s: Vector) -> float:
-        """Keep the state s if it is the best so far; returns its largest residual."""
-        residuals = point_of_state(self.qp.data, *self.qp.sizes, s, self.point)
-        largest = max(residuals) if sum(residuals) < np.inf else np.inf
-        if largest < self.best:
-            self.best, self.residuals = largest, residuals
-            self.state[:] = s
-        return largest
+    Works in numpy and LAPACK: it is meant for large programs and for those left over.
+    """
+    n = qp.q.size
+    run = Run(qp, state, tol, max_systems)
+    # Overflows end an attempt: they show in its residuals.
+    with np.errstate(all="ignore"):
+        for attempt in ATTEMPTS:
+            if run.systems >= max_systems or run.attempt(*attempt):
+                break
+    residuals = point_of_state(qp.data, *qp.sizes, state, point)
+    fixed = qp.lb == qp.ub
+    z_box = point[-n:]
+    bounds = state[-2 * n :].reshape(2, n)
+    bounds[:, fixed] = np.maximum(z_box[fixed], 0.0), np.maximum(-z_box[fixed], 0.0)
+    return run.systems, run.time, *residuals
 
-    def start(self, delta: float) -> tuple[Vector, Vector, Vector, Vector]:
-        """Find x and y that balance cost and limits, and positive mu and slacks around them."""
-        self.delta = delta
-        self.factor(np.ones_like(self.chi))
-        x, y, _ = self.solve(-self.q, self.b, self.chi)
-        slack = self.chi - self.times(x)
-        mu, s = (np.maximum(v - min(v.min(initial=0.0), 0.0), 1e-2) for v in (-slack, slack))
-        return x, y, mu + (slack > 0.0).any(), s + (slack < 0.0).any()
 
-    def newton(
-        self, target: Vector, rates: tuple[Vector, Vector, Vector], mu: Vector, s: Vector
-    ) -> tuple[Vector, Vector, Vector, Vector]:
-        """Solve one linearly implicit step with s dmu + mu ds = target; returns dx, dy, dmu, ds."""
-        rd, rp, ri = rates
-        dx, dy, dmu = self.solve(-rd, -rp, -ri - target / mu)
-        return dx, dy, dmu, (target - s * dmu) / mu
+class Run:
+    """Attempts on one program, and the best state so far.
 
-    def attempt(self, delta: float, share: float, fall: float) -> bool:
-        """Follow the smoothed flow from its start; returns whether the point was found."""
-        k, stalled, best, nearest = max(len(self.chi), 1), 0, np.inf, np.inf
-        x, y, mu, s = kept = self.start(delta)
-        last = min(self.limit, self.systems + MOST)
-        while self.systems < last:
-            rd = self.P @ x + self.q + self.AT @ y + self.transposed(mu)
-            rates = rd, self.A @ x - self.b, self.times(x) + s - self.chi
-            nu = float(s @ mu) / k
-            size = max(nu, *(float(np.abs(r).max(initial=0.0)) for r in rates))
+    Attributes:
+        systems: Linear systems that were factored.
+        time: Network time that passed [rho].
+    """
+
+    def __init__(self, qp: QP, state: Vector, tol: float, limit: int) -> None:
+        """Write the best state into `state`; take at most `limit` systems."""
+        self.systems = 0
+        self.time = 0.0
+        self._qp = qp
+        self._program = equilibrate(qp)
+        self._state = state
+        self._tol = tol
+        self._limit = limit
+        self._best = np.inf
+        self._delta = 0.0
+
+    def attempt(self, delta: float, fraction: float, fall: float) -> bool:
+        """Follow the smoothed flow from its start; returns True if the point was found."""
+        self._delta = delta
+        program = self._program
+        now = self._start()
+        kept = now
+        best = np.inf
+        nearest = np.inf
+        stalled = 0
+        last = min(self._limit, self.systems + MOST)
+        while self.systems < last and stalled <= STALLED:
+            rates = _rates(program, now)
+            nu = float(now.s @ now.mu) / max(now.s.size, 1)
+            size = max(nu, _largest(rates))
             if not size < np.inf:
                 break
             better = size < 0.9 * best
             if size < NEAR:
-                value = self.judge(x, y, mu)
-                if value <= 0.5 * self.tol:
-                    kept = x, y, mu, s
+                value = self._judge(now.x, now.y, now.mu)
+                if value <= 0.5 * self._tol:
+                    kept = now
                     break  # the network's own steps sharpen it
-                better, nearest = better or value < nearest, min(nearest, value)
+                better = better or value < nearest
+                nearest = min(nearest, value)
             if better:
-                kept = x, y, mu, s
-            best, stalled = min(best, size), 0 if better else stalled + 1
-            if stalled > STALLED or 0.0 < nu < 1e-20 or not self.factor(1.0 / (s / mu + delta)):
+                kept = now
+            best = min(best, size)
+            stalled = 0 if better else stalled + 1
+            system = self._factored(1.0 / (now.s / now.mu + delta))
+            if not system.usable or 0.0 < nu < 1e-20:
                 break
-            dx, dy, dmu, ds = self.newton(-s * mu, rates, mu, s)
-            if nu > 0.0:
-                after = float((s + _length(s, ds) * ds) @ (mu + _length(mu, dmu) * dmu)) / k
-                center = max(min(1.0, max(0.0, after / nu)) ** 3, fall)
-                dx, dy, dmu, ds = self.newton(-s * mu - ds * dmu + center * nu, rates, mu, s)
-            # All the way only where nothing is in it.
-            reach = min(max(share, 1.0 - nu), 1.0 - 1e-6)
-            one, two = (v if v == 1.0 else reach * v for v in (_length(s, ds), _length(mu, dmu)))
-            x, s, y, mu = x + one * dx, s + one * ds, y + two * dy, mu + two * dmu
+            step = _predicted_and_corrected(system, now, rates, nu, fall)
+            # All the way only if nothing is in it.
+            now = _moved(now, step, min(max(fraction, 1.0 - nu), 1.0 - 1e-6))
             self.time += 1.0 / delta
-        x, y, mu, s = kept
+        active = kept.mu > kept.s
         # From zero, the steps find the smallest multipliers of the active rows: less rounding.
-        return self.network(x, y, mu, mu > s) or self.network(x, 0.0 * y, 0.0 * mu, mu > s)
+        return self._network(kept.x, kept.y, kept.mu, active) or self._network(
+            kept.x, 0.0 * kept.y, 0.0 * kept.mu, active
+        )
 
-    def network(self, x: Vector, y: Vector, mu: Vector, active: NDArray[np.bool_]) -> bool:
-        """Take linearly implicit steps of the projection network; returns whether it settled."""
-        mu, delta, last = np.where(active, mu, 0.0), self.delta, np.inf
+    def _factored(self, weights: Vector) -> System:
+        """Factor the system of a step."""
+        system = System(self._program, weights, self._delta)
+        self.systems += system.count
+        return system
+
+    def _start(self) -> Iterate:
+        """Find x and y that balance cost and limits, and positive mu and slacks around them."""
+        program = self._program
+        system = self._factored(np.ones_like(program.chi))
+        x, y, _ = system.solve(-program.q, program.b, program.chi)
+        slack = program.chi - program.omega @ x
+        mu = np.maximum(-slack - min((-slack).min(initial=0.0), 0.0), 1e-2)
+        s = np.maximum(slack - min(slack.min(initial=0.0), 0.0), 1e-2)
+        return Iterate(x, y, mu + (slack > 0.0).any(), s + (slack < 0.0).any())
+
+    def _judge(self, x: Vector, y: Vector, mu: Vector) -> float:
+        """Compute the largest residual in the program's own units; keep the best state so far."""
+        n, _, p = self._qp.sizes
+        program = self._program
+        state = np.zeros_like(self._state)
+        state[:n] = x * program.d
+        state[n : n + p] = y[:p] * program.f[:p] / program.c
+        state[n + p :][program.used] = mu * program.e / program.c
+        point = np.empty(state.size - n)
+        largest = _largest(point_of_state(self._qp.data, *self._qp.sizes, state, point))
+        if largest < self._best:
+            self._best = largest
+            self._state[:] = state
+        return largest
+
+    def _network(self, x: Vector, y: Vector, mu: Vector, active: NDArray[np.bool_]) -> bool:
+        """Take linearly implicit steps of the projection network; returns True if it settled."""
+        program = self._program
+        mu = np.where(active, mu, 0.0)
+        last = np.inf
         for _ in range(NETWORK_STEPS):
-            full = self.systems >= self.limit
-            if full or not self.factor(np.where(active, 1.0 / delta, 0.0)):
+            if self.systems >= self._limit:
                 break
-            slack = self.times(x) - self.chi
-            rd = self.P @ x + self.q + self.AT @ y + self.transposed(mu)
-            dx, dy, dmu = self.solve(-rd, self.b - self.A @ x, np.where(active, -slack, 0.0))
+            system = self._factored(np.where(active, 1.0 / self._delta, 0.0))
+            if not system.usable:
+                break
+            rd = program.P @ x + program.q + program.A.T @ y + program.omega.T @ mu
+            slack = program.omega @ x - program.chi
+            dx, dy, dmu = system.solve(
+                -rd, program.b - program.A @ x, np.where(active, -slack, 0.0)
+            )
             mu = np.where(active, mu + dmu, 0.0)
-            x, y, self.time = x + dx, y + dy, self.time + 1.0 / delta
-            value = self.judge(x, y, np.maximum(mu, 0.0))
-            before, active = active, mu + self.times(x) - self.chi > 0.0
-            if value <= 0.5 * self.tol or (value > 0.5 * last and (active == before).all()):
+            x = x + dx
+            y = y + dy
+            self.time += 1.0 / self._delta
+            value = self._judge(x, y, np.maximum(mu, 0.0))
+            before = active
+            active = mu + program.omega @ x - program.chi > 0.0
+            if value <= 0.5 * self._tol or (value > 0.5 * last and (active == before).all()):
                 break
-            mu, last = np.where(active, mu, 0.0), value
-        return self.best <= self.tol
+            mu = np.where(active, mu, 0.0)
+            last = value
+        return bool(self._best <= self._tol)
+
+
+def _rates(program: Scaled, now: Iterate) -> tuple[Vector, Vector, Vector]:
+    """Compute the dual, the primal and the slacks' residual."""
+    dual = program.P @ now.x + program.q + program.A.T @ now.y + program.omega.T @ now.mu
+    return dual, program.A @ now.x - program.b, program.omega @ now.x + now.s - program.chi
+
+
+def _predicted_and_corrected(
+    system: System, now: Iterate, rates: tuple[Vector, Vector, Vector], nu: float, fall: float
+) -> Iterate:
+    """Take one linearly implicit step to nu = 0, then one to the nu that this one lets expect."""
+    step = _step(system, now, rates, -now.s * now.mu)
+    if nu > 0.0:
+        s = now.s + _length(now.s, step.s) * step.s
+        mu = now.mu + _length(now.mu, step.mu) * step.mu
+        after = float(s @ mu) / s.size
+        center = max(min(1.0, max(0.0, after / nu)) ** 3, fall)
+        target = -now.s * now.mu - step.s * step.mu + center * nu
+        step = _step(system, now, rates, target)
+    return step
+
+
+def _step(
+    system: System, now: Iterate, rates: tuple[Vector, Vector, Vector], target: Vector
+) -> Iterate:
+    """Solve one linearly implicit step with s dmu + mu ds = target."""
+    dual, primal, slack = rates
+    dx, dy, dmu = system.solve(-dual, -primal, -slack - target / now.mu)
+    return Iterate(dx, dy, dmu, (target - now.s * dmu) / now.mu)
+
+
+def _moved(now: Iterate, step: Iterate, fraction: float) -> Iterate:
+    """Move along a step, up to a fraction of the distance to where s or mu is zero."""
+    one = _length(now.s, step.s)
+    two = _length(now.mu, step.mu)
+    one = one if one == 1.0 else fraction * one
+    two = two if two == 1.0 else fraction * two
+    return Iterate(
+        now.x + one * step.x, now.y + two * step.y, now.mu + two * step.mu, now.s + one * step.s
+    )
 
 
 def _length(v: Vector, dv: Vector) -> float:
     """Compute the longest step, at most 1, along dv that holds v nonnegative."""
     falling = dv < 0.0
     return float(np.min(-v[falling] / dv[falling], initial=1.0))
+
+
+def _largest(arrays: tuple[Vector, ...] | Triple) -> float:
+    """Compute the largest absolute entry of several arrays; NaN if one is NaN."""
+    return float(np.abs(np.hstack(arrays)).max(initial=0.0))
