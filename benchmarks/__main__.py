@@ -8,9 +8,13 @@ from benchmarks.collisions import bench_collisions
 from benchmarks.sizes import bench_sizes
 
 COMMANDS = {
-    "solvers": bench_solvers, "loop": bench_loop, "targets": bench_targets,
-    "collisions": bench_collisions, "arms": bench_arms, "sizes": bench_sizes,
-}  # fmt: skip
+    "solvers": bench_solvers,
+    "loop": bench_loop,
+    "targets": bench_targets,
+    "collisions": bench_collisions,
+    "arms": bench_arms,
+    "sizes": bench_sizes,
+}
 
 if __name__ == "__main__":
     name = sys.argv[1] if len(sys.argv) > 1 else ""

@@ -10,12 +10,14 @@ from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import HeartRun, total_variation
 
 UNSTABLE = (("block", 1), ("block", 2), ("block", 4), ("block", 7), ("so3", 1), ("so3", 2))
-STARTS, PERTURBATION = 10, 1e-12  # the first is the paper's own; [rad]
+STARTS = 10  # the first is the paper's own
+PERTURBATION = 1e-12  # [rad]
 
 
 def main() -> None:
     """Print largest errors, drift, total variation and kinetic index of each row."""
-    rng, start = np.random.default_rng(0), paper.START
+    rng = np.random.default_rng(0)
+    start = paper.START
     for orientation, substeps in UNSTABLE:
         rows = []
         for i in range(STARTS):

@@ -24,10 +24,8 @@ from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.robot import urdf_of
 from scripts.arm_scenes import SCENES, scene
 
-OWN, PEERS = (
-    "iiwa_dnn, with q + dt dq",
-    ("Pink, daqp, target one step ahead", "mink, daqp", "PlaCo"),
-)
+OWN = "iiwa_dnn, with q + dt dq"
+PEERS = ("Pink, daqp, target one step ahead", "mink, daqp", "PlaCo")
 ARRIVED = 1e-4  # [m]
 
 
@@ -56,10 +54,17 @@ def measure_scene(
     loops = [loop for loop in LOOPS if loop.name in (OWN, *PEERS)]
     with tempfile.TemporaryDirectory() as folder:
         task = {
-            "scene": name, "urdf": str(write_urdf(robot, Path(folder))), "tip": [*references],
-            "names": robot.joint_names, "q0": np.array(q0), "lower": robot.q_lower,
-            "upper": robot.q_upper, "velocity": robot.dq_max, "poses": poses, "soft": True,
-        }  # fmt: skip
+            "scene": name,
+            "urdf": str(write_urdf(robot, Path(folder))),
+            "tip": [*references],
+            "names": robot.joint_names,
+            "q0": np.array(q0),
+            "lower": robot.q_lower,
+            "upper": robot.q_upper,
+            "velocity": robot.dq_max,
+            "poses": poses,
+            "soft": True,
+        }
         rows, missing = measure_steps(steps, dt, pythons, scene=task, loops=loops)
     for row in rows:
         at = [iiwa_dnn.Configuration(robot, q) for q in row["q"]]
@@ -83,7 +88,9 @@ def compare(own: dict[str, Any], peer: dict[str, Any]) -> tuple[float, float, fl
 def bench_arms(arguments: Sequence[str] | None = None, prog: str = "arms") -> int:
     """Measure the scenes and print the tables; returns 0."""
     steps, pythons = read_arguments(prog, bench_arms.__doc__, 2000, arguments)
-    times, motions, missing = [], [], set()
+    times = []
+    motions = []
+    missing = set()
     warnings.simplefilter("ignore")
     for name in SCENES:
         if "velocity" in name:  # no frame's target
@@ -92,7 +99,8 @@ def bench_arms(arguments: Sequence[str] | None = None, prog: str = "arms") -> in
         missing.update(absent)
         found = {row["name"]: row for row in rows}
         own = found[OWN]
-        own_time, cells = own["median_us"], [name, f"{own['median_us']:.1f}"]
+        own_time = own["median_us"]
+        cells = [name, f"{own['median_us']:.1f}"]
         for peer in PEERS:
             row = found.get(peer)
             cells.append("" if row is None else f"{row['median_us']:.1f}")

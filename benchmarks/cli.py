@@ -128,9 +128,10 @@ def _loop(options: BenchLoopSettings) -> int:
 
     with tqdm(total=options.steps, unit="step", disable=options.quiet) as bar:
         pythons = {
-            "placo": options.placo_python, "mink": options.mink_python,
+            "placo": options.placo_python,
+            "mink": options.mink_python,
             "pydrake": options.drake_python,
-        }  # fmt: skip
+        }
         steps, missing = measure_steps(options.steps, options.period, pythons, bar.update)
     results = {
         "environment": environment(("pin-pink",)),

@@ -16,7 +16,8 @@ from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.studies.runs import paper_robot
 
 BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
-RADII, DISTANCE = (0.05, 0.1, 0.1), 0.03  # [m]
+RADII = (0.05, 0.1, 0.1)  # [m]
+DISTANCE = 0.03  # [m]
 _NAMES = ("iiwa_dnn, with q + dt dq", "PlaCo", "Pink, daqp", "mink, daqp")
 
 
@@ -39,10 +40,14 @@ def bench_collisions(arguments: Sequence[str] | None = None, prog: str = "collis
     robot = paper_robot()
     moving = [c for c in collision_model(robot).capsules if not c.link.endswith("_0")]
     scene = {
-        "links": [c.link for c in moving], "a": [c.a for c in moving], "b": [c.b for c in moving],
-        "radii": [c.radius for c in moving], "balls": BALLS, "ball_radii": RADII,
+        "links": [c.link for c in moving],
+        "a": [c.a for c in moving],
+        "b": [c.b for c in moving],
+        "radii": [c.radius for c in moving],
+        "balls": BALLS,
+        "ball_radii": RADII,
         "distance": DISTANCE,
-    }  # fmt: skip
+    }
     loops = [loop for loop in LOOPS if loop.name in _NAMES]
     rows, missing = measure_steps(count, 1e-3, pythons, scene=scene, loops=loops)
     balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
@@ -54,8 +59,10 @@ def bench_collisions(arguments: Sequence[str] | None = None, prog: str = "collis
         q = np.array(row["q"])
         near = judge.nearest(q, np.zeros(len(q)))[0].min()
         varied = np.abs(np.diff(q, n=2, axis=0)).sum()
-        print(f"| {row['name']} | {row['median_us']:.1f} | {row['p99_us']:.1f} | "
-              f"{row['max_position_error_m']:.2g} | {near:.6f} | {varied:.3g} |")  # fmt: skip
+        print(
+            f"| {row['name']} | {row['median_us']:.1f} | {row['p99_us']:.1f} | "
+            f"{row['max_position_error_m']:.2g} | {near:.6f} | {varied:.3g} |"
+        )
     if missing:
         print(f"not measured: {', '.join(missing)}")
     return 0

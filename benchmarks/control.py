@@ -77,12 +77,16 @@ class Driver:
 
     def __init__(self, loop: Loop, python: Path, task: Path) -> None:
         file = Path(__file__).with_name("loops") / f"{loop.driver}.py"
-        self._loop, self._errors = loop, tempfile.TemporaryFile("w+")  # noqa: SIM115
+        self._loop = loop
+        self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         try:
             self._process = subprocess.Popen(
                 [python, file, task, loop.variant],
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._errors, text=True,
-            )  # fmt: skip
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                text=True,
+            )
         except OSError as error:
             self._errors.close()
             raise IiwaDnnError(f"{loop.name}: {python}: {one_line(error)}") from error
@@ -170,7 +174,8 @@ def measure_steps(
         Of each loop the times per step [us] and the largest distance to the reference [m] after a
         step, with a scene also the joint positions; and the modules that no Python was found for.
     """
-    robot, given = paper_robot(), pythons or {}
+    robot = paper_robot()
+    given = pythons or {}
     reference = Heart().anchored(Configuration(robot, paper.START))
     targets = reference.sample(np.arange(max(steps, 20) + 1) * dt)
     found: dict[str, Path] = {}
@@ -182,17 +187,23 @@ def measure_steps(
     with tempfile.TemporaryDirectory() as folder:
         task = Path(folder) / "task.npz"
         heart = {
-            "urdf": str(file_of(robot)), "tip": robot.tip, "names": robot.joint_names, "dt": dt,
-            "q0": paper.START, "lower": robot.q_lower, "upper": robot.q_upper,
+            "urdf": str(file_of(robot)),
+            "tip": robot.tip,
+            "names": robot.joint_names,
+            "dt": dt,
+            "q0": paper.START,
+            "lower": robot.q_lower,
+            "upper": robot.q_upper,
             "velocity": robot.dq_max,
             "poses": [pin.SE3(t.rotation.copy(), t.position.copy()).homogeneous for t in targets],
-        }  # fmt: skip
+        }
         np.savez(task, **{**heart, **(scene or {})})
         there = {loop: found[loop.module] for loop in loops if loop.module in found}
         taken = take_turns(there, task, steps, progress)
     rows = []
     for loop, each in taken.items():
-        us, q = each.us, each.q
+        us = each.us
+        q = each.q
         on_heart = [] if scene and "poses" in scene else q
         tips = [Configuration(robot, at, data).position for at in on_heart]
         errors = [float(np.linalg.norm(at - targets[k].position)) for k, at in enumerate(tips, 1)]
@@ -246,7 +257,8 @@ def measure_runs(duration: float, dt: float, rounds: int = 3) -> dict[str, Any]:
     """
     robot = paper_robot()
     start = Configuration(robot, paper.START)
-    scheme, reference = DoubleIndicator().anchored(start), Heart().anchored(start)
+    scheme = DoubleIndicator().anchored(start)
+    reference = Heart().anchored(start)
     walls: dict[str, list[float]] = {
         name: [] for name in ("unchecked", "checked", "proxqp", "proxqp_with_problem")
     }
@@ -277,7 +289,9 @@ def _proxqp_alone(robot: Robot, scheme: Any, reference: Any, record: Any) -> tup
     import qpsolvers
 
     options = CrossCheck().options("proxqp")
-    data, solving, making = robot.model.createData(), 0.0, 0.0
+    data = robot.model.createData()
+    solving = 0.0
+    making = 0.0
     for first in range(0, record.steps, 1000):
         rows = slice(first, min(first + 1000, record.steps))
         targets = reference.sample(record.t[rows])
@@ -299,12 +313,15 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
     """Measure the parts of a step on their own [us], called in a row from Python."""
     robot = paper_robot()
     start = Configuration(robot, paper.START)
-    scheme, reference = DoubleIndicator().anchored(start), Heart().anchored(start)
+    scheme = DoubleIndicator().anchored(start)
+    reference = Heart().anchored(start)
     simulation = Simulation(
         robot, scheme, reference, paper.START, dt=dt, duration=steps * dt, check=CrossCheck(())
     )
     record = simulation.run()
-    targets, data, solver = reference.sample(record.t[:-1]), robot.model.createData(), DNNSolver()
+    targets = reference.sample(record.t[:-1])
+    data = robot.model.createData()
+    solver = DNNSolver()
     confs = [Configuration(robot, q, data) for q in record.q[:-1]]
     programs = [scheme.build_qp(conf, targets[k]) for k, conf in enumerate(confs)]
     controller = Controller(robot, scheme, dt=dt)
@@ -312,7 +329,8 @@ def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
     def answer(k: int) -> None:
         controller.step(confs[k].arrays[0], k * dt, targets[k])
 
-    check, block = CrossCheck(), min(steps, 500)
+    check = CrossCheck()
+    block = min(steps, 500)
     rows = np.stack([qp.data for qp in programs[:block]])
     x = np.stack([solver.solve(qp).x for qp in programs[:block]])
     return [

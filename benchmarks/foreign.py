@@ -28,21 +28,27 @@ import iiwa_dnn
 from benchmarks import programs
 
 ARMS = ("iiwa7", "panda", "ur5", "xarm7")
-LARGEST, FAILED, SHIFT = 1000, 10.0, 10.0
+LARGEST = 1000
+FAILED = 10.0
+SHIFT = 10.0
 OPTIONS = {
     "iiwa_dnn": lambda tol: {"eps_abs": tol},
     "daqp": lambda tol: {"primal_tol": tol, "dual_tol": tol},
     "piqp": lambda tol: {
-        "eps_abs": tol, "eps_rel": 0.0, "check_duality_gap": True,
-        "eps_duality_gap_abs": tol, "eps_duality_gap_rel": 0.0,
+        "eps_abs": tol,
+        "eps_rel": 0.0,
+        "check_duality_gap": True,
+        "eps_duality_gap_abs": tol,
+        "eps_duality_gap_rel": 0.0,
     },
     "clarabel": lambda tol: {"tol_gap_abs": tol, "tol_gap_rel": 0.0, "tol_feas": tol},
     "highs": lambda tol: {
-        "primal_feasibility_tolerance": tol, "dual_feasibility_tolerance": tol,
+        "primal_feasibility_tolerance": tol,
+        "dual_feasibility_tolerance": tol,
         "time_limit": FAILED,
     },
     "proxqp": lambda tol: {"eps_abs": tol, "eps_rel": 0.0, "check_duality_gap": True},
-}  # fmt: skip
+}
 
 
 def maros(folder: Path) -> Iterator[tuple[str, qpsolvers.Problem]]:
@@ -54,18 +60,27 @@ def maros(folder: Path) -> Iterator[tuple[str, qpsolvers.Problem]]:
             continue
         rows = spa.csr_matrix(raw["A"].astype(float))[:-n]
         low, high = (raw[k].ravel().astype(float) for k in "lu")
-        low, high = np.where(low < -9e19, -np.inf, low), np.where(high > 9e19, np.inf, high)
+        low = np.where(low < -9e19, -np.inf, low)
+        high = np.where(high > 9e19, np.inf, high)
         equal = high[:-n] - low[:-n] < 1e-10
         sides = [rows[~equal], -rows[~equal]]
         h = np.concatenate([high[:-n][~equal], -low[:-n][~equal]])
-        G, A = spa.vstack(sides, "csr")[h < np.inf].toarray(), rows[equal].toarray()
+        G = spa.vstack(sides, "csr")[h < np.inf].toarray()
+        A = rows[equal].toarray()
         if len(G) + len(A) <= LARGEST:
-            yield path.stem, qpsolvers.Problem(
-                raw["P"].astype(float).toarray(), raw["q"].ravel().astype(float),
-                G if len(G) else None, h[h < np.inf] if len(G) else None,
-                A if len(A) else None, high[:-n][equal] if len(A) else None,
-                low[-n:], high[-n:],
-            )  # fmt: skip
+            yield (
+                path.stem,
+                qpsolvers.Problem(
+                    raw["P"].astype(float).toarray(),
+                    raw["q"].ravel().astype(float),
+                    G if len(G) else None,
+                    h[h < np.inf] if len(G) else None,
+                    A if len(A) else None,
+                    high[:-n][equal] if len(A) else None,
+                    low[-n:],
+                    high[-n:],
+                ),
+            )
 
 
 def recorded(arm: str, steps: int) -> list[tuple[str, qpsolvers.Problem]]:
@@ -73,16 +88,19 @@ def recorded(arm: str, steps: int) -> list[tuple[str, qpsolvers.Problem]]:
     import pink
     from pink.tasks import FrameTask, PostureTask
 
-    robot, dt = iiwa_dnn.load_robot(arm), 5e-3
+    robot = iiwa_dnn.load_robot(arm)
+    dt = 5e-3
     start = robot.start_posture()
     configuration = pink.Configuration(robot.model, robot.model.createData(), start)
     tip = FrameTask(robot.tip, position_cost=1.0, orientation_cost=1.0)
     posture = PostureTask(cost=1e-3)
     tip.set_target_from_configuration(configuration)
     posture.set_target(start)
-    center, found = tip.transform_target_to_world.copy(), []
+    center = tip.transform_target_to_world.copy()
+    found = []
     for step in range(steps):
-        target, angle = center.copy(), 2.0 * np.pi * step * dt / 4.0
+        target = center.copy()
+        angle = 2.0 * np.pi * step * dt / 4.0
         target.translation = center.translation + 0.1 * np.array(
             [0, np.sin(angle), np.cos(angle) - 1]
         )
@@ -118,7 +136,8 @@ def measure(
     false = dict.fromkeys(solve, 0)
     for name, problem in problems:
         for solver, call in solve.items():
-            start, solution = time.perf_counter(), None
+            start = time.perf_counter()
+            solution = None
             try:
                 solution = call(problem)
             except Exception as error:

@@ -50,10 +50,13 @@ def save_loop_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
 
 
 _STEPS = {
-    "step": "{name}", "median µs": "{median_us:.1f}", "p99 µs": "{p99_us:.1f}",
-    "p99.9 µs": "{p999_us:.1f}", "of PlaCo's": "{of_placo:.2f}",
+    "step": "{name}",
+    "median µs": "{median_us:.1f}",
+    "p99 µs": "{p99_us:.1f}",
+    "p99.9 µs": "{p999_us:.1f}",
+    "of PlaCo's": "{of_placo:.2f}",
     "largest position error m": "{max_position_error_m:.2e}",
-}  # fmt: skip
+}
 _RUNS = {
     "unchecked": "unchecked",
     "checked": "every step checked by ProxQP",
@@ -64,7 +67,9 @@ _RUNS = {
 
 def markdown(results: Mapping[str, Any]) -> str:
     """The report's text."""
-    runs, memory, own = results["runs"], results["memory"], results["own_part"]
+    runs = results["runs"]
+    memory = results["memory"]
+    own = results["own_part"]
     medians = {row["name"]: row["median_us"] for row in results["steps"]}
     placo = medians.get("PlaCo")
     steps = [{**row, "of_placo": placo and row["median_us"] / placo} for row in results["steps"]]
@@ -82,8 +87,12 @@ def markdown(results: Mapping[str, Any]) -> str:
         *(f"Not measured, since no Python has it: {name}." for name in results["missing"]),
         f"## A run of {runs['steps']} steps",
         tabulate(
-            {"what": "{what}", "wall time s": "{wall:.2f}",
-             "times as quick as the robot": "{factor:.1f}"}, timed,
+            {
+                "what": "{what}",
+                "wall time s": "{wall:.2f}",
+                "times as quick as the robot": "{factor:.1f}",
+            },
+            timed,
         ),
         f"The checked run takes {runs['checked_over_proxqp_with_problem']:.2f} of the time of "
         f"ProxQP alone in one process with making its problems, {runs['checked_over_proxqp']:.2f} "
@@ -99,9 +108,12 @@ def markdown(results: Mapping[str, Any]) -> str:
         ),
         "## A new process",
         tabulate(
-            {"`import iiwa_dnn` s": "{import_s:.2f}",
-             "process start to first step, compiled code found s": "{first_step_warm_s:.2f}",
-             "everything compiled s": "{first_step_cold_s:.1f}"}, [results["startup"]],
+            {
+                "`import iiwa_dnn` s": "{import_s:.2f}",
+                "process start to first step, compiled code found s": "{first_step_warm_s:.2f}",
+                "everything compiled s": "{first_step_cold_s:.1f}",
+            },
+            [results["startup"]],
         ),
         "## Memory of a run and of one ten times as long",
         markdown_table(
@@ -114,7 +126,7 @@ def markdown(results: Mapping[str, Any]) -> str:
         f"The memory grows by {memory['growth_over_record']:.2f} times what the record grows by.",
         "## Limits of the comparison",
         LIMITS,
-    ]  # fmt: skip
+    ]
     return "\n\n".join(parts)
 
 
@@ -126,8 +138,10 @@ def steps_figure(rows: list[dict[str, Any]]) -> Figure:
     axes = figure.add_subplot()
     places = range(len(rows))
     for key, label, marker in (
-        ("median_us", "median", "o"), ("p99_us", "p99", "s"), ("p999_us", "p99.9", "^"),
-    ):  # fmt: skip
+        ("median_us", "median", "o"),
+        ("p99_us", "p99", "s"),
+        ("p999_us", "p99.9", "^"),
+    ):
         axes.plot([row[key] for row in rows], places, marker, linestyle="", label=label)
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

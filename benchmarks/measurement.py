@@ -108,7 +108,8 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
     names = ("P", "q", "A", "b", "lb", "ub")
     stacks: dict[str, Any] = {name: np.stack([getattr(qp, name) for qp in given]) for name in names}
     solve_batch(**stacks)  # compiles
-    threads, eye = os.cpu_count() or 1, np.eye(n)
+    threads = os.cpu_count() or 1
+    eye = np.eye(n)
     seconds = {"filled": 0.0, "solved": 0.0}
     picked = np.arange(count) % len(given)
     everything: dict[str, Any] = {name: stack[picked] for name, stack in stacks.items()}
@@ -118,7 +119,8 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         batch = solve_batch(**everything, tol=TOL)
         calls.append(perf_counter() - start)
     ours = float(np.median(calls))
-    worst, failed = 0.0, 0
+    worst = 0.0
+    failed = 0
     for begin in range(0, count, slice_size):
         picked = np.arange(begin, min(begin + slice_size, count)) % len(given)
         arrays = {name: stack[picked] for name, stack in stacks.items()}
@@ -126,11 +128,17 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         qps = proxqp.dense.BatchQP(picked.size)
         for k in range(picked.size):
             qp = qps.init_qp_in_place(n, p, n)
-            qp.settings.eps_abs, qp.settings.eps_rel = TOL, 0.0
+            qp.settings.eps_abs = TOL
+            qp.settings.eps_rel = 0.0
             qp.init(
-                arrays["P"][k], arrays["q"][k], arrays["A"][k], arrays["b"][k], eye,
-                arrays["lb"][k], arrays["ub"][k],
-            )  # fmt: skip
+                arrays["P"][k],
+                arrays["q"][k],
+                arrays["A"][k],
+                arrays["b"][k],
+                eye,
+                arrays["lb"][k],
+                arrays["ub"][k],
+            )
         seconds["filled"] += perf_counter() - start
         start = perf_counter()
         proxqp.dense.solve_in_parallel(qps, threads)
@@ -138,7 +146,8 @@ def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> li
         for k in range(0, picked.size, 10):
             results = qps.get(k).results
             residual = given[picked[k]].residuals(results.x, results.y, None, results.z).largest
-            worst, failed = max(worst, residual), failed + 10 * (not residual <= FAILED)
+            worst = max(worst, residual)
+            failed = failed + 10 * (not residual <= FAILED)
     scale = 1e6 / count
     return [
         {
@@ -170,12 +179,15 @@ def measure_known(solvable: int, infeasible: int, unbounded: int) -> list[Row]:
         ("infeasible", infeasible, programs.infeasible, "primal infeasible"),
         ("unbounded", unbounded, programs.unbounded, "dual infeasible (unbounded)"),
     ]
-    solver, rows = DNNSolver(tol=TOL), []
+    solver = DNNSolver(tol=TOL)
+    rows = []
     for seed, (name, count, make, wanted) in enumerate(kinds, 1):
         solver.reset()
         warm_up = make(np.random.default_rng([seed, count]))
         solver.solve(warm_up[0] if isinstance(warm_up, tuple) else warm_up)
-        times, right, error = [], 0, 0.0
+        times = []
+        right = 0
+        error = 0.0
         for k in range(count):
             made = make(np.random.default_rng([min(seed, 2), k]))
             qp = made[0] if isinstance(made, tuple) else made

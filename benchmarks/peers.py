@@ -86,7 +86,8 @@ class Daqp(Peer):
         sense = np.zeros(upper.size, dtype=np.intc)
         sense[upper.size - qp.b.size :] = 5
         rows = np.ascontiguousarray(np.vstack([qp.G, qp.A]))
-        upper, lower = np.minimum(upper, 1e30), np.maximum(lower, -1e30)
+        upper = np.minimum(upper, 1e30)
+        lower = np.maximum(lower, -1e30)
         return qp.P.copy(), qp.q.copy(), rows, upper, lower, sense
 
     def solve(self, given: Any) -> Any:
@@ -121,7 +122,8 @@ class Quadprog(Peer):
     name = "quadprog"
 
     def convert(self, qp: QP) -> Any:
-        upper, lower = np.isfinite(qp.ub), np.isfinite(qp.lb)
+        upper = np.isfinite(qp.ub)
+        lower = np.isfinite(qp.lb)
         eye = np.eye(qp.q.size)
         rows = np.vstack([qp.A, -qp.G, -eye[upper], eye[lower]])
         limits = np.concatenate([qp.b, -qp.h, -qp.ub[upper], qp.lb[lower]])
@@ -132,7 +134,8 @@ class Quadprog(Peer):
 
     def point(self, qp: QP, answer: Any) -> Point:
         n, m, p = qp.sizes
-        upper, lower = np.isfinite(qp.ub), np.isfinite(qp.lb)
+        upper = np.isfinite(qp.ub)
+        lower = np.isfinite(qp.lb)
         multipliers = answer[4]
         box = np.zeros(n)
         box[upper] += multipliers[p + m : p + m + upper.sum()]
@@ -148,8 +151,17 @@ class Piqp(Peer):
     def convert(self, qp: QP) -> Any:
         order = np.asfortranarray
         rows = np.full(qp.h.size, -np.inf)
-        return order(qp.P), qp.q.copy(), order(qp.A), qp.b.copy(), order(qp.G), rows, qp.h.copy(), \
-            qp.lb.copy(), qp.ub.copy()  # fmt: skip
+        return (
+            order(qp.P),
+            qp.q.copy(),
+            order(qp.A),
+            qp.b.copy(),
+            order(qp.G),
+            rows,
+            qp.h.copy(),
+            qp.lb.copy(),
+            qp.ub.copy(),
+        )
 
     def solve(self, given: Any) -> Any:
         if self.warm and self.ready:
@@ -178,10 +190,17 @@ class Proxqp(Peer):
         return qp.sizes, tuple(
             np.ascontiguousarray(part)
             for part in (
-                qp.P, qp.q, qp.A, qp.b, qp.G, lower, np.minimum(qp.h, 1e20),
-                np.maximum(qp.lb, -1e20), np.minimum(qp.ub, 1e20),
+                qp.P,
+                qp.q,
+                qp.A,
+                qp.b,
+                qp.G,
+                lower,
+                np.minimum(qp.h, 1e20),
+                np.maximum(qp.lb, -1e20),
+                np.minimum(qp.ub, 1e20),
             )
-        )  # fmt: skip
+        )
 
     def solve(self, given: Any) -> Any:
         (n, m, p), arrays = given
@@ -190,10 +209,12 @@ class Proxqp(Peer):
         else:
             self.model = proxqp.dense.QP(n, p, m, True)
             settings = self.model.settings
-            settings.eps_abs, settings.eps_rel = TOL, 0.0
+            settings.eps_abs = TOL
+            settings.eps_rel = 0.0
             # Without it, some answers have gaps far above the tolerance.
             settings.check_duality_gap = True
-            settings.eps_duality_gap_abs, settings.eps_duality_gap_rel = TOL, 0.0
+            settings.eps_duality_gap_abs = TOL
+            settings.eps_duality_gap_rel = 0.0
             if self.warm:
                 settings.initial_guess = proxqp.InitialGuess.WARM_START_WITH_PREVIOUS_RESULT
             self.model.init(*arrays)
@@ -233,9 +254,17 @@ class Osqp(Peer):
         else:
             self.model = osqp.OSQP()
             self.model.setup(
-                cost, q, rows, lower, upper, verbose=False, eps_abs=TOL, eps_rel=0.0,
-                polishing=True, max_iter=20_000,
-            )  # fmt: skip
+                cost,
+                q,
+                rows,
+                lower,
+                upper,
+                verbose=False,
+                eps_abs=TOL,
+                eps_rel=0.0,
+                polishing=True,
+                max_iter=20_000,
+            )
             self.ready = True
         return self.model.solve(raise_error=False)
 
@@ -287,14 +316,25 @@ class OsqpThroughQpsolvers(ThroughQpsolvers):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return qpsolvers.Problem(
-                spa.csc_matrix(dense.P), dense.q,
-                None if dense.G is None else spa.csc_matrix(dense.G), dense.h,
-                None if dense.A is None else spa.csc_matrix(dense.A), dense.b,
-                dense.lb, dense.ub,
-            )  # fmt: skip
+                spa.csc_matrix(dense.P),
+                dense.q,
+                None if dense.G is None else spa.csc_matrix(dense.G),
+                dense.h,
+                None if dense.A is None else spa.csc_matrix(dense.A),
+                dense.b,
+                dense.lb,
+                dense.ub,
+            )
 
 
 PEERS: tuple[type[Peer], ...] = (
-    Network, Daqp, DaqpModel, Quadprog, Piqp, Proxqp, Osqp, ProxqpThroughQpsolvers,
+    Network,
+    Daqp,
+    DaqpModel,
+    Quadprog,
+    Piqp,
+    Proxqp,
+    Osqp,
+    ProxqpThroughQpsolvers,
     OsqpThroughQpsolvers,
-)  # fmt: skip
+)

@@ -37,11 +37,12 @@ ROBOT = paper_robot()
 SCHEME = Scheme(
     [KineticEnergy()],
     [
-        PositionTask(priority=1), OrientationTask(priority=2),
+        PositionTask(priority=1),
+        OrientationTask(priority=2),
         PostureTask({"iiwa7_joint_1": 0.5, "iiwa7_joint_3": -0.4}, priority=3),
     ],
     [JointLimits()],
-)  # fmt: skip
+)
 PRIORITIES = SCHEME.program(ROBOT).priorities
 SINGULAR = ((3,), (3, 5), (5,), (1,), (1, 3, 5))
 """Joints that are at zero, counted from 0."""
@@ -75,11 +76,14 @@ def lexicographic(qp: QP, priorities: Vector) -> Vector | None:
     """Find the residual of each level of a program with DAQP; None where it gives up."""
     x = np.clip(np.zeros(qp.lb.size), qp.lb, qp.ub)
     eye = np.eye(x.size)
-    limits, ends = np.vstack([eye, -eye, qp.G]), np.concatenate([qp.ub, -qp.lb, qp.h])
-    held, rows = np.zeros(len(ends), dtype=bool), np.zeros((0, x.size))
+    limits = np.vstack([eye, -eye, qp.G])
+    ends = np.concatenate([qp.ub, -qp.lb, qp.h])
+    held = np.zeros(len(ends), dtype=bool)
+    rows = np.zeros((0, x.size))
     levels = range(1, int(priorities.max()) + 1)
     for level in levels:
-        A, b = qp.A[priorities == level], qp.b[priorities == level]
+        A = qp.A[priorities == level]
+        b = qp.b[priorities == level]
         free = _null_space(limits[held])
         basis = free @ _null_space(rows @ free)
         if basis.shape[1]:
@@ -87,9 +91,13 @@ def lexicographic(qp: QP, priorities: Vector) -> Vector | None:
             E = left * (sizes * (sizes > SMALLEST)) @ right
             rest = ends - limits @ x
             u, _, flag, info = daqp.solve(
-                E.T @ E, E.T @ (A @ x - b), limits[~held] @ basis, rest[~held],
-                primal_tol=1e-13, dual_tol=1e-14,
-            )  # fmt: skip
+                E.T @ E,
+                E.T @ (A @ x - b),
+                limits[~held] @ basis,
+                rest[~held],
+                primal_tol=1e-13,
+                dual_tol=1e-14,
+            )
             if flag != 1:
                 return None
             x = x + basis @ u
@@ -107,7 +115,8 @@ def _null_space(rows: Matrix) -> Matrix:
 
 def compare(qp: QP, priorities: Vector, tol: float = 1e-9) -> Compared:
     """Compare both ways on one program, which is overwritten."""
-    A, b = qp.A.copy(), qp.b.copy()
+    A = qp.A.copy()
+    b = qp.b.copy()
     expected = lexicographic(qp, priorities)
     cascade = Cascade(priorities, qp.sizes, DNNSolver(tol=tol))
     cascade.resolve(qp)
@@ -146,11 +155,13 @@ def main(count: int = 1000) -> None:
         conflicts = (np.array(known) > 1e-3).sum(axis=0)
         lines.append(
             (
-                name, f"{sum(each.solved for each in compared)} of {count}",
-                f"{(gaps <= 1e-8).sum()} of {len(known)}", f"{np.nanmax(gaps):.1e}",
+                name,
+                f"{sum(each.solved for each in compared)} of {count}",
+                f"{(gaps <= 1e-8).sum()} of {len(known)}",
+                f"{np.nanmax(gaps):.1e}",
                 " / ".join(map(str, conflicts)),
             )
-        )  # fmt: skip
+        )
     head = ("poses", "solved", "equal to 1e-8", "largest difference", "conflicts by level")
     print(markdown_table(head, lines))
 

@@ -95,5 +95,8 @@ def _python(code: str, cache: str | None, *arguments: str) -> str:
     environment = {**os.environ, **({} if cache is None else {"NUMBA_CACHE_DIR": cache})}
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
-        env=environment, capture_output=True, text=True, check=True,
-    ).stdout  # fmt: skip
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout

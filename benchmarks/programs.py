@@ -39,16 +39,19 @@ def strictly_convex(
         The program, and x (n,) that solves it.
     """
     n = int(rng.integers(2, 31)) if n is None else n
-    p, m = int(rng.integers(0, n // 2 + 1)), int(rng.integers(0, 2 * n + 1))
+    p = int(rng.integers(0, n // 2 + 1))
+    m = int(rng.integers(0, 2 * n + 1))
     P = _positive_definite(rng, n, largest_condition ** rng.uniform())
     x = rng.standard_normal(n)
-    A, G = rng.standard_normal((p, n)), rng.standard_normal((m, n))
+    A = rng.standard_normal((p, n))
+    G = rng.standard_normal((m, n))
     if spoilt:
         _spoil(rng, A)
         _spoil(rng, G)
     # Rows that are active at x; every third of them has no multiplier.
     active = rng.permutation(m)[: int(rng.integers(0, min(m, n) + 1))]
-    slack, z = rng.exponential(size=m) + 1e-3, np.zeros(m)
+    slack = rng.exponential(size=m) + 1e-3
+    z = np.zeros(m)
     slack[active] = 0.0
     z[active] = rng.exponential(size=active.size) * (rng.integers(0, 3, active.size) > 0)
     lb, ub, z_box = _bounds(rng, x, int(rng.integers(0, n + 1)))
@@ -64,16 +67,21 @@ def infeasible(rng: np.random.Generator) -> QP:
     margin between 1e-3 and 10; the others are satisfied by one point. P may be singular.
     """
     n = int(rng.integers(2, 21))
-    p, m = int(rng.integers(0, n // 2 + 1)), int(rng.integers(1, 2 * n + 1))
-    A, G, x = rng.standard_normal((p, n)), rng.standard_normal((m, n)), rng.standard_normal(n)
+    p = int(rng.integers(0, n // 2 + 1))
+    m = int(rng.integers(1, 2 * n + 1))
+    A = rng.standard_normal((p, n))
+    G = rng.standard_normal((m, n))
+    x = rng.standard_normal(n)
     lb, ub, _ = _bounds(rng, x, 0)
     # The contradiction: y^T A + z^T G + z_box = 0, which the last inequality row sees to.
     used = int(rng.integers(0, min(n, p + m - 1) + 1))
     rows = rng.permutation(p + m - 1)[:used]
     weights = np.zeros(p + m)
     weights[rows] = rng.uniform(0.1, 1.0, used)
-    y, z = weights[:p] * rng.choice([-1.0, 1.0], p), weights[p:]
-    upper, lower = np.isfinite(ub), np.isfinite(lb)
+    y = weights[:p] * rng.choice([-1.0, 1.0], p)
+    z = weights[p:]
+    upper = np.isfinite(ub)
+    lower = np.isfinite(lb)
     z_box = np.zeros(n)
     taking_part = rng.uniform(size=n) < (0.5 if used else 1.0)
     z_box[upper] = rng.uniform(0.0, 1.0, n)[upper]
@@ -82,7 +90,8 @@ def infeasible(rng: np.random.Generator) -> QP:
     z_box[~taking_part] = 0.0
     z[-1] = 1.0
     G[-1] = -(A.T @ y + G[:-1].T @ z[:-1] + z_box)
-    b, h = A @ x, G @ x + rng.exponential(size=m)
+    b = A @ x
+    h = G @ x + rng.exponential(size=m)
     known = b @ y + h[:-1] @ z[:-1]
     known += ub[z_box > 0] @ z_box[z_box > 0] + lb[z_box < 0] @ z_box[z_box < 0]
     h[-1] = -known - 10.0 ** rng.uniform(-3.0, 1.0)
@@ -97,21 +106,25 @@ def infeasible(rng: np.random.Generator) -> QP:
 def unbounded(rng: np.random.Generator) -> QP:
     """A feasible program whose cost falls for ever along a direction: P is singular along it."""
     n = int(rng.integers(2, 21))
-    p, m = int(rng.integers(0, (n - 1) // 2 + 1)), int(rng.integers(0, 2 * n + 1))
-    x, direction = rng.standard_normal(n), rng.standard_normal(n)
+    p = int(rng.integers(0, (n - 1) // 2 + 1))
+    m = int(rng.integers(0, 2 * n + 1))
+    x = rng.standard_normal(n)
+    direction = rng.standard_normal(n)
     direction[rng.uniform(size=n) < 0.3] = 0.0
     if not direction.any():
         direction[0] = 1.0
     along = direction / (direction @ direction)
     factor = rng.standard_normal((int(rng.integers(0, n)), n))
     factor -= np.outer(factor @ direction, along)
-    A, G = rng.standard_normal((p, n)), rng.standard_normal((m, n))
+    A = rng.standard_normal((p, n))
+    G = rng.standard_normal((m, n))
     A -= np.outer(A @ direction, along)
     # A third of the inequalities runs along the direction, the others fall back from it.
     G -= np.outer(G @ direction, along)
     G -= np.outer(rng.exponential(size=m) * (rng.integers(0, 3, m) > 0), direction)
     lb, ub, _ = _bounds(rng, x, 0)
-    lb[direction < 0.0], ub[direction > 0.0] = -np.inf, np.inf
+    lb[direction < 0.0] = -np.inf
+    ub[direction > 0.0] = np.inf
     q = rng.standard_normal(n)
     q -= (q @ direction + 10.0 ** rng.uniform(-2.0, 1.0)) * along
     return QP(factor.T @ factor, q, G, G @ x + rng.exponential(size=m), A, A @ x, lb, ub)
@@ -123,7 +136,8 @@ def degenerate(rng: np.random.Generator) -> QP:
     The condition of P is up to 1e6, |q| up to 1e2; half of the programs have a doubled equality.
     """
     n = int(rng.integers(2, 31))
-    P, x = _positive_definite(rng, n, 1e6 ** rng.uniform()), np.sign(rng.standard_normal(n))
+    P = _positive_definite(rng, n, 1e6 ** rng.uniform())
+    x = np.sign(rng.standard_normal(n))
     A = rng.standard_normal((int(rng.integers(0, n // 2 + 1)), n))
     if len(A) and rng.uniform() < 0.5:
         A = np.vstack([A, 2.0 * A[:1]])
@@ -137,11 +151,14 @@ def badly_scaled(rng: np.random.Generator, kind: str) -> QP:
     """A solvable program of one of the kinds in `SCALINGS`, 5 to 29 variables."""
     rows, multipliers, cost = SCALINGS[kind]
     n = int(rng.integers(5, 30))
-    P, x = _positive_definite(rng, n, 1e3), rng.standard_normal(n)
-    G, A = rng.standard_normal((n, n)), rng.standard_normal((n // 3, n))
+    P = _positive_definite(rng, n, 1e3)
+    x = rng.standard_normal(n)
+    G = rng.standard_normal((n, n))
+    A = rng.standard_normal((n // 3, n))
     z = multipliers * rng.exponential(size=n) * (rng.uniform(size=n) < 0.4)
     q = -(P @ x + G.T @ z + A.T @ (multipliers * rng.standard_normal(n // 3)))
-    h, b = G @ x + rng.exponential(size=n) * (z == 0.0), A @ x
+    h = G @ x + rng.exponential(size=n) * (z == 0.0)
+    b = A @ x
     e, f = (10.0 ** (rows * rng.uniform(-6.0, 6.0, size)) for size in (n, n // 3))
     return QP(cost * P, cost * q, e[:, None] * G, e * h, f[:, None] * A, f * b)
 
@@ -159,7 +176,8 @@ def _positive_definite(rng: np.random.Generator, n: int, condition: float) -> Ma
 def _bounds(rng: np.random.Generator, x: Vector, active: int) -> tuple[Vector, Vector, Vector]:
     """Bounds around x, `active` of which hold with a multiplier; a fifth is not there."""
     n = x.size
-    lb, ub = x - 1e-3 - rng.exponential(size=n), x + 1e-3 + rng.exponential(size=n)
+    lb = x - 1e-3 - rng.exponential(size=n)
+    ub = x + 1e-3 + rng.exponential(size=n)
     z_box = np.zeros(n)
     for i in rng.permutation(n)[:active]:
         z_box[i] = rng.exponential() * rng.choice([-1.0, 1.0])

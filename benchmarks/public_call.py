@@ -27,7 +27,8 @@ CALLS = {
 
 def medians(n: int) -> list[float]:
     """Median times of the calls [us] on programs of n variables."""
-    count, rounds = max(6, min(100, 4000 // n)), max(3, min(20, 2000 // n))
+    count = max(6, min(100, 4000 // n))
+    rounds = max(3, min(20, 2000 // n))
     rngs = [np.random.default_rng([9, i]) for i in range(count)]
     given = [programs.strictly_convex(rng, n, 1e3, False)[0].to_qpsolvers() for rng in rngs]
     taken = np.empty((rounds, count, len(CALLS)))

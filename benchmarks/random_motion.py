@@ -28,7 +28,9 @@ class Wander(iiwa_dnn.Cost):
 
     def __init__(self, robot: iiwa_dnn.Robot, seed: int, hold: float = 0.1) -> None:
         """Draw from a seed; a velocity is held for so long [s]."""
-        self._robot, self._seed, self._hold = robot, seed, hold
+        self._robot = robot
+        self._seed = seed
+        self._hold = hold
 
     def quadratic(self, step: iiwa_dnn.Step) -> tuple[Matrix, Vector]:
         """Return the identity and -v(t)."""
@@ -59,7 +61,8 @@ class Judge:
 
     def __init__(self, robot: iiwa_dnn.Robot, avoidance: iiwa_dnn.CollisionAvoidance) -> None:
         """Build the scene."""
-        self._robot, self._obstacles = robot, avoidance.obstacles
+        self._robot = robot
+        self._obstacles = avoidance.obstacles
         model = collision_model(robot)
         self._geometry = geometry = coal_geometry(
             robot, model, model.pairs(robot) if avoidance.self_collision else ()
@@ -73,7 +76,8 @@ class Judge:
             for k in range(self._first):
                 if geometry.geometryObjects[k].parentJoint:
                     geometry.addCollisionPair(pin.CollisionPair(self._first + number, k))
-        self._data, self._found = robot.model.createData(), pin.GeometryData(geometry)
+        self._data = robot.model.createData()
+        self._found = pin.GeometryData(geometry)
 
     def distance(self, q: Vector, t: float) -> float:
         """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""
@@ -98,7 +102,8 @@ class Judge:
         bound = 0.5 * (ends[0] + ends[1] - lipschitz * float(t[1] - t[0]))
         if bound >= least or t[1] - t[0] < 1e-9 or min(ends) < least:
             return min(bound, *ends)
-        q, t = np.insert(q, 1, q.mean(axis=0), axis=0), np.insert(t, 1, t.mean())
+        q = np.insert(q, 1, q.mean(axis=0), axis=0)
+        t = np.insert(t, 1, t.mean())
         return min(self.between(q[i : i + 2], t[i : i + 2], least, lipschitz) for i in range(2))
 
 
@@ -106,7 +111,8 @@ def _coal(obstacle: Any) -> tuple[coal.CollisionGeometry, pin.SE3]:
     if isinstance(obstacle, iiwa_dnn.Sphere):
         return coal.Sphere(obstacle.radius), pin.SE3(np.eye(3), np.array(obstacle.center))
     if isinstance(obstacle, iiwa_dnn.Capsule):
-        a, b = np.array(obstacle.a), np.array(obstacle.b)
+        a = np.array(obstacle.a)
+        b = np.array(obstacle.b)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), b - a).matrix()
         length = float(np.linalg.norm(b - a))
         return coal.Capsule(obstacle.radius, length), pin.SE3(turn, 0.5 * (a + b))
@@ -139,15 +145,22 @@ def wander(
     limits = [iiwa_dnn.JointLimits(), avoidance]
     scheme = iiwa_dnn.Scheme(costs=[Wander(robot, seed)], limits=limits)
     scene = avoidance.scene(robot)
-    start, judge = robot.start_posture(), Judge(robot, avoidance)
+    start = robot.start_posture()
+    judge = Judge(robot, avoidance)
     random = np.random.default_rng(seed)
     while judge.distance(start, 0.0) < 0.03:
         start = random.uniform(robot.q_lower, robot.q_upper)
     reference = iiwa_dnn.Heart(period=1.0).anchored(iiwa_dnn.Configuration(robot, start))
     record = iiwa_dnn.simulate(
-        robot, scheme, reference, start, dt=dt, duration=steps * dt, policy="relax",
+        robot,
+        scheme,
+        reference,
+        start,
+        dt=dt,
+        duration=steps * dt,
+        policy="relax",
         check=iiwa_dnn.CrossCheck(()),
-    )  # fmt: skip
+    )
     coals = np.array([judge.distance(q, t) for q, t in zip(record.q, record.t, strict=True)])
     own, _ = scene.nearest(record.q, record.t)
     lipschitz = float(scene.speeds.max())
@@ -158,21 +171,28 @@ def wander(
     ]
     active = 0 if record.row_multiplier is None else (record.row_multiplier > 0).any(axis=1).sum()
     return {
-        "robot": name, "seed": seed, "steps": record.steps, "status": record.settings["status"],
-        "least_m": float(coals.min()), "least_own_m": float(own.min()),
+        "robot": name,
+        "seed": seed,
+        "steps": record.steps,
+        "status": record.settings["status"],
+        "least_m": float(coals.min()),
+        "least_own_m": float(own.min()),
         "least_between_m": float(min(between, default=np.inf)),
         "difference_m": float(np.abs(coals - own).max()),
         "active": int(active),
         "policy": 0 if record.action is None else int((record.action > 0).sum()),
-    }  # fmt: skip
+    }
 
 
 def main(steps: int = 1_000_000, block: int = 50_000) -> int:
     """Share the steps among both arms, with still and with moving obstacles."""
-    done, worst, began = 0, np.inf, time.perf_counter()
+    done = 0
+    worst = np.inf
+    began = time.perf_counter()
     while done < steps:
         seed = done // block
-        name, moving = ("iiwa7", "panda")[seed % 2], seed % 4 >= 2
+        name = ("iiwa7", "panda")[seed % 2]
+        moving = seed % 4 >= 2
         found = wander(name, min(block, steps - done), seed, moving)
         done += found["steps"]
         worst = min(worst, found["least_m"], found["least_between_m"])

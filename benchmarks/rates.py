@@ -18,8 +18,11 @@ from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 
-DT, STEPS, FIRST = 1e-3, 4000, 200
-SLOW, EVERY = 0.02, 33  # velocity limit [rad/s], steps between two poses of a moving target
+DT = 1e-3
+STEPS = 4000
+FIRST = 200
+SLOW = 0.02  # velocity limit [rad/s]
+EVERY = 33  # steps between two poses of a moving target
 _ACCELERATION = (AccelerationLimits(5.0),)
 _BOTH = (*_ACCELERATION, JerkLimits(50.0))
 
@@ -30,7 +33,8 @@ def times(robot: Robot, reference: Reference, limits: tuple[Any, ...], policy: A
     controller = iiwa_dnn.Controller(robot, scheme, reference, dt=DT, policy=policy)
     controller.warm_up()
     q = np.array(paper.START)
-    heart, taken = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q)), []
+    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, q))
+    taken = []
     for k in range(STEPS):
         if isinstance(reference, MovingTarget) and k % EVERY == 0:
             target = heart.at(k * DT)
@@ -45,7 +49,8 @@ def times(robot: Robot, reference: Reference, limits: tuple[Any, ...], policy: A
 def main() -> None:
     """Print the table."""
     robot = paper_robot()
-    slow, start = robot.with_limits(velocity=SLOW), iiwa_dnn.Configuration(robot, paper.START)
+    slow = robot.with_limits(velocity=SLOW)
+    start = iiwa_dnn.Configuration(robot, paper.START)
     heart = iiwa_dnn.Heart().anchored(start)
     smooth = MovingTarget(start, acceleration=1.0, jerk=10.0)
     cases: dict[str, tuple[Robot, Reference, tuple[Any, ...], str]] = {

@@ -22,8 +22,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PACKAGES = (
-    "iiwa-dnn", "daqp", "osqp", "piqp", "proxsuite", "quadprog", "qpsolvers", "numba", "numpy",
-)  # fmt: skip
+    "iiwa-dnn",
+    "daqp",
+    "osqp",
+    "piqp",
+    "proxsuite",
+    "quadprog",
+    "qpsolvers",
+    "numba",
+    "numpy",
+)
 
 LIMITS = """\
 - One process on one machine, with whatever else runs on it. The peers take turns every 50 programs,
@@ -42,18 +50,26 @@ LIMITS = """\
 
 
 _SOLVERS = {
-    "solver": "{solver}", "median µs": "{median_us:.2f}", "p99 µs": "{p99_us:.1f}",
-    "worst residual": "{worst_residual:.1e}", "failed": "{failed} of {programs}",
-}  # fmt: skip
+    "solver": "{solver}",
+    "median µs": "{median_us:.2f}",
+    "p99 µs": "{p99_us:.1f}",
+    "worst residual": "{worst_residual:.1e}",
+    "failed": "{failed} of {programs}",
+}
 _BATCH = {
-    "solver": "{solver}", "solving, µs per program": "{solve_us:.2f}",
-    "with handing over": "{total_us:.2f}", "worst residual": "{worst_residual:.1e}",
+    "solver": "{solver}",
+    "solving, µs per program": "{solve_us:.2f}",
+    "with handing over": "{total_us:.2f}",
+    "worst residual": "{worst_residual:.1e}",
     "failed": "{failed}",
-}  # fmt: skip
+}
 _KNOWN = {
-    "kind": "{kind}", "recognised": "{recognised} of {programs}", "median ms": "{median_ms:.3f}",
-    "largest ms": "{largest_ms:.2f}", "largest error of x": "{largest_error:.1e}",
-}  # fmt: skip
+    "kind": "{kind}",
+    "recognised": "{recognised} of {programs}",
+    "median ms": "{median_ms:.3f}",
+    "largest ms": "{largest_ms:.2f}",
+    "largest error of x": "{largest_error:.1e}",
+}
 
 
 def environment(more: Sequence[str] = ()) -> dict[str, Any]:

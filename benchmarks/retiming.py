@@ -36,7 +36,8 @@ def main() -> None:
     """Print the table."""
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     q0 = robot.start_posture()
-    start, scheme = iiwa_dnn.Configuration(robot, q0), iiwa_dnn.DoubleIndicator(tracking="next")
+    start = iiwa_dnn.Configuration(robot, q0)
+    scheme = iiwa_dnn.DoubleIndicator(tracking="next")
     rows = []
     for (name, calm), hurried in zip(paths(10.0).items(), paths(HURRY).values(), strict=True):
         unchecked = {"check": iiwa_dnn.CrossCheck(()), "dt": DT}
@@ -52,15 +53,24 @@ def main() -> None:
         jumps = np.diff(slow.dq[:rounds], axis=0, prepend=0.0) / DT
         rows.append(
             (
-                name, f"{best.t[-1]:.3f}", f"{timed.t[-1]:.3f}",
-                f"{np.abs(timed.ddq / ACCELERATION).max():.3f}", f"{bare.t[-1]:.3f}",
-                f"{rounds * DT:.3f}", f"{np.abs(jumps / ACCELERATION).max():.0f}",
+                name,
+                f"{best.t[-1]:.3f}",
+                f"{timed.t[-1]:.3f}",
+                f"{np.abs(timed.ddq / ACCELERATION).max():.3f}",
+                f"{bare.t[-1]:.3f}",
+                f"{rounds * DT:.3f}",
+                f"{np.abs(jumps / ACCELERATION).max():.0f}",
             )
-        )  # fmt: skip
+        )
     head = (
-        "path", "optimum s", "`retime` s", "of the acceleration limit",
-        "optimum of the velocity limits s", "`slow` alone s", "times the acceleration limit",
-    )  # fmt: skip
+        "path",
+        "optimum s",
+        "`retime` s",
+        "of the acceleration limit",
+        "optimum of the velocity limits s",
+        "`slow` alone s",
+        "times the acceleration limit",
+    )
     print(markdown_table(head, rows))
 
 

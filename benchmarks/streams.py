@@ -68,14 +68,18 @@ def drifting(count: int, seed: int = 0) -> tuple[Programs, Matrix]:
         The programs, and the x (count, 7) that solve them.
     """
     rng = np.random.default_rng([8, seed])
-    n, p = 7, 3
+    n = 7
+    p = 3
     root = rng.standard_normal((n, n))
     P = root @ root.T / n + 0.3 * np.eye(n)
     centre = np.array([1.8, -1.8, 1.8, 1.0, -1.0, 0.0, 0.0])
     swing = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.8, 0.8])
-    phase, rate = rng.uniform(0.0, 2.0 * np.pi, (2, n)), rng.uniform(0.004, 0.012, (2, n))
-    rows, slow = rng.standard_normal((2, p, n)), rng.uniform(0.002, 0.006, p)
-    solutions, programs = np.empty((count, n)), []
+    phase = rng.uniform(0.0, 2.0 * np.pi, (2, n))
+    rate = rng.uniform(0.004, 0.012, (2, n))
+    rows = rng.standard_normal((2, p, n))
+    slow = rng.uniform(0.002, 0.006, p)
+    solutions = np.empty((count, n))
+    programs = []
     for k in range(count):
         signal = centre + swing * 0.5 * np.sin(rate * k + phase).sum(axis=0)
         x = np.clip(signal, -1.0, 1.0)

@@ -27,11 +27,16 @@ LOOPS = (
 
 
 _COLUMNS = {
-    "target": "{kind}", "loop": "{loop}", "error, median [m]": "{median_error_m:.1e}",
+    "target": "{kind}",
+    "loop": "{loop}",
+    "error, median [m]": "{median_error_m:.1e}",
     "largest jerk [rad/s^3]": "{largest_jerk:.4g}",
-    "acceleration / limit": "{acceleration_share:.3g}", "frozen": "{frozen:.1f} %",
-    "p50 [us]": "{p50_us:.0f}", "p99 [us]": "{p99_us:.0f}", "": "{problem}",
-}  # fmt: skip
+    "acceleration / limit": "{acceleration_share:.3g}",
+    "frozen": "{frozen:.1f} %",
+    "p50 [us]": "{p50_us:.0f}",
+    "p99 [us]": "{p99_us:.0f}",
+    "": "{problem}",
+}
 
 
 def measure_targets(
@@ -49,18 +54,31 @@ def measure_targets(
         A row for each kind and loop. A loop that ends with an error has the error in its row.
     """
     robot = load_robot("iiwa7")
-    q0, rows, data = robot.start_posture(), [], robot.model.createData()
+    q0 = robot.start_posture()
+    rows = []
+    data = robot.model.createData()
     for kind, stream in STREAMS.items():
-        rng, poses = np.random.default_rng(11), np.tile(np.eye(4), (steps + 1, 1, 1))
+        rng = np.random.default_rng(11)
+        poses = np.tile(np.eye(4), (steps + 1, 1, 1))
         for pose, (place, turn) in zip(poses, stream(robot, rng, steps + 1, dt), strict=True):
-            pose[:3, :3], pose[:3, 3] = turn, place
+            pose[:3, :3] = turn
+            pose[:3, 3] = place
         with tempfile.TemporaryDirectory() as folder:
             task = Path(folder) / "task.npz"
             np.savez(
-                task, urdf=str(file_of(robot)), tip=robot.tip, names=robot.joint_names, dt=dt,
-                q0=q0, lower=robot.q_lower, upper=robot.q_upper, velocity=robot.dq_max,
-                acceleration=robot.ddq_max, jerk=JERK, poses=poses,
-            )  # fmt: skip
+                task,
+                urdf=str(file_of(robot)),
+                tip=robot.tip,
+                names=robot.joint_names,
+                dt=dt,
+                q0=q0,
+                lower=robot.q_lower,
+                upper=robot.q_upper,
+                velocity=robot.dq_max,
+                acceleration=robot.ddq_max,
+                jerk=JERK,
+                poses=poses,
+            )
             here = Path(sys.executable)
             loops = {loop: mink_python or here if loop.module == "mink" else here for loop in LOOPS}
             taken = take_turns(loops, task, steps, progress, tolerant=True)

@@ -22,10 +22,12 @@ Stream = Callable[[Robot, np.random.Generator, int, float], Iterator[Pose]]
 
 def jumps(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
     """Poses of random postures, each held for 0.3 to 3 s."""
-    left, pose = 0, _pose(robot, _posture(robot, rng))
+    left = 0
+    pose = _pose(robot, _posture(robot, rng))
     for _ in range(steps):
         if left == 0:
-            left, pose = int(rng.uniform(0.3, 3.0) / dt), _pose(robot, _posture(robot, rng))
+            left = int(rng.uniform(0.3, 3.0) / dt)
+            pose = _pose(robot, _posture(robot, rng))
         left -= 1
         yield pose
 
@@ -33,7 +35,8 @@ def jumps(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iter
 def teleoperation(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
     """A hand's motion of up to 0.3 m/s, known every 33 ms only."""
     start, turn = _pose(robot, robot.start_posture())
-    place, w = start, rng.uniform(0.5, 4.0, (3, 3))
+    place = start
+    w = rng.uniform(0.5, 4.0, (3, 3))
     phase = rng.uniform(0.0, 2.0 * np.pi, (3, 3))
     period = max(1, round(1.0 / (30.0 * dt)))
     for k in range(steps):
@@ -54,10 +57,13 @@ def sinusoids(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> 
 def out_of_reach(robot: Robot, rng: np.random.Generator, steps: int, dt: float) -> Iterator[Pose]:
     """In turn a pose beyond the arm's reach and its start, each held for 1 to 4 s."""
     home = _pose(robot, robot.start_posture())
-    left, away, pose = 0, False, home
+    left = 0
+    away = False
+    pose = home
     for _ in range(steps):
         if left == 0:
-            left, away = int(rng.uniform(1.0, 4.0) / dt), not away
+            left = int(rng.uniform(1.0, 4.0) / dt)
+            away = not away
             direction = rng.normal(size=3)
             far = 2.0 * direction / np.linalg.norm(direction)
             pose = (far, home[1]) if away else home
@@ -138,9 +144,14 @@ def drive(
         controller.reference = hand
     q = np.empty((steps + 1, robot.dof))
     q[0] = q0
-    actions, us = np.zeros(steps, np.int8), np.empty(steps)
-    error, behind, room = np.empty(steps), np.empty(steps), np.inf
-    within, last, target = np.empty(steps, bool), None, None
+    actions = np.zeros(steps, np.int8)
+    us = np.empty(steps)
+    error = np.empty(steps)
+    behind = np.empty(steps)
+    room = np.inf
+    within = np.empty(steps, bool)
+    last = None
+    target = None
     for k, (place, turn) in zip(range(steps), poses, strict=False):
         if place is not last:  # many are held for a while
             last = place
@@ -186,7 +197,8 @@ def scheme(jerk: float | None, acceleration: float | None = None) -> iiwa_dnn.Sc
 
 
 def _posture(robot: Robot, rng: np.random.Generator) -> Array:
-    lower, upper = np.maximum(robot.q_lower, -3.0), np.minimum(robot.q_upper, 3.0)
+    lower = np.maximum(robot.q_lower, -3.0)
+    upper = np.minimum(robot.q_upper, 3.0)
     return rng.uniform(0.9 * lower + 0.1 * upper, 0.1 * lower + 0.9 * upper)
 
 

@@ -18,9 +18,11 @@ from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import run_script
 
 # The libraries' weights are 1 and 1e-6; a tolerance of 1e-9 asks for a posture's above that.
-TASK, POSTURE = 1e3, 1e-3
+TASK = 1e3
+POSTURE = 1e-3
 SWING = {"amplitudes": (0.0, 0.1, 0.0), "turns": (1.0, 1.0, 1.0), "period": np.pi}
-READY, BENT = (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0), (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+READY = (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0)
+BENT = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
 HOME = (0.0, -0.785398, 0.0, -2.35619, 0.0, 1.5708, 0.785398)
 ARMS = ("left_iiwa7_flange", "right_iiwa7_flange")
 SCENES = {  # robot, start [rad], y and z of the target's centre [m] or where it is, frames or tip
@@ -47,7 +49,8 @@ def scene(name, dt):
     """Return robot, scheme, references by frame and start of a scene."""
     arm, q0, centre, frames = SCENES[name]
     robot = iiwa_dnn.load_robot(arm)
-    start, references = iiwa_dnn.Configuration(robot, q0), {}
+    start = iiwa_dnn.Configuration(robot, q0)
+    references = {}
     for frame in frames or (robot.tip,):
         position = start.frame(frame).position.copy()
         if centre == "pose":
@@ -62,7 +65,8 @@ def scene(name, dt):
     tasks = [task(frame=f, weight=TASK, tracking="next") for f in references for task in kinds]
     costs = [iiwa_dnn.CyclicMotion(weight=POSTURE, gain=1 / dt)]
     if centre == "velocity":
-        costs, tasks = [JointVelocity()], []
+        costs = [JointVelocity()]
+        tasks = []
     return (
         robot,
         iiwa_dnn.Scheme(costs, tasks, [iiwa_dnn.JointLimits(gain=0.5 / dt)]),
@@ -80,7 +84,8 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
         robot, scheme, references, q0 = scene(name, dt)
         record = iiwa_dnn.simulate(robot, scheme, references, q0, dt=dt, duration=duration)
         failed += iiwa_dnn.failures(record)
-        late, text = slice(record.steps // 2, None), f"{np.abs(record.dq).max():.2f} rad/s at most"
+        late = slice(record.steps // 2, None)
+        text = f"{np.abs(record.dq).max():.2f} rad/s at most"
         if scheme.tasks:
             error = np.linalg.norm(record.position - record.position_desired, axis=1)[late]
             text = f"error {error.max():.2e} m"

@@ -22,15 +22,23 @@ from iiwa_dnn.studies import paper
 OUT = Path("runs/robots")
 DT = 1e-3
 HEAD = (
-    "arm", "joints", "task", "redundancy", "largest position error [m]", "joint drift [rad]",
-    "largest gap to ProxQP [rad/s]", "time per step [µs]", "verdict",
-)  # fmt: skip
+    "arm",
+    "joints",
+    "task",
+    "redundancy",
+    "largest position error [m]",
+    "joint drift [rad]",
+    "largest gap to ProxQP [rad/s]",
+    "time per step [µs]",
+    "verdict",
+)
 
 
 def main() -> int:
     """Draw, print and write; 1 if a run failed."""
     folder = prepare_folder(OUT)
-    rows, failed = [], 0
+    rows = []
+    failed = 0
     for name in ("iiwa7", *ARMS):
         start = load_robot(name).start_posture()
         for task, orientation, size in (("pose", "so3", 6), ("position", "none", 3)):

@@ -41,7 +41,8 @@ def main(steps: tyro.conf.Positional[int] = 1000):
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
     controller = iiwa_dnn.Controller(robot, iiwa_dnn.DoubleIndicator(), heart, dt=DT)
     controller.warm_up()  # compiles, so that the first step is as quick as the others
-    times, errors = [], []
+    times = []
+    errors = []
     began = time.perf_counter()
     for k in range(steps):
         time.sleep(max(0.0, began + k * DT - time.perf_counter()))

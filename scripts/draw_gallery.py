@@ -25,13 +25,15 @@ from iiwa_dnn.results.pictures import ArmRenderer
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "docs/images/viewer_live.png"
-TILE, COLUMNS = (256, 184), 4  # size of a picture on the sheet [pixel], pictures in a row
+TILE = (256, 184)  # size of a picture on the sheet [pixel]
+COLUMNS = 4  # pictures in a row
 CSV = "t,x,y,z\n0,0,0,0\n2,0.06,0,0.04\n4,0.06,0.08,0\n6,0,0.08,0.04\n8,0,0,0\n"
 
 
 def example(name, *arguments):
     """Run a worked example; return its records and the robot of the last one."""
-    kept, simulate = [], iiwa_dnn.simulate
+    kept = []
+    simulate = iiwa_dnn.simulate
 
     def keep(robot, *args, **options):
         kept.append((simulate(robot, *args, **options), robot))
@@ -42,7 +44,8 @@ def example(name, *arguments):
         with contextlib.suppress(SystemExit):
             runpy.run_path(str(HERE / name), run_name="__main__")
     finally:
-        iiwa_dnn.simulate, sys.argv = simulate, before
+        iiwa_dnn.simulate = simulate
+        sys.argv = before
     return kept
 
 
@@ -92,7 +95,8 @@ def turned(axes, record):
 
 def elbow(axes, record):
     """Draw the elbow's distance from the point that it avoids."""
-    robot, point = iiwa_dnn.load_robot("iiwa7"), [0.36, 0.16, 0.64]
+    robot = iiwa_dnn.load_robot("iiwa7")
+    point = [0.36, 0.16, 0.64]
     places = [iiwa_dnn.Configuration(robot, q).frame("iiwa7_link_4").position for q in record.q]
     axes.plot(record.t, np.linalg.norm(np.subtract(places, point), axis=1), label="elbow")
     axes.axhline(0.2, color="0.5", linestyle="--", label="limit")
@@ -164,7 +168,8 @@ def main(folder: tyro.conf.Positional[str] = "docs/images/gallery"):
             small = picture.quantize(128, Image.Quantize.MAXCOVERAGE)
             small.save(out / f"{name}.png", optimize=True)
         picture.thumbnail(TILE, Image.Resampling.LANCZOS)
-        x, y = i % COLUMNS * TILE[0], i // COLUMNS * (TILE[1] + 22)
+        x = i % COLUMNS * TILE[0]
+        y = i // COLUMNS * (TILE[1] + 22)
         sheet.paste(picture, (x + (TILE[0] - picture.width) // 2, y + 20))
         ImageDraw.Draw(sheet).text((x + 8, y + 4), name.replace("_", " "), fill="black")
     sheet.save(out / "contact.png", optimize=True)

@@ -39,7 +39,12 @@ from iiwa_dnn.simulation.runner import step_count
 
 START = np.array([-0.2578, 0.2946, 0.5946, -0.9896, 0.4993, 0.3100, 0.8620])
 FASTEST = 3.6 * np.array([1e-4, 0.1, 0.1, 0.1, 1e-4, 1e-4, 0.1])
-DT, GAIN, GAMMA, DECAY, R0, R_INF = 1e-3, 2.0, 100.0, 100.0, 2.0, 0.005
+DT = 1e-3
+GAIN = 2.0
+GAMMA = 100.0
+DECAY = 100.0
+R0 = 2.0
+R_INF = 0.005
 DEVIATION = np.array([-0.04, 0.035, 0.025])
 
 
@@ -56,16 +61,21 @@ class _Barrier(NamedTuple):
 def _barrier(
     v: Vector, low: Vector, high: Vector, v_rate: Vector, low_rate: Vector, high_rate: Vector
 ) -> _Barrier:
-    width, width_rate = high - low, high_rate - low_rate
+    width = high - low
+    width_rate = high_rate - low_rate
     share = (v - low) / width
-    spread, chi = share * (1.0 - share), np.log(share / (1.0 - share))
+    spread = share * (1.0 - share)
+    chi = np.log(share / (1.0 - share))
     bent = (1.0 + (2.0 * share - 1.0) * chi) / spread**2
     share_rate = (width * (v_rate - low_rate) - width_rate * (v - low)) / width**2
     slope = chi / spread
     return _Barrier(
-        0.5 * chi**2, slope / width, bent / width**2, slope * share_rate,
+        0.5 * chi**2,
+        slope / width,
+        bent / width**2,
+        slope * share_rate,
         bent * share_rate / width - slope * width_rate / width**2,
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True)
@@ -96,7 +106,8 @@ class BarrierNetwork(Network):
 
     def initial_state(self, qp: QP) -> Vector:
         """Make the source's start, (state_size,): x zero, the multipliers one."""
-        n, p = qp.q.size, qp.b.size
+        n = qp.q.size
+        p = qp.b.size
         return np.concatenate([np.zeros(n), np.ones(p), [0.0]])
 
     def flow(self, qp: QP) -> Flow:
@@ -105,15 +116,19 @@ class BarrierNetwork(Network):
 
     def moving_flow(self, qp: QP, rate: QP) -> Flow:
         """Make the right-hand side for a program and its rate of change [1/rho]."""
-        n, p = qp.q.size, qp.b.size
+        n = qp.q.size
+        p = qp.b.size
 
         def rates(s: Vector) -> Vector:
-            x, multipliers = s[:n], s[n : n + p]
+            x = s[:n]
+            multipliers = s[n : n + p]
             loss = self.start * np.exp(-self.decay * self.rho * s[-1])
-            edge, closing = np.full(p, loss + self.end), np.full(p, -self.rho * self.decay * loss)
+            edge = np.full(p, loss + self.end)
+            closing = np.full(p, -self.rho * self.decay * loss)
             still = np.zeros(n)
             inside = _barrier(x, qp.lb, qp.ub, still, rate.lb, rate.ub)
-            error, error_rate = qp.A @ x - qp.b, rate.A @ x - rate.b
+            error = qp.A @ x - qp.b
+            error_rate = rate.A @ x - rate.b
             task = _barrier(error, -edge, edge, error_rate, -closing, closing)
             rows = task.slope[:, None] * qp.A
             hessian = np.diag(inside.curvature) + qp.A.T @ (
@@ -149,16 +164,22 @@ class BarrierNetwork(Network):
 
 def path(t: float) -> np.ndarray:
     """Displacement, velocity and acceleration (3, 3) of the tilted tricuspid."""
-    c, w, tilt = 0.03, 0.2 * np.pi, np.pi / 6
+    c = 0.03
+    w = 0.2 * np.pi
+    tilt = np.pi / 6
     plane = c * np.array(
         [
             [np.cos(2 * w * t) + 2 * np.cos(w * t) - 3, np.sin(2 * w * t) - 2 * np.sin(w * t)],
-            [-2 * w * (np.sin(2 * w * t) + np.sin(w * t)),
-             2 * w * (np.cos(2 * w * t) - np.cos(w * t))],
-            [-2 * w**2 * (2 * np.cos(2 * w * t) + np.cos(w * t)),
-             -2 * w**2 * (2 * np.sin(2 * w * t) - np.sin(w * t))],
+            [
+                -2 * w * (np.sin(2 * w * t) + np.sin(w * t)),
+                2 * w * (np.cos(2 * w * t) - np.cos(w * t)),
+            ],
+            [
+                -2 * w**2 * (2 * np.cos(2 * w * t) + np.cos(w * t)),
+                -2 * w**2 * (2 * np.sin(2 * w * t) - np.sin(w * t)),
+            ],
         ]
-    )  # fmt: skip
+    )
     return np.column_stack([plane[:, 0], np.cos(tilt) * plane[:, 1], np.sin(tilt) * plane[:, 1]])
 
 
@@ -176,13 +197,18 @@ def iiwa14() -> pin.Model:
 
 def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
     """The same by `BarrierNetwork`, the formula of the package and Pinocchio's kinematics."""
-    model, tip = iiwa14(), load_robot("iiwa7").tip_id
+    model = iiwa14()
+    tip = load_robot("iiwa7").tip_id
     data = model.createData()
     # The script takes three Euler steps before the formula: one state more that counts nothing.
     solver = TrackingSolver(
         BarrierNetwork(1 / GAMMA, R0, R_INF, DECAY), FIFD._replace(past=(*FIFD.past, 0.0))
     )
-    th, states, errors, home, wanted = [START], [], [], None, None
+    th = [START]
+    states = []
+    errors = []
+    home = None
+    wanted = None
     for i in range(steps):
         pin.computeJointJacobians(model, data, th[i])
         pin.updateFramePlacement(model, data, tip)
@@ -191,8 +217,14 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
         if home is None or wanted is None:
             home = wanted = r_a + DEVIATION
         shift, v_d, a_d = path(i * DT)
-        qp = QP(np.zeros((7, 7)), np.zeros(7), A=J, b=v_d - GAIN * (r_a - wanted),
-                lb=-FASTEST, ub=FASTEST)  # fmt: skip
+        qp = QP(
+            np.zeros((7, 7)),
+            np.zeros(7),
+            A=J,
+            b=v_d - GAIN * (r_a - wanted),
+            lb=-FASTEST,
+            ub=FASTEST,
+        )
         solver.advance(qp, DT)
         x = solver.state[:7]
         pin.computeJointJacobiansTimeVariation(model, data, th[i], x)
@@ -215,8 +247,10 @@ def main(seconds: tyro.conf.Positional[float] = 10.0) -> None:
     states, errors = by_network(step_count(seconds, DT))
     shares = np.abs(states[:, :7] / FASTEST).max(axis=0)
     print("largest velocities, as shares of their bounds:", *shares.round(3))
-    print(f"tool's distance from the path: {np.linalg.norm(errors[0]):.2e} m at first, "
-          f"{np.linalg.norm(errors[-1]):.2e} m at the end")  # fmt: skip
+    print(
+        f"tool's distance from the path: {np.linalg.norm(errors[0]):.2e} m at first, "
+        f"{np.linalg.norm(errors[-1]):.2e} m at the end"
+    )
 
 
 if __name__ == "__main__":

@@ -54,7 +54,8 @@ def main(steps: tyro.conf.Positional[int] = 300):
     heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, START))
     velocities = []
     for network in (iiwa_dnn.ProjectionNetwork(), SaddleNetwork()):
-        solver, scheme = iiwa_dnn.DNNSolver(network), iiwa_dnn.DoubleIndicator()
+        solver = iiwa_dnn.DNNSolver(network)
+        scheme = iiwa_dnn.DoubleIndicator()
         options = {"dt": 1e-3, "duration": 1e-3 * steps, "solver": solver}
         record = iiwa_dnn.simulate(robot, scheme, heart, START, **options)
         velocities.append(record.dq)

@@ -14,7 +14,9 @@ import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.results.metrics import orientation_error
 
-AXIS, LARGEST, RATE = np.array([1.0, 0.0, 0.0]), 0.2, 2.0  # [-], [rad], [rad/s]
+AXIS = np.array([1.0, 0.0, 0.0])
+LARGEST = 0.2  # [rad]
+RATE = 2.0  # [rad/s]
 
 
 class Nodding(iiwa_dnn.Heart):

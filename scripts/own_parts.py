@@ -25,7 +25,10 @@ class Clearance(iiwa_dnn.Limit):
     rows = 1
 
     def __init__(self, frame, point, distance, gain=20.0):
-        self.frame, self.point, self.distance, self.gain = frame, point, distance, gain
+        self.frame = frame
+        self.point = point
+        self.distance = distance
+        self.gain = gain
 
     def inequalities(self, step):
         """Return G (1, n) and h (1,)."""
@@ -52,7 +55,8 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
     clearance = Clearance(ELBOW, POINT, 0.20)
     record = iiwa_dnn.simulate(robot, scheme(clearance), heart, START, dt=dt)
     elbow = [iiwa_dnn.Configuration(robot, q).frame(ELBOW).position for q in record.q]
-    nearest, failures = np.linalg.norm(elbow - POINT, axis=1).min(), iiwa_dnn.failures(record)
+    nearest = np.linalg.norm(elbow - POINT, axis=1).min()
+    failures = iiwa_dnn.failures(record)
     active = int((record.row_multiplier[:, 0] > 0.0).sum())
     print(f"smallest distance {nearest:.6f} m, limit active in {active} of {record.steps} steps")
     print(f"failures {failures}")

@@ -50,12 +50,15 @@ def main(
     authors: tyro.conf.Positional[str | None] = None,
 ):
     """Run the four variants, print the table and draw the figure."""
-    found, curves = {}, {}
+    found = {}
+    curves = {}
     for number, variant in enumerate(study.VARIANTS, 1):
         record = study.run(variant, dt, duration)
         every = slice(None, None, max(1, round(1e-3 / dt)))
-        t, q = record.t[every], record.q[every]
-        found[variant], curves[variant] = study.measure(t, q), {"ours": (t, q)}
+        t = record.t[every]
+        q = record.q[every]
+        found[variant] = study.measure(t, q)
+        curves[variant] = {"ours": (t, q)}
         if authors is not None:
             file = loadmat(Path(authors) / f"QALL{number}.mat")
             curves[variant]["authors"] = file[f"t{number}"][:, 0], file[f"qAll{number}"]

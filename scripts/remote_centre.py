@@ -29,7 +29,8 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
     )
     heart = iiwa_dnn.Heart(scale=2e-3, period=duration).anchored(start)
     record = iiwa_dnn.simulate(robot, scheme, heart, START, dt=dt)
-    axes, apart = record.rotation[:, :, 2], point - record.position
+    axes = record.rotation[:, :, 2]
+    apart = point - record.position
     off = np.linalg.norm(np.cross(axes, apart), axis=1).max()
     tilt = np.degrees(np.arccos(np.clip(axes @ axes[0], -1.0, 1.0)).max())
     error = iiwa_dnn.compute_metrics(record)["max_position_error_m"]

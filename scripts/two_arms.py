@@ -12,7 +12,8 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
 
-LEFT, RIGHT = "left_iiwa7_flange", "right_iiwa7_flange"
+LEFT = "left_iiwa7_flange"
+RIGHT = "right_iiwa7_flange"
 
 
 def scheme(*tasks):

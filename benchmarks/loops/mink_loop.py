@@ -16,8 +16,10 @@ def make(task: Task, variant: str) -> Loop:
     spec = mujoco.MjSpec.from_string(urdf.replace("</robot>", _COMPILER))
     pairs = add_scene(spec, task) if "balls" in task else None
     model = spec.compile()
-    model.jnt_range[:, 0], model.jnt_range[:, 1] = task["lower"], task["upper"]
-    configuration, dt = mink.Configuration(model, q=task["q0"].copy()), float(task["dt"])
+    model.jnt_range[:, 0] = task["lower"]
+    model.jnt_range[:, 1] = task["upper"]
+    configuration = mink.Configuration(model, q=task["q0"].copy())
+    dt = float(task["dt"])
     tips, poses = by_frame(task)
     frames = [mink.FrameTask(tip, "body", position_cost=1.0, orientation_cost=1.0) for tip in tips]
     posture = mink.PostureTask(model, cost=1e-3)
@@ -28,9 +30,12 @@ def make(task: Task, variant: str) -> Loop:
     if pairs is not None:
         near = float(task["distance"])
         avoid = mink.CollisionAvoidanceLimit(
-            model, [pairs], gain=20.0 * dt, minimum_distance_from_collisions=near,
+            model,
+            [pairs],
+            gain=20.0 * dt,
+            minimum_distance_from_collisions=near,
             collision_detection_distance=near + 0.2,
-        )  # fmt: skip
+        )
         limits.append(avoid)
     tasks = [*frames, posture]
     wanted = [[mink.SE3.from_matrix(pose) for pose in at] for at in poses]
@@ -52,11 +57,14 @@ def add_scene(spec: mujoco.MjSpec, task: Task) -> tuple[list[str], list[str]]:
     for link, a, b, radius in capsules:
         ends = [*a, *(b + [0, 0, 1e-6])]
         spec.body(str(link)).add_geom(
-            name=f"shape_{link}", type=mujoco.mjtGeom.mjGEOM_CAPSULE, fromto=ends,
+            name=f"shape_{link}",
+            type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+            fromto=ends,
             size=[radius, 0, 0],
-        )  # fmt: skip
+        )
     for k, (center, radius) in enumerate(zip(task["balls"], task["ball_radii"], strict=True)):
-        size, kind = [radius, 0, 0], mujoco.mjtGeom.mjGEOM_SPHERE
+        size = [radius, 0, 0]
+        kind = mujoco.mjtGeom.mjGEOM_SPHERE
         spec.worldbody.add_geom(name=f"ball_{k}", type=kind, pos=center, size=size)
     return [f"shape_{link}" for link in task["links"]], [f"ball_{k}" for k in range(k + 1)]
 

@@ -19,7 +19,8 @@ from scripts import arm_scenes
 
 def make(task: Task, variant: str) -> Loop:
     """Make the loop; the variants are ``command``, ``euler`` and ``midpoint``."""
-    q, dt = np.array(task["q0"]), float(task["dt"])
+    q = np.array(task["q0"])
+    dt = float(task["dt"])
     reference: Any
     if "scene" in task:
         robot, scheme, reference, _ = arm_scenes.scene(str(task["scene"]), dt)

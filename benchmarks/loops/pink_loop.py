@@ -18,16 +18,21 @@ from serve import Loop, Task, by_frame, serve
 def make(task: Task, variant: str) -> Loop:
     """Make the loop; a variant names a solver of qpsolvers, then ``ahead``, ``acceleration``."""
     solver, *words = variant.split(", ")
-    ahead, limited = "ahead" in words, "acceleration" in words
+    ahead = "ahead" in words
+    limited = "acceleration" in words
     options = {"eps_abs": 1e-9, "eps_rel": 0.0} if solver == "proxqp" else {}
-    model, dt = pin.buildModelFromUrdf(str(task["urdf"])), float(task["dt"])
-    model.lowerPositionLimit, model.upperPositionLimit = task["lower"], task["upper"]
+    model = pin.buildModelFromUrdf(str(task["urdf"]))
+    dt = float(task["dt"])
+    model.lowerPositionLimit = task["lower"]
+    model.upperPositionLimit = task["upper"]
     model.velocityLimit = task["velocity"]
-    q0, barriers = task["q0"].copy(), []
+    q0 = task["q0"].copy()
+    barriers = []
     scene: dict[str, Any] = {}
     if "balls" in task:
         geometry = collision_geometry(model, task)
-        count, distance = len(geometry.collisionPairs), float(task["distance"])
+        count = len(geometry.collisionPairs)
+        distance = float(task["distance"])
         barriers = [SelfCollisionBarrier(count, gain=20.0, d_min=distance)]
         scene = {"collision_model": geometry, "collision_data": geometry.createData()}
     configuration = pink.Configuration(model, model.createData(), q0, **scene)
@@ -35,7 +40,8 @@ def make(task: Task, variant: str) -> Loop:
     frames = [pink.FrameTask(name, position_cost=1.0, orientation_cost=1.0) for name in names]
     posture = pink.PostureTask(cost=1e-3)
     posture.set_target(task["q0"])
-    tasks, later = [*frames, posture], bool(ahead)
+    tasks = [*frames, posture]
+    later = bool(ahead)
     wanted = [[pin.SE3(pose) for pose in at] for at in poses]
 
     limits = None
@@ -60,12 +66,14 @@ def collision_geometry(model: pin.Model, task: Task) -> pin.GeometryModel:
     """Describe the capsules and the balls to Pinocchio, with a pair of each and each."""
     geometry = pin.GeometryModel()
     for center, radius in zip(task["balls"], task["ball_radii"], strict=True):
-        place, name = pin.SE3(np.eye(3), center), f"ball_{geometry.ngeoms}"
+        place = pin.SE3(np.eye(3), center)
+        name = f"ball_{geometry.ngeoms}"
         geometry.addGeometryObject(pin.GeometryObject(name, 0, place, coal.Sphere(radius)))
     balls = geometry.ngeoms
     capsules = zip(task["links"], task["a"], task["b"], task["radii"], strict=True)
     for link, a, b, radius in capsules:
-        frame, along = model.frames[model.getFrameId(str(link), pin.FrameType.BODY)], b - a
+        frame = model.frames[model.getFrameId(str(link), pin.FrameType.BODY)]
+        along = b - a
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), along + [0, 0, 1e-9])
         place = frame.placement * pin.SE3(turn.matrix(), 0.5 * (a + b))
         shape = coal.Capsule(radius, float(np.linalg.norm(along)))

@@ -23,7 +23,8 @@ def make(task: Task, variant: str) -> Loop:
         robot.set_joint_limits(name, float(task["lower"][i]), float(task["upper"][i]))
         robot.set_velocity_limit(name, float(task["velocity"][i]))
     robot.update_kinematics()
-    solver, (tips, poses) = placo.KinematicsSolver(robot), by_frame(task)
+    solver = placo.KinematicsSolver(robot)
+    (tips, poses) = by_frame(task)
     solver.mask_fbase(True)
     frames = [solver.add_frame_task(tip, pose) for tip, pose in zip(tips, poses[0], strict=True)]
     for tip, frame in zip(tips, frames, strict=True):

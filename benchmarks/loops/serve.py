@@ -24,7 +24,8 @@ Loop = tuple[Callable[[int], object], Callable[[], Any]]
 
 def by_frame(task: Task) -> tuple[list[str], Any]:
     """Return the names of the f frames that are moved, and their poses, (steps + 1, f, 4, 4)."""
-    names, poses = [str(name) for name in np.atleast_1d(task["tip"])], task["poses"]
+    names = [str(name) for name in np.atleast_1d(task["tip"])]
+    poses = task["poses"]
     return names, poses.reshape(len(poses), len(names), 4, 4)
 
 
@@ -42,7 +43,8 @@ def serve(make: Callable[[Task, str], Loop]) -> None:
     step, posture = make(task, sys.argv[2])
     for line in sys.stdin:
         first, last = map(int, line.split())
-        times, q = [], []
+        times = []
+        q = []
         for k in range(first, last):
             began = time.perf_counter_ns()
             step(k)

@@ -9,12 +9,15 @@ import iiwa_dnn
 def make(task: Task, variant: str) -> Loop:
     """Make the loop; the variants are ``raw`` and ``filtered``."""
     robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
-        lower=task["lower"], upper=task["upper"], velocity=task["velocity"],
+        lower=task["lower"],
+        upper=task["upper"],
+        velocity=task["velocity"],
         acceleration=task["acceleration"],
-    )  # fmt: skip
+    )
     limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(float(task["jerk"])))
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
-    q, dt = np.array(task["q0"]), float(task["dt"])
+    q = np.array(task["q0"])
+    dt = float(task["dt"])
     start = iiwa_dnn.Configuration(robot, q)
     hand = iiwa_dnn.MovingTarget(start, 0.8, 2.5, acceleration=3.0, jerk=30.0)
     filtered = variant == "filtered"

@@ -180,13 +180,8 @@ def print_lines(options: RunOptions, *lines: str) -> None:
         return
     print(*lines, sep="\n")
     if options.verbose:
-        list_files(options.out)
-
-
-def list_files(folder: Path) -> None:
-    """Print the files in a folder with their sizes, one a line."""
-    for file in sorted(path for path in folder.iterdir() if path.is_file()):
-        print(f"  {file.name:<28}{file.stat().st_size / 1000:10,.1f} kB")
+        for file in sorted(path for path in options.out.iterdir() if path.is_file()):
+            print(f"  {file.name:<28}{file.stat().st_size / 1000:10,.1f} kB")
 
 
 def progress_bar(total: int, unit: str, quiet: bool) -> Any:

@@ -128,18 +128,18 @@ def simulation(
     reference = path(options)
     other_frames = [name for name in options.frames if name != robot.tip]
     others = {name: reference.anchored(start.frame(name)) for name in other_frames}
-    silenced = "the start posture"  # the summary says it
     if getattr(reference, "quaternions", None) is None:
         reference = reference.anchored(start)
-    elif warn_if_elsewhere(reference, start, scheme):
-        silenced = ""
+    else:
+        print_if_elsewhere(reference, start, scheme)
     if others:
         tasks: Any = scheme.tasks
         further = [replace(task, frame=name) for name in others for task in tasks]
         scheme = Scheme(scheme.costs, [*tasks, *further], scheme.limits)
     arguments = {name: getattr(options, name) for name in _ARGUMENTS}
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", silenced, UserWarning)
+        # The summary says that the start is outside, and a line above that the path is elsewhere.
+        warnings.simplefilter("ignore", UserWarning)
         return Simulation(
             robot,
             scheme,
@@ -182,11 +182,11 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
     )
 
 
-def warn_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> bool:
-    """Print a line if a path of poses begins elsewhere than the tip; return whether it does."""
+def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> None:
+    """Print a line if a path of poses begins elsewhere than the tip."""
     target = reference.at(0.0)
     if _is_at(start, target):
-        return False
+        return
     distance = np.linalg.norm(target.position - start.position)
     angle = rotation_angle(start.rotation, target.rotation)
     q = _posture_at(target, start, scheme)
@@ -199,7 +199,6 @@ def warn_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme
         f"at {np.round(target.position, 4).tolist()} m; {advice}",
         file=sys.stderr,
     )
-    return True
 
 
 def _posture_at(target: Target, start: Configuration, scheme: Scheme) -> Vector | None:

@@ -64,9 +64,27 @@ def test_settings_come_back_from_their_file(tmp_path: Path) -> None:
     settings = parse(
         TrackOptions,
         "track",
-        ["--q0", "-1e-3", "-.5", "2", "--lock", "a b", 'c"d', "--robot", "x/ö.urdf", "--no-plots",
-         "--joint-limit", "datasheet", "--noise", "1e-300", "--seed", "7", "--out", "elsewhere"],
-    )  # fmt: skip
+        [
+            "--q0",
+            "-1e-3",
+            "-.5",
+            "2",
+            "--lock",
+            "a b",
+            'c"d',
+            "--robot",
+            "x/ö.urdf",
+            "--no-plots",
+            "--joint-limit",
+            "datasheet",
+            "--noise",
+            "1e-300",
+            "--seed",
+            "7",
+            "--out",
+            "elsewhere",
+        ],
+    )
     file = save_settings(settings, tmp_path)
     again = parse(TrackOptions, "track", ["--settings", str(file)])
     expected = dataclasses.replace(

@@ -71,8 +71,12 @@ def test_two_workers_write_the_same_tables(folder: Path, tmp_path: Path) -> None
 
 def test_figures_are_drawn_from_the_runs_that_they_name() -> None:
     cases = figure_runs(Scope(duration=2e-3))
-    assert list(cases) == ["no noise, no filter", "noise, no filter", "no noise, filter",
-                           "noise, filter"]  # fmt: skip
+    assert list(cases) == [
+        "no noise, no filter",
+        "noise, no filter",
+        "no noise, filter",
+        "noise, filter",
+    ]
     for name, cell in cases.items():
         assert cell.noise == (0.0 if name.startswith("no noise") else 0.01)
         assert cell.filter_window == (1 if name.endswith("no filter") else 10)

@@ -13,9 +13,13 @@ from iiwa_dnn.app.main import run
 
 # min ||x - c||^2 / 2 on a line with bounds.
 PROGRAM: dict[str, Any] = {
-    "P": np.eye(3), "q": [-1.0, 0.0, 1.0], "A": [[1.0, 1.0, 1.0]], "b": [0.5],
-    "lb": np.full(3, -0.2), "ub": np.full(3, 0.6),
-}  # fmt: skip
+    "P": np.eye(3),
+    "q": [-1.0, 0.0, 1.0],
+    "A": [[1.0, 1.0, 1.0]],
+    "b": [0.5],
+    "lb": np.full(3, -0.2),
+    "ub": np.full(3, 0.6),
+}
 
 
 def saved(folder: Path, **arrays: Any) -> str:

@@ -113,7 +113,8 @@ def test_metrics_can_be_recomputed_from_the_record_alone(
     desired = np.broadcast_to(dh_pose(record["q"][0])[1], rotation.shape)
     chord = np.sqrt(((rotation - desired) ** 2).sum(axis=(1, 2)))
     settings = json.loads(str(record["settings"]))
-    lower, upper = np.array(settings["q_lower"]), np.array(settings["q_upper"])
+    lower = np.array(settings["q_lower"])
+    upper = np.array(settings["q_upper"])
     excess = np.maximum(lower - record["q"], record["q"] - upper)
     dq = np.diff(record["q"], axis=0) / settings["dt"]
     expected = {
@@ -233,20 +234,11 @@ def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.Mo
     assert (asked["check"].solvers, asked["check"].tolerance) == (("proxqp",), 1e-6)
 
 
-def test_limits_on_acceleration_and_jerk(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_limits_on_acceleration_and_jerk(tmp_path: Path) -> None:
     arrays, metrics = run(tmp_path, "--acceleration-limit", "robot", "--jerk-limit", "300")
     limits = metrics["settings"]["scheme"]["extra_limits"]
     assert [limit["limit"] for limit in limits] == [None, 300.0]
     assert np.abs(np.diff(arrays["q"], 3, axis=0)).max() < 300.0 * 1e-9
-    for option, value, said in (
-        ("--acceleration-limit", "fast", "above 0 or 'robot'"),
-        ("--jerk-limit", "-1", "above 0 or 'robot'"),
-        ("--jerk-limit", "robot", "no dddq_max"),
-    ):
-        assert call([*QUICK, f"{option}={value}", "--out", str(tmp_path / "bad")]) == 2
-        assert said in capsys.readouterr().err
 
 
 def test_datasheet_limits(tmp_path: Path) -> None:
@@ -443,63 +435,17 @@ def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> Non
 # Exit code 2
 
 
-def not_xml(folder: Path) -> list[str]:
-    (folder / "robot.urdf").write_text("solid robot\n")
-    return ["--robot", str(folder / "robot.urdf")]
-
-
-def half_xml(folder: Path) -> list[str]:
-    (folder / "robot.urdf").write_text('<robot name="r">\n  <link name="a"/>\n')
-    return ["--robot", str(folder / "robot.urdf")]
-
-
-def no_joints(folder: Path) -> list[str]:
-    (folder / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
-    return ["--robot", str(folder / "robot.urdf")]
-
-
-def written(folder: Path, text: str) -> list[str]:
-    (folder / "robot.urdf").write_text(text)
-    return ["--robot", str(folder / "robot.urdf")]
-
-
-def xml_bomb(folder: Path) -> list[str]:
-    # Each entity is ten of the one before: 10 GB of text.
-    entities = ['<!ENTITY e0 "0123456789">']
-    entities += [f'<!ENTITY e{i} "{f"&e{i - 1};" * 10}">' for i in range(1, 10)]
-    return written(folder, f'<!DOCTYPE r [{"".join(entities)}]><robot name="&e9;"/>')
-
-
-def external_entity(folder: Path) -> list[str]:
-    secret = (folder / "secret").as_uri()
-    (folder / "secret").write_text("s3cret")
-    return written(folder, f'<!DOCTYPE r [<!ENTITY e SYSTEM "{secret}">]><robot name="&e;"/>')
-
-
-def deep_xml(folder: Path) -> list[str]:
-    return written(folder, "<robot>" * 100_000)
-
-
-def no_text(folder: Path) -> list[str]:
-    (folder / "robot.urdf").write_bytes(bytes(range(256)))
-    return ["--robot", str(folder / "robot.urdf")]
-
-
-def limits_crossed(folder: Path) -> list[str]:
-    text = IIWA7.read_text()
-    assert 'lower="-' in text
-    return written(folder, text.replace('lower="-', 'lower="'))
-
-
-def nan_in_urdf(folder: Path) -> list[str]:
-    text = IIWA7.read_text()
-    assert 'xyz="0 0 0.1925"' in text
-    return written(folder, text.replace('xyz="0 0 0.1925"', 'xyz="0 nan 0.1925"'))
+# What robots, paths, schemes and the simulation refuse is tested in their own rooms.
 
 
 def bad_csv(folder: Path) -> list[str]:
     (folder / "path.csv").write_text("x,y,z\n0,0,0\n")
     return ["--reference", str(folder / "path.csv")]
+
+
+def not_xml(folder: Path) -> list[str]:
+    (folder / "robot.urdf").write_text("solid robot\n")
+    return ["--robot", str(folder / "robot.urdf")]
 
 
 def below_a_file(folder: Path) -> list[str]:
@@ -512,95 +458,35 @@ def a_file(folder: Path) -> list[str]:
     return ["--out", str(folder / "file")]
 
 
-def q0(*values: str) -> list[str]:
-    return ["--q0", *values]
-
-
 BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "unknown robot": (["--robot", "iiwa14"], "'iiwa14'; did you mean: iiwa7"),
-    "unknown robot, none near": (["--robot", "zebra"], "'zebra'; there are: iiwa7"),
     "missing file": (["--robot", "none/robot.urdf"], "none/robot.urdf"),
-    "a folder": (["--robot", "./"], "directory"),
     "not XML": (not_xml, "not XML"),
-    "half XML": (half_xml, "not XML"),
-    "no joints": (no_joints, "no joints"),
-    "an XML bomb": (xml_bomb, "DOCTYPE"),
-    "an external entity": (external_entity, "DOCTYPE"),
-    "elements without end": (deep_xml, "not XML"),
-    "not text": (no_text, "not XML"),
-    "limits the wrong way round": (limits_crossed, "is not below"),
-    "an origin that is not a number": (nan_in_urdf, "robot.urdf"),
     "unknown frame": (["--tip", "iiwa7_link_77"], "'iiwa7_link_77'; did you mean: iiwa7_link_7"),
-    "unknown joint": (["--lock", "elbow"], "'elbow'"),
-    "q0 NaN": (q0("nan", *"000000"), "q"),
-    "q0 infinite": (q0(*"000000", "inf"), "q"),
-    "q0 too short": (q0("0", "0.1"), "7"),
-    "q0 too long": (q0(*"00000000"), "7"),
-    "q0 a word": (q0("home"), "'home'"),
-    "dt 0": (["--dt", "0"], "dt"),
-    "dt negative": (["--dt", "-0.001"], "dt"),
+    "q0 NaN": (["--q0", "nan", *"000000"], "--q0"),
+    "q0 outside": (["--q0", "18", *"000000"], "--q0: must be within"),
+    "q0 too short": (["--q0", "0", "0"], "--q0: must have shape (7,)"),
     "dt NaN": (["--dt", "nan"], "dt"),
-    "dt infinite": (["--dt", "inf"], "dt"),
-    "dt a word": (["--dt", "fast"], "--dt"),
-    "dt for more steps than memory": (["--dt", "1e-14"], "dt"),
-    "dt for more steps than numbers": (["--dt", "5e-324"], "dt"),
-    "dt longer than the run": (["--dt", "1"], "duration"),
-    "duration 0": (["--duration", "0"], "duration"),
-    "duration negative": (["--duration", "-1"], "duration"),
-    "duration NaN": (["--duration", "nan"], "duration"),
-    "duration infinite": (["--duration", "inf"], "duration"),
     "duration for more steps than memory": (["--duration", "1e12"], "duration"),
-    "duration for more steps than numbers": (["--duration", "1e308"], "duration"),
     "weight above 1": (["--weight", "1.5"], "weight"),
-    "weight negative": (["--weight", "-0.1"], "weight"),
-    "weight NaN": (["--weight", "nan"], "weight"),
-    "noise negative": (["--noise", "-0.01"], "noise"),
     "noise negative, in powers of ten": (["--noise", "-1e-2"], "noise"),
-    "noise NaN": (["--noise", "nan"], "noise"),
-    "noise that overflows": (["--noise", "1e308"], "noise"),
-    "noise infinite": (["--noise", "inf"], "noise"),
-    "filter window 0": (["--filter-window", "0"], "filter"),
-    "filter window a fraction": (["--filter-window", "2.5"], "filter"),
-    "seed negative": (["--seed", "-1"], "seed"),
-    "seed a word": (["--seed", "lucky"], "seed"),
-    "scale 0": (["--scale", "0"], "scale"),
-    "scale NaN": (["--scale", "nan"], "scale"),
-    "joint limit a word": (["--joint-limit", "abc"], "joint-limit"),
-    "joint limit negative": (["--joint-limit", "-1"], "joint-limit"),
-    "joint limit 0": (["--joint-limit", "0"], "joint-limit"),
-    "joint limit NaN": (["--joint-limit", "nan"], "joint-limit"),
+    "joint limit a word": (["--joint-limit", "abc"], "--joint-limit"),
+    "joint limit 0": (["--joint-limit", "0"], "--joint-limit"),
+    "joint limit NaN": (["--joint-limit", "nan"], "--joint-limit"),
     "speed 0": (["--speed", "0"], "speed"),
-    "speed negative": (["--speed", "-0.5"], "speed"),
-    "speed NaN": (["--speed", "nan"], "speed"),
-    "gain negative": (["--gain", "-1"], "gain"),
-    "gain NaN": (["--gain", "nan"], "gain"),
-    "integral gain negative": (["--integral-gain", "-1"], "integral_gain"),
     "unknown policy": (["--policy", "hope"], "'hope'"),
-    "tolerance 0": (["--tolerance", "0"], "tolerance"),
-    "tolerance NaN": (["--tolerance", "nan"], "tolerance"),
-    "unknown mode": (["--mode", "discrete"], "'discrete'"),
-    "unknown motion": (["--motion", "heun"], "'heun'"),
-    "unknown orientation": (["--orientation", "quaternion"], "'quaternion'"),
-    "unknown kinetic": (["--kinetic", "mass"], "'mass'"),
-    "unknown check": (["--check", "gurobi"], "'gurobi'"),
-    "unknown noise entry": (["--noise-at", "motor"], "'motor'"),
+    "acceleration limit a word": (["--acceleration-limit", "fast"], "above 0 or 'robot'"),
+    "jerk limit negative": (["--jerk-limit=-1"], "above 0 or 'robot'"),
+    "no jerk limit of the robot": (["--jerk-limit", "robot"], "no dddq_max"),
     "idle noise entry": (["--noise-at", "network"], "--noise-at: has no effect but beside --noise"),
     "idle next gain": (["--next-gain", "5"], "--next-gain: has no effect but beside --tracking n"),
     "idle gain": (["--tracking", "next", "--gain", "5"], "--gain: has no effect but"),
     "idle tolerance": (["--check", "none", "--tolerance", "1"], "--tolerance: has no effect but"),
-    "unknown option": (["--wieght", "0.2"], "--wieght"),
-    "an argument too many": (["heart"], "heart"),
-    "an option without its value": (["--weight"], "--weight"),
     "continuous and RK4": (["--mode", "continuous", "--motion", "rk4"], "continuous"),
     "unknown path": (["--reference", "hart"], "no path 'hart'; did you mean: heart"),
     "no file of points": (["--reference", "none.csv"], "none.csv: No such file"),
     "a bad file of points": (bad_csv, "line 1: the header must be t,x,y,z"),
     "another path's option": (["--radius", "0.1"], "--radius: is no option of the path 'heart'"),
-    "period 0": (["--period", "0"], "period"),
-    "radius 0": (["--reference", "circle", "--radius", "0"], "radius"),
-    "offset 0": (["--reference", "line", "--offset", "0", "0", "0"], "offset"),
-    "offset too short": (["--reference", "line", "--offset", "1"], "offset"),
-    "amplitudes 0": (["--reference", "lissajous", "--amplitudes", "0", "0", "0"], "amplitudes"),
     "out below a file": (below_a_file, "file"),
     "out a file": (a_file, "file"),
 }
@@ -625,9 +511,10 @@ def test_bad_input_exits_2_with_one_clear_line_and_leaves_nothing(
     assert {path: path.read_bytes() for path in tmp_path.rglob("*")} == before
 
 
-@pytest.mark.parametrize("case", ["weight above 1", "dt NaN", "unknown robot", "an XML bomb"])
+@pytest.mark.parametrize("case", ["weight above 1", "dt NaN", "unknown robot"])
 def test_bad_input_leaves_earlier_results_alone(case: str, tmp_path: Path) -> None:
-    folder, (bad, _) = tmp_path / "run", BAD[case]
+    folder = tmp_path / "run"
+    (bad, _) = BAD[case]
     run(folder)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     assert call([*QUICK, *(bad(tmp_path) if callable(bad) else bad), "--out", str(folder)]) == 2
@@ -670,18 +557,6 @@ def test_an_out_folder_with_a_strange_name_makes_one_line_too(
     (tmp_path / "file").write_text("in the way")
     assert call([*QUICK, "--out", f"{tmp_path}/file/{name}"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
-
-
-def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
-    assert call(["--help"]) == 0
-    text = capsys.readouterr().out
-    options = (
-        "robot mode weight orientation joint-limit dt duration scale motion noise filter-window "
-        "seed check tolerance out no-plots quiet policy speed gain integral-gain "
-        "tracking next-gain"
-    )
-    for option in options.split():
-        assert f"--{option}" in text
 
 
 # The script itself
@@ -773,17 +648,3 @@ def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
     assert "begins" not in capsys.readouterr().err
     record = Record.load(out / "record.npz")
     np.testing.assert_allclose(record.position[0], desired, rtol=0, atol=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("q0", "said"),
-    [("18", "error: --q0: must be within"), ("0 0", r"error: --q0: must have shape (7,)")],
-)
-def test_a_start_that_is_none_is_refused(
-    q0: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    posture = q0.split() if " " in q0 else [q0, *"000000"]
-    out = tmp_path / "run"
-    assert call([*QUICK, "--q0", *posture, "--out", str(out)]) == 2
-    assert said in capsys.readouterr().err
-    assert not out.exists()

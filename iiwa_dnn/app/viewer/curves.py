@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.results.record import FloatArray
 
-COLOURS = ("#d6001c", "#1c7ed6", "#2b8a3e", "#e8590c", "#862e9c", "#0b7285", "#5c3d2e")
+COLORS = ("#d6001c", "#1c7ed6", "#2b8a3e", "#e8590c", "#862e9c", "#0b7285", "#5c3d2e")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -24,26 +24,32 @@ class Curves:
     now: float | None = None
 
     def __init__(
-        self, gui: Any, title: str, colours: tuple[str, ...], ends: tuple[float, float],
+        self,
+        gui: Any,
+        title: str,
+        colors: tuple[str, ...],
+        ends: tuple[float, float],
         powers: bool = False,
-    ) -> None:  # fmt: skip
-        """Put an empty diagram on a page or in a browser, a colour for each curve.
+    ) -> None:
+        """Put an empty diagram on a page or in a browser, a color for each curve.
 
         With `powers` its ends, and the times of `show`, are decimal logarithms.
         """
         from viser import uplot  # of an extra
 
-        self._uplot, self._ends, self._powers = uplot, ends, powers
-        self._times: FloatArray
-        self._values: FloatArray
-        self.low, self.high = 0.0, 0.0
-        # Not empty: a diagram that begins so gets no horizontal axis later.
-        self._times, self._values = np.array(ends), np.ones((2, len(colours)))
+        self._uplot = uplot
+        self._ends = ends
+        self._powers = powers
+        self.low = 0.0
+        self.high = 0.0
+        # An empty diagram would get no horizontal axis later.
+        self._times: FloatArray = np.array(ends)
+        self._values: FloatArray = np.ones((2, len(colors)))
         self.handle = gui.add_uplot(
             (self._times, *self._values.T, self._times),
             (
                 uplot.Series(),
-                *(uplot.Series(stroke=colour, width=1) for colour in colours),
+                *(uplot.Series(stroke=color, width=1) for color in colors),
                 uplot.Series(stroke="#444", width=1, points={"show": False}),
             ),
             title=title,
@@ -63,16 +69,19 @@ class Curves:
         values = values.reshape(len(times), -1)
         good = np.isfinite(values) & (values > 0.0)
         some = good.any(axis=1)
-        self._times, self._values = times[some], np.where(good, values, np.nan)[some]
+        self._times = times[some]
+        self._values = np.where(good, values, np.nan)[some]
         if some.any():
-            low, high = np.log10(np.nanmin(self._values)), np.log10(np.nanmax(self._values))
-            self._scale(float(np.floor(low)), float(max(np.ceil(high), np.floor(low) + 1.0)))
+            low = float(np.floor(np.log10(np.nanmin(self._values))))
+            high = float(np.ceil(np.log10(np.nanmax(self._values))))
+            self._scale(low, max(high, low + 1.0))
             self.mark(now)
 
     def mark(self, now: float | None) -> None:
         """Draw the curves with the line at the present time."""
         self.now = now
-        times, values = self._times, self._values
+        times = self._times
+        values = self._values
         line: FloatArray = np.full(len(times), self.low)
         if now is not None:
             k = int(np.searchsorted(times, now))
@@ -82,10 +91,12 @@ class Curves:
         self.handle.data = (times, *np.ascontiguousarray(values.T), line)
 
     def _scale(self, low: float, high: float) -> None:
-        """Let the axis reach from one power of ten to another."""
+        """Let the axis span from one power of ten to another."""
         if (10.0**low, 10.0**high) == (self.low, self.high):
             return
-        uplot, self.low, self.high = self._uplot, 10.0**low, 10.0**high
+        uplot = self._uplot
+        self.low = 10.0**low
+        self.high = 10.0**high
         self.handle.scales = {
             "x": uplot.Scale(time=False, range=self._ends),
             "y": uplot.Scale(distr=3, log=10, range=(self.low, self.high)),

@@ -41,9 +41,13 @@ class Session:
     """
 
     def __init__(
-        self, host: Any, robot: Robot, q0: Vector, record: Record | None,
+        self,
+        host: Any,
+        robot: Robot,
+        q0: Vector,
+        record: Record | None,
         scheme: DoubleIndicator | None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Put the robot and all controls into a browser; q0 (n,) [rad] and others as of `Page`."""
         follower = Follower(robot, q0, scheme)
         self.stage = Stage(host, robot, _middle(robot, q0, record))
@@ -51,11 +55,12 @@ class Session:
             self.stage.turn_to("phone")
         view: Any = host.gui.add_button_group("view", VIEWS)
         view.on_click(lambda event: self.stage.turn_to(event.target.value))
+        self.replay: ReplayPanel | None = None
         if record is not None:
             self._mode: Any = host.gui.add_button_group("mode", _MODES)
             self._mode.on_click(lambda event: self.set_mode(str(event.target.value).strip("● ")))
             self._mark("replay")
-        self.replay = None if record is None else ReplayPanel(self.stage, record)
+            self.replay = ReplayPanel(self.stage, record)
         self.live = LivePanel(self.stage, follower)
         if record is None:
             self.live.set_active(True)
@@ -110,7 +115,9 @@ class Page:
         point = _middle(robot, q0, record)
         self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
         camera = self.server.initial_camera
-        camera.position, camera.look_at = map(tuple, first_view(point))
+        position, middle = first_view(point)
+        camera.position = tuple(position)
+        camera.look_at = tuple(middle)
         camera.fov = 0.95  # rad, from top to bottom
         self.sessions: dict[int, Session] = {}
         self.open = partial(Session, robot=robot, q0=q0, record=record, scheme=scheme)

@@ -1,17 +1,40 @@
-"""Words and bars on the page: pure functions that return HTML."""
+"""Words and bars on the page, as HTML."""
 
 import html
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from iiwa_dnn.results.record import FloatArray
+from iiwa_dnn.robot.robot import Robot
 
 PERIOD = 0.1
 """Time between two updates of words and bars [s]; the robot moves at every tick."""
 
-_NEAR = 0.9  # share of the way from the middle to a limit from which on a bar is red
+_NEAR = 0.9  # distance from the middle, relative to that of a limit, from which a bar is red
 _ROW = "display:flex;align-items:center;gap:6px;margin:3px 0;font-size:12px"
+
+
+class Readout:
+    """Words and joint bars on a page, renewed once in a `PERIOD`."""
+
+    def __init__(self, gui: Any) -> None:
+        """Put empty words and bars on a page."""
+        self._facts = gui.add_html("")
+        self._bars = gui.add_html("")
+        self._age = np.inf
+
+    def is_due(self, elapsed: float) -> bool:
+        """Let `elapsed` seconds pass; return whether the last `show` is a period ago."""
+        self._age += elapsed
+        return self._age >= PERIOD
+
+    def show(self, values: Mapping[str, str], robot: Robot, q: FloatArray) -> None:
+        """Show named values, and the joint positions q (n,) [rad] of a robot."""
+        self._age = 0.0
+        self._facts.content = facts(values)
+        self._bars.content = joint_bars(q, robot.q_lower, robot.q_upper)
 
 
 def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
@@ -21,19 +44,20 @@ def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
     """
     rows = []
     for i, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True), 1):
-        share, ends, near = 0.5, ("-", "-"), False
+        fraction = 0.5
+        ends = ("-", "-")
         if np.isfinite(low) and np.isfinite(high):
-            share = (angle - low) / (high - low)
-            ends, near = (f"{low:.2f}", f"{high:.2f}"), abs(2.0 * share - 1.0) > _NEAR
-        place = 100.0 * float(np.clip(share, 0.0, 1.0))
-        colour = "#d6001c" if near else "#1c7ed6"
+            fraction = (angle - low) / (high - low)
+            ends = (f"{low:.2f}", f"{high:.2f}")
+        left = 100.0 * float(np.clip(fraction, 0.0, 1.0))
+        color = "#d6001c" if abs(2.0 * fraction - 1.0) > _NEAR else "#1c7ed6"
         rows.append(
             f'<div style="{_ROW}"><span style="width:18px">q{i}</span>'
             f'<span style="width:40px;text-align:right;color:#888">{ends[0]}</span>'
             '<span style="position:relative;flex:1;height:8px;background:#e5e7ec;'
             'border-radius:4px">'
-            f'<span style="position:absolute;left:calc({place:.1f}% - 4px);top:-2px;width:8px;'
-            f'height:12px;border-radius:3px;background:{colour}"></span></span>'
+            f'<span style="position:absolute;left:calc({left:.1f}% - 4px);top:-2px;width:8px;'
+            f'height:12px;border-radius:3px;background:{color}"></span></span>'
             f'<span style="width:34px;color:#888">{ends[1]}</span>'
             f'<b style="width:52px;text-align:right">{angle:+.3f}</b></div>'
         )

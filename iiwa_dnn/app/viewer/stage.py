@@ -29,13 +29,22 @@ class Stage:
 
     def __init__(self, host: Any, robot: Robot, point: FloatArray) -> None:
         """Put the robot's shapes and a floor on the page; views turn to a point (3,) [m]."""
-        self.host, self.robot, self._point = host, robot, point
+        self.host = host
+        self.robot = robot
+        self._point = point
         self._data = robot.model.createData()
         scene = host.scene
         scene.add_grid(
-            "/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5, plane="xy",
-            cell_color=(225, 225, 230), section_color=(195, 195, 205), shadow_opacity=0.25,
-        )  # fmt: skip
+            "/floor",
+            width=3.0,
+            height=3.0,
+            cell_size=0.1,
+            section_size=0.5,
+            plane="xy",
+            cell_color=(225, 225, 230),
+            section_color=(195, 195, 205),
+            shadow_opacity=0.25,
+        )
         self._joints = [
             scene.add_frame(f"/robot/{i}", show_axes=False) for i in range(robot.model.njoints)
         ]
@@ -52,36 +61,41 @@ class Stage:
         """Draw obstacles, all but half-spaces; `show` moves them."""
         for number, obstacle in enumerate(obstacles):
             if not isinstance(obstacle, HalfSpace):
-                colour = tuple(round(255 * part) for part in OBSTACLE_COLOR)
-                name, outside = f"/obstacle_{number}", outline(obstacle)
-                node = self.host.scene.add_mesh_simple(name, *outside, color=colour)
+                node = self.host.scene.add_mesh_simple(
+                    f"/obstacle_{number}", *outline(obstacle), color=_rgb(OBSTACLE_COLOR)
+                )
                 self._obstacles.append((node, obstacle))
 
     def _add(self, shape: Shape, name: str, **options: Any) -> None:
         """Put a shape on the page, under the frame that its name begins with."""
-        scene, place = self.host.scene, {
+        scene = self.host.scene
+        options |= {
             "name": name,
-            "color": tuple(round(255 * part) for part in shape.color),
+            "color": _rgb(shape.color),
             "position": shape.position,
             "wxyz": wxyz(shape.rotation),
-            **options,
-        }  # fmt: skip
+        }
         if shape.mesh is not None:
-            scene.add_mesh_simple(vertices=shape.mesh[0], faces=shape.mesh[1], **place)
+            scene.add_mesh_simple(vertices=shape.mesh[0], faces=shape.mesh[1], **options)
         elif shape.kind == "cylinder":
-            scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **place)
+            scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **options)
         elif shape.kind == "sphere":
-            scene.add_icosphere(radius=shape.size[0], subdivisions=4, **place)
+            scene.add_icosphere(radius=shape.size[0], subdivisions=4, **options)
         else:
-            scene.add_box(dimensions=shape.size, **place)
+            scene.add_box(dimensions=shape.size, **options)
 
-    def ghost(self, target: Target | None) -> None:
-        """Show the last link, translucent, where it is at a target; None hides it."""
-        self._ghost.visible = target is not None
+    def ghost(self, target: Target | None, distance: float = np.inf, angle: float = np.inf) -> None:
+        """Show the last link, translucent, as it is at a target; hide it for None.
+
+        It is hidden too if the tip is near the target, by distance [m] and angle [rad]: it would
+        flicker inside the arm.
+        """
+        near = distance <= 1e-3 and angle <= 1e-2
+        self._ghost.visible = target is not None and not near
         if target is not None:
             frame = self.robot.model.frames[self.robot.tip_id]
             pose = pin.SE3(target.rotation, target.position) * frame.placement.inverse()
-            self._ghost.position, self._ghost.wxyz = pose.translation, wxyz(pose.rotation)
+            _move(self._ghost, pose)
 
     def show(self, q: FloatArray, t: float = 0.0) -> None:
         """Move the robot to joint positions (n,) [rad], and obstacles to where they are then."""
@@ -90,10 +104,10 @@ class Stage:
                 node.position = obstacle.shift(t)
             poses = joint_poses(self.robot, q, self._data)
             for joint, pose in zip(self._joints, poses, strict=True):
-                joint.position, joint.wxyz = pose.translation, wxyz(pose.rotation)
+                _move(joint, pose)
 
     def line(
-        self, name: str, points: FloatArray, colour: tuple[int, int, int], width: float
+        self, name: str, points: FloatArray, color: tuple[int, int, int], width: float
     ) -> None:
         """Draw a path through points (M, 3) [m], or draw it anew; its width is in pixels."""
         points = points[np.linspace(0, len(points) - 1, min(len(points), _PIECES + 1)).astype(int)]
@@ -102,7 +116,7 @@ class Stage:
             self._lines[name].points = pieces
             return
         self._lines[name] = self.host.scene.add_line_segments(
-            f"/{name}", pieces, colour, thickness=width, thickness_units="screen"
+            f"/{name}", pieces, color, thickness=width, thickness_units="screen"
         )
 
     def set_line_visible(self, name: str, visible: bool) -> None:
@@ -112,16 +126,17 @@ class Stage:
 
     def turn_to(self, view: str) -> None:
         """Let the browser's camera look as one of ``VIEWS`` says."""
-        side, up = _beside(self._point), np.array([0.0, 0.0, 1.0])
+        side = _beside(self._point)
+        up = np.array([0.0, 0.0, 1.0])
         away = {"top": 0.7 * up + 1e-3 * side, "side": 0.7 * side, "tool": 0.25 * (side + up)}
         position, middle = first_view(self._point)
         if view == "phone":  # the controls cover the lower part
-            position, middle = 2.2 * position - 1.2 * middle, np.array(middle)
-            drop = np.array([0.0, 0.0, 0.55])
-            position, middle = position - drop, middle - drop
-        if view in away:
-            position, middle = self._point + away[view], self._point
-        self.host.camera.position = tuple(position)  # takes the point looked at along
+            position = middle + 2.2 * (position - middle) - 0.55 * up
+            middle = middle - 0.55 * up
+        elif view in away:
+            position = self._point + away[view]
+            middle = self._point
+        self.host.camera.position = tuple(position)  # moves the point looked at along
         self.host.camera.look_at = tuple(middle)
 
 
@@ -133,6 +148,15 @@ def first_view(point: FloatArray) -> tuple[FloatArray, FloatArray]:
     right = np.cross([0.0, 0.0, 1.0], away)
     middle += 0.2 * right / np.linalg.norm(right)  # the controls cover the right of the page
     return middle + away, middle
+
+
+def _move(node: Any, pose: pin.SE3) -> None:
+    node.position = pose.translation
+    node.wxyz = wxyz(pose.rotation)
+
+
+def _rgb(color: Iterable[float]) -> tuple[int, ...]:
+    return tuple(round(255 * part) for part in color)
 
 
 def _beside(point: FloatArray) -> FloatArray:

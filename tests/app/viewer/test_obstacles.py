@@ -13,7 +13,8 @@ pytest.importorskip("viser", reason="pip install 'iiwa-dnn[view]'")
 
 
 def test_obstacles_of_a_record_stand_where_they_are() -> None:
-    robot, paper = papers_robot(), iiwa_dnn.DoubleIndicator()
+    robot = papers_robot()
+    paper = iiwa_dnn.DoubleIndicator()
     obstacles = [
         iiwa_dnn.Sphere([0.36, 0.16, 0.94], 0.05, velocity=[0.0, 0.0, -0.05]),
         iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.2),
@@ -31,7 +32,8 @@ def test_obstacles_of_a_record_stand_where_they_are() -> None:
         stage.show(record.q[-1], 2.0)
         np.testing.assert_allclose(drawn[0][0].position, [0.0, 0.0, -0.1])
         np.testing.assert_allclose(drawn[1][0].position, 0.0)
-        ball, corners = drawn[0][0].vertices, drawn[1][0].vertices
+        ball = drawn[0][0].vertices
+        corners = drawn[1][0].vertices
         np.testing.assert_allclose(np.linalg.norm(ball - [0.36, 0.16, 0.94], axis=1), 0.05, 1e-5)
         np.testing.assert_allclose(np.ptp(corners, axis=0), 0.2, 1e-5)
     finally:

@@ -276,15 +276,15 @@ def test_live_the_arm_gives_way_to_a_dragged_ball(browser, session):
     follower = session.live.follower
     session.set_mode("live")
     session.live.set_ball(True)
-    wait_for(lambda: follower.obstacle is not None, "the ball")
+    wait_for(lambda: follower.ball is not None, "the ball")
     elbow = follower.configuration.frame("iiwa7_link_4").position
     q = follower.configuration.q
-    session.live.ball.position = elbow
+    session.live.ball.handle.position = elbow
     assert wait_for(
         lambda: np.abs(follower.configuration.q - q).max() > 0.05, "the arm to give way"
     )
     session.live.set_ball(False)
-    wait_for(lambda: follower.obstacle is None, "the ball to be gone")
+    wait_for(lambda: follower.ball is None, "the ball to be gone")
     session.set_mode("replay")
 
 
@@ -292,20 +292,20 @@ def test_live_a_push_shows_in_the_curves_and_the_network_settles_again(shared):
     live = shared.live
     for _ in range(30):
         live.tick(0.1)
-    live._wanted.put(live._push)
+    live.push(np.random.default_rng(0))
     for _ in range(5):
         live.tick(0.1)
-    error = live.curves[0].handle.data[1]
+    error = live.diagrams.recent[0].handle.data[1]
     assert error.max() > 1e3 * error[:25].max()
     for _ in range(40):
         live.tick(0.1)
-    times, error, _, line = live.curves[0].handle.data
+    times, error, _, line = live.diagrams.recent[0].handle.data
     assert error[-1] < 1e-3 * error.max()
     assert times[np.argmax(line)] == 0.0
     assert np.diff(times).max() == pytest.approx(0.1)
     path = live._stage._lines["followed"].points
     np.testing.assert_allclose(path[-1, 1], live.follower.configuration.position, atol=1e-6)
-    states = np.array(live.settling.handle.data[1:-1])
+    states = np.array(live.diagrams.settling.handle.data[1:-1])
     assert states.shape[0] == live.follower.robot.dof
     assert states[:, -1].max() < 1e-6
 
@@ -368,7 +368,8 @@ def drag(browser, session: Session, metres: float) -> None:
         "return [...document.querySelectorAll('canvas')].sort("
         "(one, other) => other.clientWidth - one.clientWidth)[0]"
     )
-    grip, goal = pixel(origin + 0.12 * axis), pixel(origin + (0.12 + metres) * axis)
+    grip = pixel(origin + 0.12 * axis)
+    goal = pixel(origin + (0.12 + metres) * axis)
     hand = ActionChains(browser).move_to_element_with_offset(canvas, *map(int, grip))
     hand = hand.click_and_hold().pause(0.2).move_by_offset(*map(int, goal - grip))
     hand.pause(0.3).release().perform()

@@ -12,7 +12,8 @@ from iiwa_dnn.app.viewer import readout
 
 
 def test_bars_stand_where_the_angles_are():
-    lower, upper = np.full(3, -2.0), np.full(3, 2.0)
+    lower = np.full(3, -2.0)
+    upper = np.full(3, 2.0)
     page = readout.joint_bars(np.array([-2.0, 0.0, 1.0]), lower, upper)
     ET.fromstring(page)  # well-formed
     assert re.findall(r"left:calc\(([\d.]+)%", page) == ["0.0", "50.0", "75.0"]
