@@ -15,6 +15,7 @@ a high number of degrees of freedom", ICRA 1987.
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
@@ -30,79 +31,132 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
+from iiwa_dnn.schemes.distances import difference, dot, point_of
 from iiwa_dnn.schemes.parts import Limit
-from iiwa_dnn.schemes.scene import FOUND, HEAD, PAIR, Scene, make_scene, measure
+from iiwa_dnn.schemes.scene import (
+    Contact,
+    Damper,
+    PairConstants,
+    Scene,
+    contact_of,
+    make_scene,
+    pair_of,
+    place_ends,
+    scene_views,
+)
 from iiwa_dnn.schemes.step import StepViews
 
 RETREAT = 0.9
-"""Largest share of the joints' velocity limits that a row asks for, so that it has a solution."""
+"""Largest fraction of the velocity limits that a row asks for, so that it has a solution."""
 
 
 @compiled
 def collision_rows(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
 ) -> None:
-    """Write the rows of the pairs that are nearest to being active."""
+    """Write the rows of the pairs that are nearest to being active.
+
+    They go into G (rows, n) and h (rows,); `constants` (k,) are `Scene.constants`, and the bounds
+    lb (n,) and ub (n,) stay.
+    """
     dof = step.q.size
-    rows = h.size
-    pairs = int(constants[5])
-    width = FOUND + dof
+    scene = scene_views(constants, dof)
+    pairs = len(scene.pairs)
+    gradients = np.empty((pairs, dof))
+    limits = np.empty(pairs)
+    slacks = np.empty(pairs)
+    ends = place_ends(scene, step.placements)
+    for k in range(pairs):
+        pair = pair_of(scene.pairs, k)
+        contact = contact_of(pair, ends, scene.points)
+        fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
+        taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
+        limits[k] = _approach_limit(scene.damper, pair, contact, taken, fastest, step.rate)
+        slacks[k] = limits[k] - fastest
     row = 0
-    found = np.empty(pairs * width)
-    measure(constants, 0, dof, step.placements, found)
     for k in range(pairs):
-        _damper(constants, 0, dof, step.jacobian, k, found, step.rate)
-    for k in range(pairs):
-        out, before = k * width, 0
-        if pairs > rows:
-            slack = found[out + 15] - found[out + 16]
-            for i in range(pairs):
-                other = found[i * width + 15] - found[i * width + 16]
-                before += other < slack or (other == slack and i < k)
-        if before < rows:
+        if pairs <= h.size or _rank(slacks, k) < h.size:
             for j in range(dof):
-                G[row, j] = found[out + FOUND + j]
-            h[row] = found[out + 15] if found[out + 15] < found[out + 16] else np.inf
+                G[row, j] = gradients[k, j]
+            h[row] = limits[k] if slacks[k] < 0.0 else np.inf
             row += 1
 
 
 @compiled
-def _damper(
-    numbers: Vector, at: int, dof: int, jacobian: Matrix, k: int, found: Vector, rate: float
-) -> None:
-    """Write into a pair's part of `found` its h, the largest G x there is, and its row of G."""
-    pair, out = at + int(numbers[at + 6]) + (PAIR + dof) * k, (FOUND + dof) * k
+def _rank(slacks: Vector, k: int) -> int:
+    """Count the pairs that are nearer to being active than a pair, by their slacks (pairs,)."""
+    rank = 0
+    for i in range(slacks.size):
+        rank += slacks[i] < slacks[k] or (slacks[i] == slacks[k] and i < k)
+    return rank
+
+
+@compiled
+def _write_gradient(
+    moves: Matrix, contact: Contact, jacobian: Matrix, dq_max: Vector, k: int, gradients: Matrix
+) -> float:
+    """Write row k of the gradients (pairs, n): the rate at which a pair's distance shrinks.
+
+    Returns:
+        The largest rate that the velocity limits of the joints allow [m/s].
+    """
     fastest = 0.0
-    for j in range(dof):
-        moved, value = numbers[pair + PAIR + j], 0.0
-        if moved != 0.0:
-            x = out if moved > 0.0 else out + 3
-            a, b, c = found[x], found[x + 1], found[x + 2]
-            value = found[out + 6] * (jacobian[j, 0] + jacobian[j, 4] * c - jacobian[j, 5] * b)
-            value += found[out + 7] * (jacobian[j, 1] + jacobian[j, 5] * a - jacobian[j, 3] * c)
-            value += found[out + 8] * (jacobian[j, 2] + jacobian[j, 3] * b - jacobian[j, 4] * a)
-        found[out + FOUND + j] = -moved * value
-        fastest += abs(value) * numbers[at + HEAD + j]
-    dt, speed, turn = 1.0 / rate, numbers[pair + 8], numbers[pair + 10]
-    taken, strays = 0.5 * dt * dt * numbers[pair + 9], numbers[pair + 12]
-    if numbers[pair + 3] == 1.0 and (found[out + 11] > 0.0 or found[out + 13] > 0.0):
+    for j in range(dq_max.size):
+        value = 0.0
+        if moves[k, j] != 0.0:
+            x, y, z = contact.second if moves[k, j] > 0.0 else contact.first
+            wx = jacobian[j, 3]
+            wy = jacobian[j, 4]
+            wz = jacobian[j, 5]
+            value = contact.normal[0] * (jacobian[j, 0] + wy * z - wz * y)
+            value += contact.normal[1] * (jacobian[j, 1] + wz * x - wx * z)
+            value += contact.normal[2] * (jacobian[j, 2] + wx * y - wy * x)
+        gradients[k, j] = -moves[k, j] * value
+        fastest += abs(value) * dq_max[j]
+    return fastest
+
+
+@compiled
+def _taken_distance(pair: PairConstants, contact: Contact, ends: Matrix, dt: float) -> float:
+    """Bound the distance of a pair that a step of dt [s] can take although its row holds [m]."""
+    speed = pair.speed
+    turning = pair.turning
+    taken = 0.5 * dt * dt * pair.acceleration
+    shape = int(pair.second)
+    a = difference(point_of(ends, 2 * shape), contact.second)
+    b = difference(point_of(ends, 2 * shape + 1), contact.second)
+    if pair.corners == 1.0 and (dot(a, a) > 0.0 or dot(b, b) > 0.0):
         # Seen from the link, a ball's middle is a point that moves.
-        turned = (turn * turn + numbers[pair + 11]) * (found[out + 9] + dt * speed)
-        taken += 0.5 * dt * dt * (turned + 2.0 * turn * speed)
+        turned = (turning * turning + pair.turning_change) * (contact.core + dt * speed)
+        taken += 0.5 * dt * dt * (turned + 2.0 * turning * speed)
     else:
-        lost = dt * turn * found[out + 11] - found[out + 12]
-        taken += max(0.0, lost, dt * turn * found[out + 13] - found[out + 14])
-    gain, distance, least = min(numbers[at + 2], rate), found[out + 10], numbers[at + 1]
-    room = distance - least - taken
-    approach = gain * room
-    if room < 0.0 and rate < np.inf:
-        approach = rate * max(room, -taken) + gain * min(room + taken, 0.0)
-    limit = max(approach - strays, -RETREAT * fastest)
+        lost_a = dt * turning * math.sqrt(dot(a, a)) - dot(a, contact.normal)
+        lost_b = dt * turning * math.sqrt(dot(b, b)) - dot(b, contact.normal)
+        taken += max(0.0, lost_a, lost_b)
+    return taken
+
+
+@compiled
+def _approach_limit(
+    damper: Damper,
+    pair: PairConstants,
+    contact: Contact,
+    taken: float,
+    fastest: float,
+    rate: float,
+) -> float:
+    """Limit the rate at which a pair's distance may shrink [m/s]; inf if the row is idle."""
+    strays = pair.obstacle_speed
+    gain = min(damper.gain, rate)
+    slack = contact.distance - damper.least - taken
+    approach = gain * slack
+    if slack < 0.0 and rate < np.inf:
+        approach = rate * max(slack, -taken) + gain * min(slack + taken, 0.0)
     # Idle from the activation on, but never where one step could reach the least distance.
-    idle = max(numbers[at + 3], least + taken + dt * (speed + strays))
-    if numbers[at + 3] > 0.0 and distance > idle:
-        limit = np.inf
-    found[out + 15], found[out + 16] = limit, fastest
+    idle = max(damper.activation, damper.least + taken + 1.0 / rate * (pair.speed + strays))
+    if damper.activation > 0.0 and contact.distance > idle:
+        return np.inf
+    return max(approach - strays, -RETREAT * fastest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,12 +189,12 @@ class CollisionAvoidance(Limit):
 
     def __post_init__(self) -> None:
         one = isinstance(self.obstacles, Obstacle) or not isinstance(self.obstacles, Iterable)
-        given: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
-        for number, obstacle in enumerate(given, 1):
+        obstacles: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
+        for number, obstacle in enumerate(obstacles, 1):
             if not isinstance(obstacle, Obstacle):
                 problem = f"number {number} must be a Sphere, Capsule, Box, ConvexMesh or HalfSpace"
                 raise InvalidInputError("obstacles", f"{problem}, not {obstacle!r}", obstacle)
-        self._set(obstacles=given)
+        self._set(obstacles=obstacles)
         self._set(moves=any(obstacle.moves for obstacle in self.obstacles))
         checks.positive("distance", self.distance)
         checks.positive("gain", self.gain)
@@ -156,13 +210,15 @@ class CollisionAvoidance(Limit):
         Raises:
             FileError: It cannot be read, or something in it is wrong; the message says what.
         """
-        tables, where = read_toml(path), ""
+        tables = read_toml(path)
+        where = ""
         try:
             obstacles = []
             for number, table in enumerate(tables.pop("obstacle", []), 1):
                 where = f"obstacle {number}: "
                 obstacles.append(make_obstacle(table))
-            where, known = "", [field.name for field in fields(cls) if field.init]
+            where = ""
+            known = [field.name for field in fields(cls) if field.init]
             for key in tables.keys() - known:
                 hint = suggestion(key, known[1:])
                 raise TypeError(f"unexpected keyword argument {key!r}{hint}")
@@ -174,8 +230,8 @@ class CollisionAvoidance(Limit):
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:
         """Return bodies and pairs for a robot; raises what `make_scene` does."""
-        parameters = (self.nearest, self.distance, self.gain, self.activation or 0.0)
-        return make_scene(robot, self.obstacles, self.self_collision, parameters)
+        damper = Damper(self.distance, self.gain, self.activation or 0.0)
+        return make_scene(robot, self.obstacles, self.self_collision, damper)
 
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows: that of the pairs, at most `nearest`."""
@@ -192,8 +248,8 @@ class CollisionAvoidance(Limit):
         return self.scene(robot).frames
 
     def constants(self, robot: Robot) -> Vector:
-        """Return `Scene.numbers`, (k,)."""
-        return self.scene(robot).numbers
+        """Return `Scene.constants`, (k,)."""
+        return self.scene(robot).constants
 
     def move(self, robot: Robot, constants: Vector, t: float) -> None:
         """Put the moving obstacles where they are at a time [s]."""
@@ -211,8 +267,11 @@ def avoidance_of(scheme: object) -> CollisionAvoidance | None:
     return next((part for part in limits if isinstance(part, CollisionAvoidance)), None)
 
 
-def stated(scheme: object, robot: Robot) -> dict[str, Any]:
-    """Return a record's settings ``collisions``: the least distance, obstacles and pairs."""
+def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
+    """Return a record's settings ``collisions``: the least distance, obstacles and pairs.
+
+    If the scheme does not avoid collisions, there are none.
+    """
     part = avoidance_of(scheme)
     if part is None:
         return {}
@@ -221,7 +280,7 @@ def stated(scheme: object, robot: Robot) -> dict[str, Any]:
     return {"collisions": {"distance": part.distance, "obstacles": obstacles, "pairs": pairs}}
 
 
-def recorded(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
+def collision_arrays(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
     """Return a record's arrays ``distance`` and ``nearest`` where a scheme avoids collisions.
 
     q (k, n) [rad] are the joint positions at times t (k,) [s].
@@ -229,4 +288,5 @@ def recorded(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, An
     part = avoidance_of(scheme)
     if part is None:
         return {}
-    return dict(zip(("distance", "nearest"), part.scene(robot).nearest(q, t), strict=True))
+    distance, nearest = part.scene(robot).nearest(q, t)
+    return {"distance": distance, "nearest": nearest}

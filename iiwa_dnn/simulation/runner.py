@@ -23,7 +23,7 @@ from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.results.record import RATES, Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.collisions import recorded, stated
+from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.judgement import Judgement
 from iiwa_dnn.simulation.loop import Loop, Outcome
@@ -163,7 +163,7 @@ class Simulation:
             "seed": self._seed,
             **self._disturbance.settings(),
             "check": self._check.settings(),
-            **stated(controller.scheme, robot),
+            **collision_settings(controller.scheme, robot),
             "versions": {name: version(name) for name in (*_PACKAGES, *self._plant.packages)},
             "robot": robot.name,
             "tip": program.target_frames[0],
@@ -222,7 +222,7 @@ class Simulation:
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": self._status(done - 1, last, recorder)},
-            **recorded(controller.scheme, controller.robot, columns["q"], t),
+            **collision_arrays(controller.scheme, controller.robot, columns["q"], t),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )
 

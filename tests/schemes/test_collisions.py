@@ -12,8 +12,8 @@ import iiwa_dnn
 from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.reaches import bounds_of_motion
-from iiwa_dnn.schemes.scene import FOUND, measure
+from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
+from iiwa_dnn.schemes.scene import pair_distances
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
@@ -30,13 +30,13 @@ def heart(scale: float = 3.45e-3, period: float = 10.0) -> iiwa_dnn.Reference:
     return path.anchored(iiwa_dnn.Configuration(ROBOT, START))
 
 
-def all_distances(avoidance: iiwa_dnn.CollisionAvoidance, robot: Any, q: np.ndarray) -> np.ndarray:
+def pair_distances_at(
+    avoidance: iiwa_dnn.CollisionAvoidance, robot: iiwa_dnn.Robot, q: np.ndarray
+) -> np.ndarray:
     scene = avoidance.scene(robot)
     kinematics = Kinematics(robot, scene.frames)
     kinematics.update(q)
-    found = np.empty(len(scene.pairs) * (FOUND + robot.dof))
-    measure(scene.numbers, 0, robot.dof, kinematics.placements, found)
-    return found[10 :: FOUND + robot.dof].copy()
+    return pair_distances(scene.constants, robot.dof, kinematics.placements)
 
 
 @pytest.mark.parametrize("name", ["iiwa7", "panda"])
@@ -48,9 +48,9 @@ def test_rows_are_the_gradients_of_the_distances(name: str) -> None:
         q = random.uniform(0.5 * robot.q_lower, 0.5 * robot.q_upper)
         conf = iiwa_dnn.Configuration(robot, q)
         G = scheme(avoidance).build_qp(conf, iiwa_dnn.Target(conf.position, conf.rotation)).G
-        apart = all_distances(avoidance, robot, q) > 1e-3
+        apart = pair_distances_at(avoidance, robot, q) > 1e-3
         for j, e in enumerate(np.eye(robot.dof)):
-            ends = [all_distances(avoidance, robot, q + s * h * e) for s in (-1.0, 1.0)]
+            ends = [pair_distances_at(avoidance, robot, q + s * h * e) for s in (-1.0, 1.0)]
             slope = (ends[1] - ends[0]) / (2.0 * h)
             worst = max(worst, np.abs(-G[apart, j] - slope[apart]).max())
     assert worst < 1e-5  # second differences at the kinks of boxes
@@ -60,7 +60,7 @@ def test_h_is_the_damper_without_a_control_period() -> None:
     avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.02, gain=4.0)
     conf = iiwa_dnn.Configuration(ROBOT, START)
     qp = scheme(avoidance).build_qp(conf, iiwa_dnn.Target(conf.position, conf.rotation))
-    distances = all_distances(avoidance, ROBOT, START)
+    distances = pair_distances_at(avoidance, ROBOT, START)
     counted = np.isfinite(qp.h)
     assert counted.any()
     np.testing.assert_allclose(qp.h[counted], 4.0 * (distances - 0.02)[counted], rtol=1e-12)
@@ -73,8 +73,8 @@ def test_no_acceleration_is_above_its_bound() -> None:
     random, joint, h = np.random.default_rng(1), 7, 1e-4
     point = np.array([0.02, -0.03, 0.06])
     for first in (0, 2):
-        speed, acceleration, turn, _, *mask = bounds_of_motion(ROBOT, first, joint, point[None])
-        assert mask == [0.0] * first + [1.0] * (joint - first)
+        bounds = bounds_of_motion(ROBOT, first, joint, point[None])
+        assert bounds.moves.tolist() == [0.0] * first + [1.0] * (joint - first)
         found = []
         for _ in range(300):
             q, dq = random.uniform(-2.0, 2.0, 7), ROBOT.dq_max * random.choice([-1.0, 1.0], 7)
@@ -90,9 +90,9 @@ def test_no_acceleration_is_above_its_bound() -> None:
             found.append([np.linalg.norm(place[2] - place[0]) / (2 * h),
                           np.linalg.norm(place[2] - 2 * place[1] + place[0]) / h**2])  # fmt: skip
         largest = np.max(found, axis=0)
-        assert 0.2 * speed < largest[0] < speed
-        assert 0.1 * acceleration < largest[1] < acceleration
-        assert turn == pytest.approx(ROBOT.dq_max[first:].sum())
+        assert 0.2 * bounds.speed < largest[0] < bounds.speed
+        assert 0.1 * bounds.acceleration < largest[1] < bounds.acceleration
+        assert bounds.turning == pytest.approx(ROBOT.dq_max[first:].sum())
 
 
 @pytest.mark.parametrize(("name", "moving"), [("iiwa7", True), ("panda", False)])

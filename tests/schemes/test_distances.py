@@ -12,10 +12,10 @@ from iiwa_dnn.schemes.distances import hull_points, segment_points
 
 def nearest(segment: np.ndarray, points: np.ndarray) -> np.ndarray:
     """The nearest points of a segment (2, 3) and a hull (k, 3), (2, 3)."""
-    out = np.empty(6)
-    compute = segment_points if len(points) <= 2 else hull_points
-    compute(segment.ravel(), 0, points.ravel(), 0, len(points), out, 0)
-    return out.reshape(2, 3)
+    a, b = map(tuple, segment)
+    if len(points) <= 2:
+        return np.array(segment_points(a, b, tuple(points[0]), tuple(points[-1])))
+    return np.array(hull_points(a, b, points))
 
 
 def minimised(segment: np.ndarray, points: np.ndarray) -> float:
