@@ -8,7 +8,6 @@ from collections.abc import Iterable
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
 from iiwa_dnn.checks import Array
 from iiwa_dnn.robot.robot import Robot
@@ -21,6 +20,7 @@ class Kinematics:
 
     Attributes:
         robot: The robot, n joints.
+        data: Pinocchio's data of the robot's model, current after `update`.
         frame_ids: Pinocchio's indices of the frames that `update` places, the tip's first.
         jacobian: Joint Jacobian, (n, 6): row j is the twist [linear velocity of the world's origin;
             angular velocity] for each unit of velocity of joint j, along the world's axes.
@@ -37,28 +37,23 @@ class Kinematics:
             NotFoundError: The robot has no frame of that name.
         """
         self.robot = robot
-        self._data = robot.model.createData()
+        self.data = robot.model.createData()
         ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
         self.frame_ids = tuple(dict.fromkeys(ids))
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.
-        self.jacobian: Array = self._data.J.T.reshape(robot.dof, 6)
-        self.inertia: Array = self._data.M.reshape(robot.dof, robot.dof)
-        self.placements = _placements(robot.model, self._data)
+        self.jacobian: Array = self.data.J.T.reshape(robot.dof, 6)
+        self.inertia: Array = self.data.M.reshape(robot.dof, robot.dof)
+        self.placements = _placements(robot.model, self.data)
         self.moves: Array = robot.moves
-
-    @property
-    def pinocchio(self) -> tuple[pin.Model, pin.Data, int, tuple[int, ...]]:
-        """Model, data, the tip's frame index and the others', for a loop that calls them itself."""
-        return self.robot.model, self._data, self.frame_ids[0], self.frame_ids[1:]
 
     def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
         model = self.robot.model
         if self._dynamics:
-            pin.crba(model, self._data, q)
-        pin.computeJointJacobians(model, self._data, q)
-        pin.updateFramePlacements(model, self._data)  # no slower than one of them
+            pin.crba(model, self.data, q)
+        pin.computeJointJacobians(model, self.data, q)
+        pin.updateFramePlacements(model, self.data)  # no slower than one of them
 
     def frame(self, name: str) -> tuple[Array, Array]:
         """Return pose (4, 4) and Jacobian (6, n) of a frame, copies.
@@ -70,13 +65,8 @@ class Kinematics:
         """
         model = self.robot.model
         index = self.robot.frame_id(name)
-        pose = pin.updateFramePlacement(model, self._data, index).homogeneous
-        return pose, pin.getFrameJacobian(model, self._data, index, pin.LOCAL_WORLD_ALIGNED)
-
-    def support(self, index: int) -> NDArray[np.int64]:
-        """Return 1 for each joint that moves a frame and 0 for the others, (n,)."""
-        support: NDArray[np.int64] = self.moves[index].astype(np.int64)
-        return support
+        pose = pin.updateFramePlacement(model, self.data, index).homogeneous
+        return pose, pin.getFrameJacobian(model, self.data, index, pin.LOCAL_WORLD_ALIGNED)
 
 
 def _placements(model: pin.Model, data: pin.Data) -> Array:

@@ -129,7 +129,8 @@ def lift_targets(
     Returns:
         The changed targets, (k, 18), a copy.
     """
-    model, data, *_ = kinematics.pinocchio
+    data = kinematics.data
+    model = kinematics.robot.model
     pin.forwardKinematics(model, data, past[0], past[1], np.zeros(model.nv))
     lifted = targets.copy()
     for i, name in enumerate(frames):

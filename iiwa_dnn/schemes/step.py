@@ -153,7 +153,8 @@ class Step:
     @property
     def bias(self) -> Vector:
         """Joint torques of gravity, Coriolis and centrifugal forces [N m], (n,)."""
-        model, data, *_ = self._kinematics.pinocchio
+        data = self._kinematics.data
+        model = self._kinematics.robot.model
         return np.array(rnea(model, data, self.q, self.dq, np.zeros(self.q.size)))
 
     def views(self, frame: str) -> StepViews:
