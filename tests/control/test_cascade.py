@@ -92,7 +92,7 @@ def test_a_run_records_its_levels_and_checks_their_programs(tmp_path: Path) -> N
         ElbowAngleTask(wanted, gain=1.0, priority=3),
         PostureTask({"iiwa7_joint_7": 1.0}, gain=1.0, priority=4),
     ]
-    lexi = Scheme([KineticEnergy(1.0)], tasks, [JointLimits()])
+    lexi = Scheme([KineticEnergy(weight=1.0)], tasks, [JointLimits()])
     record = simulate(ROBOT, lexi, Heart().anchored(conf), conf.q, dt=1e-3, duration=0.3)
     assert failures(record) == []
     assert record.level_residual is not None

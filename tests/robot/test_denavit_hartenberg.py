@@ -79,7 +79,7 @@ def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
 def test_such_a_robot_draws_a_heart() -> None:
     robot = robot_from_dh(IIWA7, lower=-2.5, upper=2.5, velocity=[1.5] * 7, name="iiwa7")
     conf = Configuration(robot, robot.start_posture())
-    parts = [KineticEnergy(0.2), CyclicMotion(0.8)], [PositionTask()], [JointLimits()]
+    parts = [KineticEnergy(weight=0.2), CyclicMotion(weight=0.8)], [PositionTask()], [JointLimits()]
     record = simulate(robot, Scheme(*parts), Heart().anchored(conf), conf.q, dt=1e-3, duration=0.1)
     assert np.abs(record.position - record.position_desired).max() < 1e-5
     assert np.nanmax(record.solution_gap) < 1e-7
