@@ -6,7 +6,6 @@ is as short as its discretisation is stable with, so that none is slowed down by
 A network of one's own is one line in `NETWORKS`.
 """
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain, product
@@ -39,29 +38,15 @@ from iiwa_dnn.networks.tracking import (
     TrackingSolver,
 )
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
-from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.references import Heart
-from iiwa_dnn.robot import Configuration
-from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.atlas_disturbances import (
-    DISTURBANCES,
-    DT,
-    as_measured,
-    learn,
-    noise_of,
-    other_arm,
-    pose_of,
-)
+from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
+from iiwa_dnn.studies.atlas_loop import DisturbedLoop
 from iiwa_dnn.studies.atlas_schemes import SCHEMES
 from iiwa_dnn.studies.runs import paper_robot
 from iiwa_dnn.studies.sweeps import Outcome
 
 DURATION = 0.5
 """Length of a run [s]."""
-
-PERIOD = 2.0
-"""Time of a whole heart [s]."""
 
 
 @dataclass(frozen=True)
@@ -247,67 +232,19 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
 
 def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
     """Drive the arm once."""
-    kind, rng = settings["disturbance"], np.random.default_rng(seed)
-    robot, scheme = paper_robot(), SCHEMES[settings["scheme"]]()
-    solver = NETWORKS[settings["network"]].make(settings["evaluations"])
-    arm = Kinematics(other_arm(robot, rng) if kind == "parameter" else robot)
-    q = np.array(paper.START)
-    program = scheme.program(robot)
-    past = np.zeros((3, q.size))
     steps = round(DURATION / DT)
-    n, m, p = program.sizes
-    data = QP.from_data(np.zeros(program.data_size), program.sizes)
-    heart = Heart(period=PERIOD).anchored(Configuration(arm.robot, q))
-    targets = heart.sample(DT * np.arange(steps)).data
-    errors, residuals, spent = np.empty(steps), np.empty(steps), 0.0
-    noise, point = noise_of(kind, rng, steps), np.empty(2 * n + m + p)
-    width = q.size if solver.network.carries_x else 0
-    joint, locked = int(rng.integers(q.size)), int(rng.integers(steps // 2))
-    before, was = q, np.empty(0)
-    believed: Matrix = np.empty((0, 6))
-    for k in range(steps):
-        seen = q + (1e-4 * rng.standard_normal(q.size) if kind == "measurement" else 0.0)
-        arm.update(q)
-        tool, target = arm.placements[arm.frame_ids[0]].copy(), targets[k].copy()
-        errors[k] = np.linalg.norm(target[:3] - tool[9:])
-        if not errors[k] < 1.0:
-            raise IiwaDnnError(f"the tool is {errors[k]:.2g} m away")
-        program.update(seen)
-        past[0] = seen
-        if kind == "parameter":
-            as_measured(target, tool, program.placement)
-        if kind == "estimated":
-            if k == 0:
-                believed = arm.jacobian * (1.0 + 0.1 * rng.standard_normal((q.size, 6)))
-            else:
-                learn(believed, q - before, pose_of(tool) * pose_of(was).inverse())
-            program.kinematics.jacobian[:] = believed
-            was = tool
-            before = q
-        wanted = heart.accelerations(k * DT) if program.accelerates else None
-        program.write(data.data, target.reshape(1, -1), past, DT, k * DT, wanted)
-        velocity: Vector = past[1].copy()
-        if kind == "locked" and k >= locked:
-            data.lb[joint] = data.ub[joint] = -velocity[joint] / DT if program.accelerates else 0.0
-        began = time.perf_counter()
-        answer = solver.advance(data, DT)
-        spent += time.perf_counter() - began
-        residuals[k], x = answer.residuals.largest, answer.x
-        state = solver.warm_state(data.sizes)
-        if state is None:
-            raise IiwaDnnError("the state is not finite")
-        if noise is not None:  # the network's rates have it too, before it is read
-            state[: width or state.size] += noise[k, : width or state.size]
-            residuals[k] = max(solver.network.read(data, state, point))
-            x = point
-        past[1] = velocity + DT * x[: q.size] if program.accelerates else x[: q.size]
-        if kind == "locked" and k >= locked:
-            past[1, joint] = 0.0
-        q = q + DT * (0.5 * (velocity + past[1]) if program.accelerates else past[1])
+    robot = paper_robot()
+    scheme = SCHEMES[settings["scheme"]]()
+    solver = NETWORKS[settings["network"]].make(settings["evaluations"])
+    draw = DISTURBANCES[settings["disturbance"]]
+    disturbance = draw(robot, np.random.default_rng(seed), steps)
+    loop = DisturbedLoop(scheme.program(robot), solver, disturbance, steps)
+    taken = [loop.step(k) for k in range(steps)]
+    errors, residuals, seconds = np.array(taken).T
     half = slice(steps // 2, None)
     return {
         "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),
         "max_error_m": float(errors[half].max()),
         "rms_residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
-        "advance_us": 1e6 * spent / steps,
+        "advance_us": 1e6 * float(seconds.sum()) / steps,
     }

@@ -5,42 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.program import StepProgram
 
 DT = 2e-3
 """Control period [s]."""
-
-DISTURBANCES = (
-    "none",
-    "constant",
-    "ramp",
-    "sinusoid",
-    "white",
-    "measurement",
-    "parameter",
-    "locked",
-    "estimated",
-)
-"""The first five but none disturb the network's rates, the others the loop around it:
-
-constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
-the states that the seed draws; white, 0.01 rad/s a control period (the paper's); measurement,
-1e-4 rad on the joint positions; parameter, links 5 % longer or shorter than the controller's model,
-the tool's pose being measured; locked, one joint that stands still from a moment in the first half
-on, as the controller is told; estimated, a Jacobian whose entries are 10 % off at the start, and
-which is learned from the motion alone (`learn`).
-"""
-
-
-def noise_of(kind: str, rng: np.random.Generator, steps: int) -> Matrix | None:
-    """Draw what is added to the states after each step, (steps, 100)."""
-    direction = rng.standard_normal(100) / np.sqrt(7.0)
-    t = DT * np.arange(steps)
-    shapes = {"constant": np.ones(steps), "ramp": t, "sinusoid": np.sin(10.0 * np.pi * t)}
-    if kind in shapes:
-        return DT * np.outer(shapes[kind], direction)
-    return 0.01 * rng.standard_normal((steps, 100)) if kind == "white" else None
 
 
 def other_arm(robot: Robot, rng: np.random.Generator) -> Robot:
@@ -78,3 +48,157 @@ def as_measured(target: Vector, tool: Vector, believed: Vector) -> None:
     target[:3] += believed[9:] - tool[9:]
     turn = tool[:9].reshape(3, 3) @ believed[:9].reshape(3, 3).T  # both by columns
     target[3:12] = (target[3:12].reshape(3, 3) @ turn).ravel()
+
+
+class Disturbance:
+    """No disturbance, and the base of the others: each overrides the thought that it changes.
+
+    Attributes:
+        robot: The true arm, n joints.
+        rng: Source of everything random.
+        direction: Direction in the space of the states, (100,).
+        noise: Noise that is added to the network's state after each step, (steps, 100), or None.
+        joint: Number of the joint that a locked arm loses.
+        moment: Step from which on it has lost it.
+    """
+
+    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int) -> None:
+        """Draw a disturbance of a run of so many steps: a seed draws the same for every kind."""
+        self.robot = robot
+        self.rng = rng
+        self.direction: Vector = rng.standard_normal(100) / np.sqrt(7.0)
+        self.noise = self.noise_at(DT * np.arange(steps, dtype=np.float64))
+        self.joint = int(rng.integers(robot.dof))
+        self.moment = int(rng.integers(steps // 2))
+
+    def noise_at(self, t: Vector) -> Matrix | None:
+        """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
+        return None
+
+    def measure(self, q: Vector) -> Vector:
+        """Measure joint positions q (n,) [rad]."""
+        return q
+
+    def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
+        """Change what a program is written from, in place.
+
+        Args:
+            program: The program, with the kinematics of the measured joint positions.
+            target: Target of the tool, (18,).
+            tool: True placement of the tool, (12,).
+            q: True joint positions [rad], (n,).
+        """
+
+    def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
+        """Change the bounds of the program of step k; the last command is (n,) [rad/s]."""
+
+    def hold(self, k: int, velocity: Vector) -> None:
+        """Change the velocity (n,) [rad/s] that the arm takes in step k, in place."""
+
+
+class ConstantNoise(Disturbance):
+    """Constant noise in the network's rates."""
+
+    def noise_at(self, t: Vector) -> Matrix:
+        """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
+        return np.tile(DT * self.direction, (t.size, 1))
+
+
+class Ramp(Disturbance):
+    """Noise in the network's rates that grows with time."""
+
+    def noise_at(self, t: Vector) -> Matrix:
+        """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
+        return DT * (t[:, np.newaxis] * self.direction)
+
+
+class Sinusoid(Disturbance):
+    """Noise of 5 Hz in the network's rates."""
+
+    def noise_at(self, t: Vector) -> Matrix:
+        """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
+        return DT * (np.sin(10.0 * np.pi * t)[:, np.newaxis] * self.direction)
+
+
+class WhiteNoise(Disturbance):
+    """White noise in the network's rates."""
+
+    def noise_at(self, t: Vector) -> Matrix:
+        """Draw the noise in the network's state at times t (steps,) [s], (steps, 100)."""
+        return 0.01 * self.rng.standard_normal((t.size, self.direction.size))
+
+
+class MeasurementNoise(Disturbance):
+    """Noise on the measured joint positions."""
+
+    def measure(self, q: Vector) -> Vector:
+        """Measure joint positions q (n,) [rad]."""
+        return q + 1e-4 * self.rng.standard_normal(q.size)
+
+
+class OtherArm(Disturbance):
+    """An arm with other links than the controller's model, and a tool whose pose is measured."""
+
+    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int) -> None:
+        """Draw the lengths of the links."""
+        super().__init__(other_arm(robot, rng), rng, steps)
+
+    def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
+        """Move the target (18,) by the model's error of the tool's placement (12,)."""
+        as_measured(target, tool, program.placement)
+
+
+class LockedJoint(Disturbance):
+    """A joint that stands still from a step on, as the controller knows."""
+
+    def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
+        """Fix the joint by its bounds."""
+        if k >= self.moment:
+            value = -velocity[self.joint] / DT if accelerates else 0.0
+            qp.lb[self.joint] = value
+            qp.ub[self.joint] = value
+
+    def hold(self, k: int, velocity: Vector) -> None:
+        """Let the joint stand still, whatever the network answers."""
+        if k >= self.moment:
+            velocity[self.joint] = 0.0
+
+
+class EstimatedJacobian(Disturbance):
+    """A Jacobian that is wrong at the start, and is learned from the motion alone (`learn`)."""
+
+    _estimate: Matrix | None = None
+    _last: tuple[Vector, Vector]
+
+    def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
+        """Put the estimate in place of the Jacobian."""
+        jacobian = program.kinematics.jacobian
+        if self._estimate is None:
+            self._estimate = jacobian * (1.0 + 0.1 * self.rng.standard_normal(jacobian.shape))
+        else:
+            last_tool, last_q = self._last
+            learn(self._estimate, q - last_q, pose_of(tool) * pose_of(last_tool).inverse())
+        jacobian[:] = self._estimate
+        self._last = (tool, q)
+
+
+DISTURBANCES: dict[str, type[Disturbance]] = {
+    "none": Disturbance,
+    "constant": ConstantNoise,
+    "ramp": Ramp,
+    "sinusoid": Sinusoid,
+    "white": WhiteNoise,
+    "measurement": MeasurementNoise,
+    "parameter": OtherArm,
+    "locked": LockedJoint,
+    "estimated": EstimatedJacobian,
+}
+"""The first five but none disturb the network's rates, the others the loop around it:
+
+constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid 1 rad/s^2 of 5 Hz, along a direction in the space of
+the states that the seed draws; white, 0.01 rad/s a control period (the paper's); measurement,
+1e-4 rad on the joint positions; parameter, links 5 % longer or shorter than the controller's model,
+the tool's pose being measured; locked, one joint that stands still from a moment in the first half
+on, as the controller is told; estimated, a Jacobian whose entries are 10 % off at the start, and
+which is learned from the motion alone (`learn`).
+"""

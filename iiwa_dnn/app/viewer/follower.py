@@ -25,6 +25,7 @@ from iiwa_dnn.robot.obstacles import Sphere
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import CollisionAvoidance, DoubleIndicator, Limit
 from iiwa_dnn.simulation import IdealPlant
+from iiwa_dnn.simulation.loop import Loop
 
 TIP_SPEED = 0.25
 """Largest speed of the target and of the ball [m/s]: the limit for robots beside people."""
@@ -138,6 +139,7 @@ class Follower:
         self._controller.warm_up()
         self._plant = PushedPlant()
         self._plant.start(robot, start.q, dt, seed=0)
+        self._loop = Loop(self._controller, self._plant)
         self._steps = 0
         self._command: Command | None = None
 
@@ -195,13 +197,13 @@ class Follower:
         conf = self.configuration
         self._target.set(position, rotation)
         began = time.perf_counter()
-        command = self._controller.step(conf.q, self.time)
+        outcome = self._loop.step(self._steps)
         seconds = time.perf_counter() - began
+        command = outcome.commands[0]
         self._command = command
         self._steps += 1
-        self._plant.move(command.dq)
         return FollowerState(
-            q=self._plant.q,
+            q=outcome.q,
             position_error=float(np.linalg.norm(position - conf.position)),
             orientation_error=float(np.linalg.norm(pin.log3(rotation @ conf.rotation.T))),
             kkt_residual=command.solution.residuals.largest,

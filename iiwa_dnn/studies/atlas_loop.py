@@ -1,0 +1,127 @@
+"""The loop of the atlas: an arm, a network and a disturbance, step by step."""
+
+import time
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.errors import IiwaDnnError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.references import Heart
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.atlas_disturbances import DT, Disturbance
+
+PERIOD = 2.0
+"""Time of a whole heart [s]."""
+
+
+class Judged(NamedTuple):
+    """Numbers of one step.
+
+    Attributes:
+        error: Distance of the tool from its target before the step [m].
+        residual: Largest KKT residual of the answer.
+        seconds: Wall time of the answer [s].
+    """
+
+    error: float
+    residual: float
+    seconds: float
+
+
+class DisturbedLoop:
+    """The paper's arm along a heart, closed by a network over a disturbed `StepProgram`.
+
+    `iiwa_dnn.simulation.Loop` is not used: the disturbances act inside the controller's step, on
+    the Jacobian and the target before a program is written, on its bounds before it is answered,
+    and on the network's state before the answer is read. No other run wants hooks there.
+
+    Attributes:
+        program: The scheme laid out for the controller's model of the arm, n joints.
+        solver: The network, which advances by one control period a step.
+        disturbance: The disturbance, with the true arm.
+        q: True joint positions [rad], (n,).
+    """
+
+    def __init__(
+        self, program: StepProgram, solver: DNNSolver, disturbance: Disturbance, steps: int
+    ) -> None:
+        """Put the arm at rest at the paper's start, for so many steps at most."""
+        self.program = program
+        self.solver = solver
+        self.disturbance = disturbance
+        self.q: Vector = np.array(paper.START)
+        self._arm = Kinematics(disturbance.robot)
+        self._past = np.zeros((3, self.q.size))
+        self._qp = QP.from_data(np.zeros(program.data_size), program.sizes)
+        start = Configuration(disturbance.robot, self.q)
+        self._heart = Heart(period=PERIOD).anchored(start)
+        self._targets = self._heart.sample(DT * np.arange(steps)).data
+
+    def step(self, k: int) -> Judged:
+        """Take step k.
+
+        Raises:
+            IiwaDnnError: The tool is 1 m away from its target, or the network has diverged.
+        """
+        tool = self._tool()
+        target = self._targets[k].copy()
+        error = float(np.linalg.norm(target[:3] - tool[9:]))
+        if not error < 1.0:
+            raise IiwaDnnError(f"the tool is {error:.2g} m away")
+        self._write(k, target, tool)
+        x, residual, seconds = self._answer(k)
+        self._move(k, x)
+        return Judged(error, residual, seconds)
+
+    def _tool(self) -> Vector:
+        """Return the true placement of the tool, (12,)."""
+        self._arm.update(self.q)
+        placement: Vector = self._arm.placements[self._arm.frame_ids[0]].copy()
+        return placement
+
+    def _write(self, k: int, target: Vector, tool: Vector) -> None:
+        """Write the program of step k for a target (18,) and the tool's placement (12,)."""
+        program = self.program
+        seen = self.disturbance.measure(self.q)
+        program.update(seen)
+        self._past[0] = seen
+        self.disturbance.mislead(program, target, tool, self.q)
+        t = k * DT
+        wanted = self._heart.accelerations(t) if program.accelerates else None
+        program.write(self._qp.data, target.reshape(1, -1), self._past, DT, t, wanted)
+        self.disturbance.constrain(k, self._qp, self._past[1], program.accelerates)
+
+    def _answer(self, k: int) -> tuple[Vector, float, float]:
+        """Advance the network; return x, its largest KKT residual and the wall time [s]."""
+        qp = self._qp
+        began = time.perf_counter()
+        answer = self.solver.advance(qp, DT)
+        seconds = time.perf_counter() - began
+        state = self.solver.warm_state(qp.sizes)
+        if state is None:
+            raise IiwaDnnError("the state is not finite")
+        noise = self.disturbance.noise
+        if noise is None:
+            return answer.x, answer.residuals.largest, seconds
+        network = self.solver.network
+        width = self.q.size if network.carries_x else state.size
+        state[:width] += noise[k, :width]
+        point = np.empty_like(answer.point)
+        residual = max(network.read(qp, state, point))
+        return point, residual, seconds
+
+    def _move(self, k: int, x: Vector) -> None:
+        """Move the arm by the network's x, whose first n are velocities or accelerations."""
+        last = self._past[1].copy()
+        velocity: Vector = x[: self.q.size].copy()
+        if self.program.accelerates:
+            velocity = last + DT * velocity
+        self.disturbance.hold(k, velocity)
+        self._past[1] = velocity
+        mean = 0.5 * (last + velocity) if self.program.accelerates else velocity
+        self.q = self.q + DT * mean
