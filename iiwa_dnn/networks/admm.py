@@ -49,9 +49,12 @@ class AdmmSolver(DNNSolver):
         rows = np.vstack([qp.A, qp.G, np.eye(n)])
         lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
         changes = {
-            "q": qp.q, "l": lower, "u": np.concatenate([qp.b, qp.h, qp.ub]),
-            "Px": qp.P[triangle][np.lexsort(triangle)], "Ax": rows.T.ravel(),
-        }  # fmt: skip
+            "q": qp.q,
+            "l": lower,
+            "u": np.concatenate([qp.b, qp.h, qp.ub]),
+            "Px": qp.P[triangle][np.lexsort(triangle)],
+            "Ax": rows.T.ravel(),
+        }
         state = self._take(self.network, qp)
         if self._osqp is None or self._osqp[0] != sizes:
             self._osqp = (sizes, _prepared(n, len(rows), self.substeps))
@@ -68,10 +71,17 @@ def _prepared(n: int, rows: int, iterations: int) -> Any:
     from scipy import sparse
 
     solver = osqp.OSQP()
-    full = sparse.csc_matrix(np.ones((rows, n)))
     solver.setup(
-        sparse.csc_matrix(np.triu(np.ones((n, n)) + n * np.eye(n))), np.zeros(n), full,
-        np.full(rows, -1.0), np.full(rows, 1.0), verbose=False, max_iter=iterations, scaling=0,
-        check_termination=0, adaptive_rho=False, polishing=False,
-    )  # fmt: skip
+        sparse.csc_matrix(np.triu(np.ones((n, n)) + n * np.eye(n))),
+        np.zeros(n),
+        sparse.csc_matrix(np.ones((rows, n))),
+        np.full(rows, -1.0),
+        np.full(rows, 1.0),
+        verbose=False,
+        max_iter=iterations,
+        scaling=0,
+        check_termination=0,
+        adaptive_rho=False,
+        polishing=False,
+    )
     return solver

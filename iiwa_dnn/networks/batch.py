@@ -154,17 +154,11 @@ def solve_batch(
 
 def _stacked(arrays: dict[str, NDArray[np.float64]]) -> _Stack:
     """Check the shapes and count the programs; raises InvalidInputError naming the argument."""
-    if "q" not in arrays or arrays["q"].ndim == 0 or arrays["q"].shape[-1] == 0:
-        raise InvalidInputError("q", "is empty")
-    if "P" not in arrays:
-        raise InvalidInputError("P", "is missing")
-    n = arrays["q"].shape[-1]
-    # Rows decide on m and p, so that a right-hand side that does not fit is the one named.
-    m, p = (arrays[k].shape[-2] if k in arrays and arrays[k].ndim > 1 else 0 for k in "GA")
+    sizes = _sizes(arrays)
     fields: list[Matrix] = []
     counts = {}
-    shapes = field_shapes((n, m, p))
-    for name, shape, absent in zip(FIELDS, shapes, absent_fields(n), strict=True):
+    shapes = field_shapes(sizes)
+    for name, shape, absent in zip(FIELDS, shapes, absent_fields(sizes[0]), strict=True):
         array = arrays.get(name, absent)
         leading = array.shape[: array.ndim - len(shape)]
         if array.shape != (*leading, *shape) or len(leading) > 1:
@@ -173,13 +167,29 @@ def _stacked(arrays: dict[str, NDArray[np.float64]]) -> _Stack:
         if leading:
             counts[name] = leading[0]
         fields.append(array.reshape(math.prod(leading), math.prod(shape)))
+    return _Stack(fields, sizes, _common_count(counts))
+
+
+def _sizes(arrays: dict[str, NDArray[np.float64]]) -> Sizes:
+    """Read (n, m, p) off q and the rows; raises InvalidInputError if P or q is not there."""
+    if "q" not in arrays or arrays["q"].ndim == 0 or arrays["q"].shape[-1] == 0:
+        raise InvalidInputError("q", "is empty")
+    if "P" not in arrays:
+        raise InvalidInputError("P", "is missing")
+    # Rows decide on m and p, so that a right-hand side that does not fit is the one named.
+    m, p = (arrays[k].shape[-2] if k in arrays and arrays[k].ndim > 1 else 0 for k in "GA")
+    return arrays["q"].shape[-1], m, p
+
+
+def _common_count(counts: dict[str, int]) -> int:
+    """Return the number of programs on which the stacked arguments agree, 1 if none is stacked."""
     first, count = next(iter(counts.items()), ("", 1))
     for name, other in counts.items():
         if other == 0:
             raise InvalidInputError(name, "holds no program")
         if other != count:
             raise InvalidInputError(name, f"holds {other} programs, but {first} holds {count}")
-    return _Stack(fields, (n, m, p), count)
+    return count
 
 
 def _settle_all(stack: _Stack, tol: float, points: Matrix, figures: Matrix) -> None:
@@ -192,10 +202,10 @@ def _settle_all(stack: _Stack, tol: float, points: Matrix, figures: Matrix) -> N
     def settle_chunk(first: int) -> None:
         rows = stack.rows(first, min(first + CHUNK, stack.count))
         last = first + len(rows)
+        answers = points[first:last]
         _settle_rows(
-            rows, stack.sizes, shared_cost, address, constants,
-            points[first:last], figures[first:last],
-        )  # fmt: skip
+            rows, stack.sizes, shared_cost, address, constants, answers, figures[first:last]
+        )
 
     # Not numba's own threads: those end the process if two callers use them at once.
     threads: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]

@@ -103,7 +103,8 @@ class DualNetwork(Network):
         n, m, p = qp.sizes
         check_size("state", state, self.state_size(qp))
         dual = self._dual(qp)
-        x, z = dual.lifted @ state + dual.offset, -state[: state.size - n]
+        x = dual.lifted @ state + dual.offset
+        z = -state[: state.size - n]
         if self.simplified:
             gradient = qp.P @ x + qp.q - qp.G.T @ state[:m] - state[m:]
             z = np.concatenate([np.linalg.lstsq(qp.A.T, -gradient, rcond=1e-10)[0], z])
@@ -136,7 +137,9 @@ def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
         raise InvalidInputError("P", problem) from None
     M = inverse.T @ inverse
     offset = -M @ qp.q
-    rows, lower, upper = np.eye(qp.q.size), qp.lb, qp.ub
+    rows = np.eye(qp.q.size)
+    lower = qp.lb
+    upper = qp.ub
     if simplified:
         scaled = qp.A @ inverse.T
         lifted = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
@@ -144,9 +147,11 @@ def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
         offset = lifted @ qp.b - M @ qp.q
     if qp.h.size:
         rows = np.vstack([qp.G, rows])
-        lower, upper = np.append(np.full(qp.h.size, -np.inf), lower), np.append(qp.h, upper)
+        lower = np.append(np.full(qp.h.size, -np.inf), lower)
+        upper = np.append(qp.h, upper)
     if not simplified:
         rows = np.vstack([qp.A, rows])
-        lower, upper = np.append(qp.b, lower), np.append(qp.b, upper)
+        lower = np.append(qp.b, lower)
+        upper = np.append(qp.b, upper)
     lifted = M @ rows.T
     return _Dual(lifted, offset, rows @ lifted, rows @ offset, lower, upper)

@@ -50,7 +50,10 @@ class KktSystem:
 
     def __init__(self, qp: QP, form: Form, rate: QP | None = None) -> None:
         """Take a program and, where it moves, its rate of change (zero where it is infinite)."""
-        self._form, self.size, self.qp, self._rate = form, system_size(qp, form), qp, rate
+        self._form = form
+        self.size = system_size(qp, form)
+        self.qp = qp
+        self._rate = rate
         self._affine = _affine(qp, form, 1.0)
         self._drift = None if rate is None else _affine(rate, form, 0.0)
 
@@ -79,7 +82,8 @@ class KktSystem:
     def _smooth(self, s: Vector, error: Vector, drift: Vector) -> None:
         """Put the complementarity in place of the rows C x - d."""
         n, _, p = self.qp.sizes
-        at, w = np.arange(n + p, self.size), s[n + p :]
+        at = np.arange(n + p, self.size)
+        w = s[n + p :]
         ends = np.isfinite(error[at])
         slack = np.where(ends, -error[at], 0.0)
         root = np.sqrt(w**2 + slack**2 + EPSILON**2)
@@ -91,20 +95,26 @@ class KktSystem:
 
     def _projected(self, s: Vector, error: Vector, drift: Vector) -> None:
         """Put the projections in place of the rows g and G x - h."""
-        (n, m, p), qp, matrix, rate = self.qp.sizes, self.qp, self.matrix, self._rate
+        n, m, p = self.qp.sizes
+        qp = self.qp
+        matrix = self.matrix
+        rate = self._rate
         x = s[:n]
         aim = x - error[:n]
         for name, bound in ("lb", qp.lb), ("ub", qp.ub):
             out = np.flatnonzero(aim <= bound if name == "lb" else aim >= bound)
             if out.size:
                 error[out] = x[out] - bound[out]
-                matrix[out], matrix[out, out] = 0.0, 1.0
+                matrix[out] = 0.0
+                matrix[out, out] = 1.0
                 drift[out] = 0.0 if rate is None else -getattr(rate, name)[out]
         if m:
-            rows, z = np.arange(n + p, self.size), s[n + p :]
+            rows = np.arange(n + p, self.size)
+            z = s[n + p :]
             idle = ~(z + error[rows] > 0.0)
             error[rows] = np.where(idle, -z, error[rows])
-            matrix[rows[idle], :n], drift[rows[idle]] = 0.0, 0.0
+            matrix[rows[idle], :n] = 0.0
+            drift[rows[idle]] = 0.0
             matrix[rows, rows] = np.where(idle, -1.0, -REGULAR)
 
 
@@ -113,14 +123,15 @@ def _affine(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
 
     `unit` is 0 for a rate of change: the rows of the bounds stay.
     """
-    n, m, p = qp.sizes
-    matrix, A, G = np.zeros((system_size(qp, form),) * 2), qp.A, qp.G
+    n = qp.q.size
+    matrix = np.zeros((system_size(qp, form),) * 2)
+    rows = [qp.A, qp.G]
     constant = [qp.q, -qp.b, -qp.h]
-    matrix[:n, :n], matrix[:n, n : n + p], matrix[n : n + p, :n] = qp.P, A.T, A
-    if m:
-        matrix[:n, n + p : n + p + m], matrix[n + p : n + p + m, :n] = G.T, G
     if form == "smooth":
-        bounds = unit * np.vstack([np.eye(n), -np.eye(n)])
-        matrix[:n, n + p + m :], matrix[n + p + m :, :n] = bounds.T, bounds
+        rows += [unit * np.eye(n), -unit * np.eye(n)]
         constant += [-qp.ub, qp.lb]
+    stacked = np.vstack(rows)
+    matrix[:n, :n] = qp.P
+    matrix[:n, n:] = stacked.T
+    matrix[n:, :n] = stacked
     return matrix, np.concatenate(constant)

@@ -51,7 +51,8 @@ class OneLayerNetwork(PrimalDualNetwork):
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side for this program; its derivative by differences."""
-        H, (lower, upper) = coupling(qp), limits(qp)
+        H = coupling(qp)
+        lower, upper = limits(qp)
         constant = np.concatenate([qp.q, qp.b, qp.h])
         alpha = self.share / float(np.linalg.norm(H, 2))
 

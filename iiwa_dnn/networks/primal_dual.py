@@ -40,7 +40,8 @@ class PrimalDualNetwork(Network):
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""
-        H, (lower, upper) = coupling(qp), limits(qp)
+        H = coupling(qp)
+        lower, upper = limits(qp)
         constant = np.concatenate([qp.q, qp.b, qp.h])
         eye = np.eye(constant.size)
         outer = eye + H.T
@@ -68,8 +69,10 @@ def coupling(qp: QP) -> Matrix:
     """Build H, of shape (n + p + m, n + p + m)."""
     n, m, p = qp.sizes
     H = np.zeros((n + p + m, n + p + m))
-    H[:n, :n], H[:n, n : n + p], H[:n, n + p :] = qp.P, qp.A.T, qp.G.T
-    H[n : n + p, :n], H[n + p :, :n] = -qp.A, -qp.G
+    rows = np.vstack([qp.A, qp.G])
+    H[:n, :n] = qp.P
+    H[:n, n:] = rows.T
+    H[n:, :n] = -rows
     return H
 
 

@@ -38,7 +38,8 @@ def solve_problem(
         InvalidInputError: The problem is malformed or not convex; the message names the argument.
     """
     if isinstance(problem, QP):
-        qp, problem = problem, problem.to_qpsolvers()
+        qp = problem
+        problem = problem.to_qpsolvers()
     else:
         qp = QP.from_qpsolvers(problem)
     qp.check_values()

@@ -51,7 +51,8 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
     check_size("point", point, 2 * n + m + p)
     z_box = point[-n:]
     state = np.concatenate([point[:-n], np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
-    before, after = np.empty(point.size), np.empty(point.size)
+    before = np.empty(point.size)
+    after = np.empty(point.size)
     for count in range(ROUNDS + 1):
         if advance_implicit(qp.data, n, m, p, state, _LONG, 1, 1e-9) < 0:
             break
@@ -63,7 +64,8 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
             growth = after - before
             for part in (growth[:n], growth[n:]):
                 part /= max(np.abs(part).max(), np.finfo(float).tiny)
-            if (certificate := _verified(qp, growth)) is not None:
+            certificate = _verified(qp, growth)
+            if certificate is not None:
                 return certificate
             if count == ROUNDS:
                 return _verified(qp, _nearest(qp, growth))
@@ -89,13 +91,23 @@ def _nearest(qp: QP, growth: Vector) -> Vector:
     a row takes no part in it as long as its slack is not used up, which can take very long.
     """
     n, m, p = qp.sizes
-    upper, lower, limited = qp.ub < np.inf, qp.lb > -np.inf, np.isfinite(qp.h)
-    zeros, falling = _unit_rows(np.vstack([qp.P, qp.A])), _unit_rows(qp.G[limited])
+    upper = qp.ub < np.inf
+    lower = qp.lb > -np.inf
+    limited = np.isfinite(qp.h)
+    zeros = _unit_rows(np.vstack([qp.P, qp.A]))
+    falling = _unit_rows(qp.G[limited])
     direction = QP(
-        np.eye(n), -growth[:n], falling, np.zeros(len(falling)), zeros, np.zeros(len(zeros)),
-        np.where(lower, 0.0, -np.inf), np.where(upper, 0.0, np.inf),
-    )  # fmt: skip
-    zeros, free = _unit_rows(np.hstack([qp.A.T, qp.G.T, np.eye(n)])), np.ones(p, bool)
+        np.eye(n),
+        -growth[:n],
+        G=falling,
+        h=np.zeros(len(falling)),
+        A=zeros,
+        b=np.zeros(len(zeros)),
+        lb=np.where(lower, 0.0, -np.inf),
+        ub=np.where(upper, 0.0, np.inf),
+    )
+    zeros = _unit_rows(np.hstack([qp.A.T, qp.G.T, np.eye(n)]))
+    free = np.ones(p, bool)
     least = np.where(np.concatenate([free, np.zeros(m, bool), lower]), -np.inf, 0.0)
     most = np.where(np.concatenate([free, limited, upper]), np.inf, 0.0)
     multipliers = QP(
@@ -107,7 +119,8 @@ def _nearest(qp: QP, growth: Vector) -> Vector:
 def _settled(qp: QP) -> Vector:
     """Solve a program that has a solution, with the default integrator's settings."""
     n, m, p = qp.sizes
-    state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
+    state = np.zeros(3 * n + m + p)
+    point = np.empty(2 * n + m + p)
     settle_program(qp, state, point, 1e-10, 1000, 1e7)
     return point[:n]
 
@@ -116,7 +129,8 @@ def _polished_multipliers(qp: QP, vector: Vector, share: float) -> Vector:
     """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
     _, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
-    weights, bounds = vector[: p + m].copy(), vector[p + m :]
+    weights = vector[: p + m].copy()
+    bounds = vector[p + m :]
     takes_part = np.abs(weights) > share
     takes_part[p:] &= (weights[p:] > 0.0) & np.isfinite(qp.h)
     weights[~takes_part] = 0.0

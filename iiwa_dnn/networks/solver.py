@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from iiwa_dnn.networks.integrators.base import (
     Settled,
     answer_program,
 )
-from iiwa_dnn.networks.integrators.explicit import follow
+from iiwa_dnn.networks.integrators.explicit import follow, follow_program
 from iiwa_dnn.networks.integrators.implicit import (
     settle,
     settle_program,
@@ -41,6 +42,12 @@ _NETWORK = ProjectionNetwork()
 _SETTLER = ImplicitEuler()
 _FOLLOWER = ExplicitEuler()
 _SETTINGS = ("network", "tol", "settler", "follower")
+
+
+@lru_cache
+def _settle_address() -> int:
+    """Return the address of `settle`, compiled at the first call."""
+    return ANSWER.address(settle)
 
 
 class DNNSolver:
@@ -84,6 +91,7 @@ class DNNSolver:
         self.follower = _FOLLOWER if follower is None else follower
         self.network = _NETWORK if network is None else network
         self._first_try = self._first_constants()
+        self._follower_answer: tuple[tuple[Sizes, float], CompiledAnswer | None] | None = None
         self.version = 0
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -95,6 +103,7 @@ class DNNSolver:
         super().__setattr__(name, value)
         if name in _SETTINGS and hasattr(self, "version"):
             self._first_try = self._first_constants()
+            self._follower_answer = None
             self.version += 1
 
     def __getstate__(self) -> dict[str, Any]:
@@ -187,7 +196,7 @@ class DNNSolver:
             settled = barrier.settle(qp, state, point, tol, int(self._first_try[BUDGET]))
         else:
             settled = answer_program(
-                qp.data, n, m, p, ANSWER.address(settle), self._first_try, state, point
+                qp.data, n, m, p, _settle_address(), self._first_try, state, point
             )
         status = Status.SOLVED
         certificate = None
@@ -244,21 +253,40 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
+        n, m, p = sizes = qp.sizes
         state = self._take(self.network, qp)
+        answer = self._following(sizes, duration)
+        if answer is not None:
+            _, rates, constants = answer
+            point = np.empty(2 * n + m + p)
+            settled = follow_program(qp.data, n, m, p, rates, constants, state, point)
+            if settled[0] > 0:
+                return self._judged(sizes, state, point, settled)
         time = duration / self.network.rho
         iterations = self.follower.advance(self.network, qp, state, time)
         return self._advanced(qp, state, iterations, time)
 
+    def _following(self, sizes: Sizes, duration: float) -> CompiledAnswer | None:
+        """Return the `compiled_answer` that advances; the last one is kept."""
+        if self._follower_answer is None or self._follower_answer[0] != (sizes, duration):
+            answer = self.compiled_answer(sizes, duration) if duration > 0.0 else None
+            self._follower_answer = ((sizes, duration), answer)
+        return self._follower_answer[1]
+
     def _advanced(self, qp: QP, state: Vector, iterations: int, time: float) -> Solution:
         """Judge the point of a state that was advanced by a time [rho], and keep the state."""
-        n, m, p = sizes = qp.sizes
+        n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
         residuals = self.network.read(qp, state, point)
+        return self._judged(qp.sizes, state, point, (iterations, time, *residuals))
+
+    def _judged(self, sizes: Sizes, state: Vector, point: Vector, settled: Settled) -> Solution:
+        """Make the solution of a state that was advanced, and keep the state if it is finite."""
         status = Status.NOT_FINITE
-        if math.isfinite(sum(residuals)):
+        if math.isfinite(sum(settled[2:])):
             status = Status.ADVANCED
             self._kept.append((self.network, sizes, state))
-        return Solution(point, sizes, status, iterations, time, *residuals)
+        return Solution(point, sizes, status, *settled)
 
     def _first_constants(self) -> Vector | None:
         """Return the constants of a first try by compiled code, with half of the budget.

@@ -52,9 +52,7 @@ TAYLOR4 = Formula(2.25, (-0.125, 0.75, 0.625, -0.25), 4, 0.28)
 TAYLOR5 = Formula(2.0, (5 / 24, 12 / 24, 6 / 24, 4 / 24, -3 / 24), 4, 1 / 3)
 """Five steps: from (24 x[k+1] - 5 x[k] - 12 x[k-1] - 6 x[k-2] - 4 x[k-3] + 3 x[k-4]) / (48 tau)."""
 
-_BACKWARD = (
-    (1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3),
-)  # fmt: skip
+_BACKWARD = ((1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3))
 """Backward differences of orders 1 to 3, the newest program first."""
 
 
@@ -81,7 +79,8 @@ class TrackingSolver(DNNSolver):
             InvalidInputError: `substeps` is below 1 or `tol` is not a positive number.
         """
         super().__init__(network, tol)
-        self.formula, self.substeps = formula, checks.integer("substeps", substeps, 1)
+        self.formula = formula
+        self.substeps = checks.integer("substeps", substeps, 1)
         self.reset()
 
     def reset(self) -> None:
@@ -127,13 +126,16 @@ class TrackingSolver(DNNSolver):
 
     def _follow(self, state: Vector, qp: QP, duration: float) -> None:
         """Advance the state in place, from a program to the end of the time [s]."""
-        network, formula = self.network, self.formula
-        rate, step = self.rate, duration / self.substeps
+        network = self.network
+        formula = self.formula
+        rate = self.rate
+        step = duration / self.substeps
         moving = QP.from_data(network.rho * rate, qp.sizes)
         for i in range(self.substeps):
             now = QP.from_data(qp.data + i * step * rate, qp.sizes)
             change = step / network.rho * network.moving_flow(now, moving).rates(state)
-            before, ready = state.copy(), len(self._states) >= len(formula.past) - 1
+            before = state.copy()
+            ready = len(self._states) >= len(formula.past) - 1
             if ready:
                 state *= formula.past[0]
                 state += formula.rate * change

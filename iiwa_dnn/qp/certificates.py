@@ -44,7 +44,9 @@ def infeasibility_radius(qp: QP, vector: Vector) -> float:
         0 where nothing is proven.
     """
     _, m, p = qp.sizes
-    y, z, z_box = vector[:p], vector[p : p + m], vector[p + m :]
+    y = vector[:p]
+    z = vector[p : p + m]
+    z_box = vector[p + m :]
     inside = np.concatenate([z, np.maximum(z_box, 0.0), np.maximum(-z_box, 0.0)])
     limits = np.concatenate([qp.h, qp.ub, -qp.lb])
     used = inside != 0.0

@@ -67,7 +67,8 @@ class CheckPool:
 
         `by_cost` is as in `CrossCheck.check_block`.
         """
-        number, job = self._count, (programs, sizes, x, by_cost)
+        number = self._count
+        job = (programs, sizes, x, by_cost)
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:

@@ -74,7 +74,8 @@ class Agreement(NamedTuple):
 
     def worst_of(self, group: int) -> Agreement:
         """Take the largest of each `group` of consecutive programs, as for the stages of a step."""
-        steps, k = len(self.solution_gap) // group, self.solution_gap.shape[1]
+        steps = len(self.solution_gap) // group
+        k = self.solution_gap.shape[1]
         return Agreement(*(array.reshape(steps, group, k).max(axis=1) for array in self))
 
 

@@ -19,7 +19,7 @@ from numba import njit, types
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.compiling import MATRIX, VECTOR
+from iiwa_dnn.qp.compiling import MATRIX, VECTOR, borrowed
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -31,8 +31,11 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 ONE = np.uint64(1)
 
 _OPTIONS: dict[str, Any] = {
-    "cache": True, "error_model": "numpy", "fastmath": {"contract"}, "no_cfunc_wrapper": True
-}  # fmt: skip
+    "cache": True,
+    "error_model": "numpy",
+    "fastmath": {"contract"},
+    "no_cfunc_wrapper": True,
+}
 
 
 def compiled(function: Function) -> Function:
@@ -99,7 +102,8 @@ QP_VIEWS = types.BaseTuple.from_types(
 
 @compiled
 def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
-    """Make the views of a program's flat array, `QP.data` (size,)."""
+    """Make the views of a program's flat array, `QP.data` (size,), which has to outlive them."""
+    data = borrowed(data)
     at_q, at_G, at_A, at_lb = offsets(n, m, p)
     at_h = at_G + m * n
     at_b = at_A + p * n

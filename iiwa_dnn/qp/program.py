@@ -96,8 +96,14 @@ class QP:
 
     data: Vector
     sizes: Sizes
-    P, q, G, h = _Field("P"), _Field("q"), _Field("G"), _Field("h")
-    A, b, lb, ub = _Field("A"), _Field("b"), _Field("lb"), _Field("ub")
+    P = _Field("P")
+    q = _Field("q")
+    G = _Field("G")
+    h = _Field("h")
+    A = _Field("A")
+    b = _Field("b")
+    lb = _Field("lb")
+    ub = _Field("ub")
 
     def __init__(
         self,
@@ -139,7 +145,8 @@ class QP:
         n, m, p = sizes
         check_size("data", data, (n + m + p) * (n + 1) + 2 * n)
         qp = cls.__new__(cls)
-        qp.data, qp.sizes = data, sizes
+        qp.data = data
+        qp.sizes = sizes
         return qp
 
     @classmethod
@@ -162,7 +169,8 @@ class QP:
         import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
         _, m, p = self.sizes
-        lb, ub = self.lb, self.ub
+        lb = self.lb
+        ub = self.ub
         bounded = lb.max() > -np.inf or ub.min() < np.inf
         return qpsolvers.Problem(
             self.P,
@@ -201,7 +209,8 @@ class QP:
             z_box: Multipliers of the bounds, (n,).
         """
         n, m, p = self.sizes
-        point, at = np.zeros(2 * n + m + p), 0
+        point = np.zeros(2 * n + m + p)
+        at = 0
         for part, size in ((x, n), (y, p), (z, m), (z_box, n)):
             if part is not None:
                 point[at : at + size] = part

@@ -146,7 +146,8 @@ class Solution(NamedTuple):
             if certificate is not None:
                 extras["certificate"] = certificate
             return make(problem, {**extras, "last_x": self.x}, found=False)
-        x, bounded = point[:n], problem.lb is not None or problem.ub is not None
+        x = point[:n]
+        bounded = problem.lb is not None or problem.ub is not None
         return make(
             problem,
             extras,

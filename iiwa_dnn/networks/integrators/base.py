@@ -5,7 +5,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 from numba import types
 
 from iiwa_dnn.networks.base import Network, settings_of
-from iiwa_dnn.qp.compiling import VECTOR, Signature
+from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
 from iiwa_dnn.qp.layout import QP_VIEWS, Vector, qp_views, released
 from iiwa_dnn.qp.program import QP
 
@@ -68,7 +68,11 @@ def answer_program(
     point: Vector,
 ) -> Settled:
     """Enter a compiled answer that does not use the network's own function."""
-    settled: Settled = enter_answer(address, qp_views(data, n, m, p), 0, constants, state, point)
+    qp = qp_views(data, n, m, p)
+    constants = borrowed(constants)
+    state = borrowed(state)
+    point = borrowed(point)
+    settled: Settled = enter_answer(address, qp, 0, constants, state, point)
     return settled
 
 

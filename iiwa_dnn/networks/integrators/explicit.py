@@ -11,7 +11,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import RATES, Network, enter_rates
 from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
 from iiwa_dnn.networks.projection import mark_active, stable_step
-from iiwa_dnn.qp.layout import QPViews, Vector, check_size, compiled, larger, qp_views
+from iiwa_dnn.qp.compiling import borrowed
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size, compiled, larger, qp_views, released
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
@@ -65,7 +66,8 @@ class ExplicitEuler(Integrator):
             InvalidInputError: P is singular, so that no step is known to be stable.
         """
         step = self._stable_step(network, qp, None)
-        taken, rate_tol = 0, tol
+        taken = 0
+        rate_tol = tol
         while True:
             taken += _steps(network, qp, state, step, self.max_steps - taken, rate_tol)
             primal, dual, gap = network.read(qp, state, point)
@@ -101,6 +103,22 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
     return count
 
 
+@released
+def follow_program(
+    data: Vector,
+    n: int,
+    m: int,
+    p: int,
+    rates: int,
+    constants: Vector,
+    state: Vector,
+    point: Vector,
+) -> Settled:
+    """Advance a network as `follow` does, for a program's flat array, `QP.data`."""
+    qp = qp_views(data, n, m, p)
+    return follow(qp, rates, borrowed(constants), borrowed(state), borrowed(point))
+
+
 @compiled
 def explicit_program(
     data: Vector,
@@ -114,6 +132,8 @@ def explicit_program(
 ) -> int:
     """Take explicit Euler steps; `limits` is their length [rho], their number and a tolerance."""
     qp = qp_views(data, n, m, p)
+    constants = borrowed(constants)
+    state = borrowed(state)
     return explicit_euler(qp, rates, constants, state, limits[0], int(limits[1]), limits[2])
 
 

@@ -36,7 +36,9 @@ from iiwa_dnn.networks.integrators.base import (
     answer_program,
 )
 from iiwa_dnn.networks.integrators.implicit_steps import (
+    Condensed,
     backward_euler,
+    borrowed_condensed,
     condensed,
     copy_into,
     linear_step,
@@ -45,12 +47,14 @@ from iiwa_dnn.networks.integrators.pseudo_transient import (
     STALLED,
     TRAVELLING,
     TRIALS,
-    near,
     next_step,
     progress,
+    trial_left,
 )
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
+from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.layout import (
+    Matrix,
     QPViews,
     Triple,
     Vector,
@@ -145,6 +149,12 @@ def advance_implicit(
 
 
 @compiled
+def _starts_outside(s: Vector, active: Vector) -> bool:
+    """Check for a cold start that breaks limits, from which a long step would be refused."""
+    return not _any(s) and _any(active)
+
+
+@compiled
 def _any(values: Vector) -> bool:
     """Check that a value is not zero, with less to compile than numpy's own."""
     k = 0
@@ -163,6 +173,23 @@ def _same(values: Vector, others: Vector) -> bool:
 
 
 @compiled
+def _linear_rate(
+    qp: QPViews,
+    s: Vector,
+    rates: Vector,
+    step: float,
+    factored: bool,
+    matrix: Condensed,
+    new: Vector,
+    new_rates: Vector,
+) -> float:
+    """Take a `linear_step` and return the largest rate after it; NaN if it cannot be solved."""
+    if not linear_step(qp, s, rates, step, factored, matrix, new):
+        return np.nan
+    return field(qp, step < 0.0, new, new_rates)
+
+
+@compiled
 def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Settled:
     """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
 
@@ -172,11 +199,19 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
+    return _settle(qp, constants, s, point, condensed(qp), np.empty((4, s.size)))
+
+
+@compiled
+def _settle(
+    qp: QPViews, constants: Vector, s: Vector, point: Vector, own: Condensed, scratch: Matrix
+) -> Settled:
+    """Settle as `settle` says, in scratch that the caller owns: `scratch` is (4, size)."""
     tol = constants[TOLERANCE]
     max_systems = int(constants[BUDGET])
     long_step = constants[LONG_STEP]
-    matrix = condensed(qp)
-    states = np.empty((4, s.size))
+    matrix = borrowed_condensed(own)
+    states = borrowed(scratch)
     now = states[0]
     new_rates = states[1]
     new = states[2]
@@ -191,8 +226,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     travelling = 0
     rate = field(qp, project, s, now)
     mark_active(s, now, matrix.active)
-    # A cold start that breaks limits: the long step would hold them all, and be refused.
-    refused = not _any(s) and _any(matrix.active)
+    refused = _starts_outside(s, matrix.active)
     while systems < max_systems and travelling < TRAVELLING and stalled <= STALLED:
         if not rate > tol:
             primal, dual, gap = kkt_point(qp, s, point)
@@ -202,9 +236,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         if not refused:
             systems += 1
             length = long_step * TRIALS[trial]
-            new_rate = np.nan
-            if linear_step(qp, s, now, length, factored, matrix, new):
-                new_rate = field(qp, project, new, new_rates)
+            new_rate = _linear_rate(qp, s, now, length, factored, matrix, new, new_rates)
             if progress(rate, new_rate, tol):
                 halved = new_rate <= 0.5 * rate
                 if halved:
@@ -222,7 +254,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
                 continue
         factored = False
         refused = False
-        if near(rate, tol) and trial + 1 < TRIALS.size:
+        if trial_left(rate, tol, trial):
             trial += 1
             mark_active(s, now, matrix.active)
             continue
@@ -282,7 +314,9 @@ def sharpen_implicit(
             break
         first, second, third = kkt_point(qp, new, other)
         if max(first, second, third) < max(primal, dual, gap):
-            primal, dual, gap = first, second, third
+            primal = first
+            dual = second
+            gap = third
             copy_into(s, new)
             copy_into(point, other)
     return primal, dual, gap

@@ -36,6 +36,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.dense import (
     SUMS,
     add_outer,
@@ -91,6 +92,18 @@ def condensed(qp: QPViews) -> Condensed:
     for j in range(qp.b.size):
         add_outer(matrix.gram, 1.0, qp.A, j)
     return matrix
+
+
+@compiled
+def borrowed_condensed(matrix: Condensed) -> Condensed:
+    """Return the same arrays, not counted, to code that their owner outlives."""
+    return Condensed(
+        borrowed(matrix.active),
+        borrowed(matrix.counted),
+        borrowed(matrix.gram),
+        borrowed(matrix.K),
+        borrowed(matrix.values),
+    )
 
 
 @compiled

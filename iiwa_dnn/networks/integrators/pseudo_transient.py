@@ -34,7 +34,8 @@ STALLED = 30
 TRAVELLING = 12
 """Longest steps that do not halve the rates, before the end: the state travels, since there is no
 solution or none that is near."""
-FIRST_STEP, GROWTH = 1.0, 4.0
+FIRST_STEP = 1.0
+GROWTH = 4.0
 """Length of the first step [rho] and its growth; this iteration has no line search to go faster."""
 MAX_NEWTON = 15
 DEFECT = 1e-3
@@ -51,6 +52,12 @@ def near(rate: float, tol: float) -> bool:
 def progress(rate: float, new_rate: float, tol: float) -> bool:
     """Tell whether a step is kept: it halved the largest rate, or lowered it near rest."""
     return new_rate <= 0.5 * rate or (near(rate, tol) and new_rate <= 0.9 * rate)
+
+
+@compiled
+def trial_left(rate: float, tol: float, trial: int) -> bool:
+    """Check that a linearly implicit step of another length may help against rounding."""
+    return near(rate, tol) and trial + 1 < TRIALS.size
 
 
 @compiled
@@ -79,7 +86,8 @@ def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[
     Returns:
         The new state (size,), None where the iteration did not converge; linear systems solved.
     """
-    new, eye = start.copy(), np.eye(start.size)
+    new = start.copy()
+    eye = np.eye(start.size)
     floor = 1e-14 * step
     for systems in range(MAX_NEWTON + 1):
         defect = new - start - step * flow.rates(new)
@@ -100,9 +108,11 @@ def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> i
     Returns:
         Linear systems solved, or -1 where even very short steps did not converge.
     """
-    total, shortest = 0, 1e-6 * step
+    total = 0
+    shortest = 1e-6 * step
     for _ in range(count):
-        done, length = 0.0, step
+        done = 0.0
+        length = step
         while done < step * (1.0 - 1e-12):
             length = min(length, step - done)
             new, systems = backward_euler(flow, state, length, tol)
@@ -117,14 +127,32 @@ def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> i
     return total
 
 
+def _linear_step(flow: Flow, state: Vector, rates: Vector, step: float) -> Vector:
+    """Take a linearly implicit step [rho]; the state itself if its system is singular."""
+    try:
+        change = np.linalg.solve(np.eye(state.size) / step - flow.jacobian(state), rates)
+    except np.linalg.LinAlgError:
+        return state
+    return state + change
+
+
 def settle(
-    network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_systems: int,
+    network: Network,
+    qp: QP,
+    state: Vector,
+    point: Vector,
+    tol: float,
+    max_systems: int,
     long_step: float,
-) -> Settled:  # fmt: skip
+) -> Settled:
     """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
-    flow, eye = network.flow(qp), np.eye(state.size)
-    step, systems, time = FIRST_STEP, 0, 0.0
-    trial, stalled, travelling = 0, 0, 0
+    flow = network.flow(qp)
+    step = FIRST_STEP
+    systems = 0
+    time = 0.0
+    trial = 0
+    stalled = 0
+    travelling = 0
     rates = flow.rates(state)
     rate = float(np.abs(rates).max())
     while systems < max_systems and travelling < TRAVELLING:
@@ -137,10 +165,7 @@ def settle(
                 break
         systems += 1
         length = long_step * float(TRIALS[trial])
-        try:
-            new = state + np.linalg.solve(eye / length - flow.jacobian(state), rates)
-        except np.linalg.LinAlgError:
-            new = state
+        new = _linear_step(flow, state, rates, length)
         new_rates = flow.rates(new)
         new_rate = float(np.abs(new_rates).max())
         close = np.abs(new - state).max() <= 10.0 * (1.0 + np.abs(state).max())
@@ -149,9 +174,12 @@ def settle(
                 travelling = 0
             else:
                 trial = (trial + 1) % TRIALS.size
-            state[:], rates, rate, time = new, new_rates, new_rate, time + length
+            state[:] = new
+            rates = new_rates
+            rate = new_rate
+            time = time + length
             continue
-        if near(rate, tol) and trial + 1 < TRIALS.size:
+        if trial_left(rate, tol, trial):
             trial += 1
             continue
         reached, solved_in = backward_euler(flow, state, step, DEFECT)
@@ -159,8 +187,11 @@ def settle(
         if reached is None:
             step *= 0.25
             continue
-        before, trial, time = rate, 0, time + step
-        state[:], rates = reached, flow.rates(reached)
+        before = rate
+        trial = 0
+        time = time + step
+        state[:] = reached
+        rates = flow.rates(reached)
         rate = float(np.abs(rates).max())
         travelling, step = next_step(step, GROWTH, before, rate, tol, travelling)
     return systems, time, *network.read(qp, state, point)

@@ -72,11 +72,13 @@ class AdaptiveRungeKutta(Integrator):
 
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance `state` in place until the KKT residuals of `point` are at most `tol`."""
-        atol, rate_tol = min(self.atol, 0.1 * tol), tol
+        atol = min(self.atol, 0.1 * tol)
+        rate_tol = tol
         stepper = _stepper(network, qp, state, np.inf, _LEAST_RTOL, atol)
         while True:
             state[:] = stepper.y
-            rate, taken = float(np.abs(stepper.f).max()), _steps(stepper)
+            rate = float(np.abs(stepper.f).max())
+            taken = _steps(stepper)
             done = stepper.status == "failed" or taken >= self.max_steps
             if done or not rate > rate_tol:
                 primal, dual, gap = network.read(qp, state, point)
@@ -97,9 +99,14 @@ def _stepper(
 
     rates = network.flow(qp).rates
     return RK23(
-        lambda _, s: rates(s), 0.0, state, duration,
-        rtol=rtol, atol=atol, first_step=min(duration, 0.1),
-    )  # fmt: skip
+        lambda _, s: rates(s),
+        0.0,
+        state,
+        duration,
+        rtol=rtol,
+        atol=atol,
+        first_step=min(duration, 0.1),
+    )
 
 
 def _steps(stepper: Any) -> int:
