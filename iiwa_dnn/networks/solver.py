@@ -41,6 +41,7 @@ SHARPENING = 5
 _NETWORK = ProjectionNetwork()
 _SETTLER = ImplicitEuler()
 _FOLLOWER = ExplicitEuler()
+_SOLVED = Status.SOLVED  # to look it up takes longer than to compare
 _SETTINGS = ("network", "tol", "settler", "follower")
 
 
@@ -198,17 +199,18 @@ class DNNSolver:
             settled = answer_program(
                 qp.data, n, m, p, _settle_address(), self._first_try, state, point
             )
-        status = Status.SOLVED
-        certificate = None
-        _, _, primal, dual, gap = settled
-        if not (primal <= tol and dual <= tol and gap <= tol):
-            settled, status, certificate = self._try_again(qp, state, point, settled)
+        systems, time, primal, dual, gap = settled
+        if primal <= tol and dual <= tol and gap <= tol:
+            self._kept.append((network, sizes, state))
+            # A named tuple's own constructor costs as much as a fifth of the call.
+            values = (point, sizes, _SOLVED, systems, time, primal, dual, gap, None)
+            return tuple.__new__(Solution, values)
+        settled, status, certificate = self._try_again(qp, state, point, settled)
         # The state is not kept without a solution: the multipliers grow without bound then, or are
         # no numbers any more, and would spoil every later call.
-        if status is Status.SOLVED:
+        if status is _SOLVED:
             self._kept.append((network, sizes, state))
-        # A named tuple's own constructor costs as much as a fifth of the call.
-        return tuple.__new__(Solution, (point, sizes, status, *settled, certificate))
+        return Solution(point, sizes, status, *settled, certificate)
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on for a few long steps from the state that the last call left, as far as it helps.

@@ -38,8 +38,8 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
     backward_euler,
-    borrowed_condensed,
     condensed,
+    condensed_size,
     copy_into,
     linear_step,
 )
@@ -54,7 +54,6 @@ from iiwa_dnn.networks.integrators.pseudo_transient import (
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
 from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.layout import (
-    Matrix,
     QPViews,
     Triple,
     Vector,
@@ -136,7 +135,7 @@ def advance_implicit(
         Linear systems solved, or -1 if one could not be.
     """
     qp = qp_views(data, n, m, p)
-    matrix = condensed(qp)
+    matrix = condensed(qp, np.empty(condensed_size(qp)))
     new = s.copy()
     total = 0
     for _ in range(count):
@@ -199,23 +198,23 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
-    return _settle(qp, constants, s, point, condensed(qp), np.empty((4, s.size)))
+    work = np.empty(4 * s.size + condensed_size(qp))  # several take as long as some rows
+    return _settle(qp, constants, s, point, work)
 
 
 @compiled
-def _settle(
-    qp: QPViews, constants: Vector, s: Vector, point: Vector, own: Condensed, scratch: Matrix
-) -> Settled:
-    """Settle as `settle` says, in scratch that the caller owns: `scratch` is (4, size)."""
+def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vector) -> Settled:
+    """Settle as `settle` says, in `work` (4 size + condensed_size,), which the caller owns."""
     tol = constants[TOLERANCE]
     max_systems = int(constants[BUDGET])
     long_step = constants[LONG_STEP]
-    matrix = borrowed_condensed(own)
-    states = borrowed(scratch)
-    now = states[0]
-    new_rates = states[1]
-    new = states[2]
-    before = states[3]
+    work = borrowed(work)
+    size = s.size
+    now = work[:size]
+    new_rates = work[size : 2 * size]
+    new = work[2 * size : 3 * size]
+    before = work[3 * size : 4 * size]
+    matrix = condensed(qp, work[4 * size :])
     project = tol < 0.0  # False; a literal is compiled once more
     step = FIRST_STEP
     systems = 0
@@ -300,7 +299,7 @@ def sharpen_implicit(
         ``(primal, dual, gap)`` of `point`, that of the state which `s` holds in the end.
     """
     qp = qp_views(data, n, m, p)
-    matrix = condensed(qp)
+    matrix = condensed(qp, np.empty(condensed_size(qp)))
     rates = np.empty(s.size)
     new = s.copy()
     old = np.empty(s.size)

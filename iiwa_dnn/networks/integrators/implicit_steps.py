@@ -36,7 +36,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.dense import (
     SUMS,
     add_outer,
@@ -74,36 +73,36 @@ class Condensed(NamedTuple):
 
 
 @compiled
-def condensed(qp: QPViews) -> Condensed:
-    """Allocate the arrays of a program, with A^T A in `gram`."""
+def condensed_size(qp: QPViews) -> int:
+    """Count the numbers of a `Condensed`."""
     n = qp.q.size
     m = qp.h.size
-    rows = qp.b.size + m + 2 * n
-    square = np.zeros((2, n, n))  # few arrays: each takes as long as some rows
-    flags = np.zeros(2 * m + 2 * n + rows)
-    at_counted = m + 2 * n
-    matrix = Condensed(
-        flags[:at_counted],
-        flags[at_counted : at_counted + m],
-        square[0],
-        square[1],
-        flags[at_counted + m :],
-    )
-    for j in range(qp.b.size):
-        add_outer(matrix.gram, 1.0, qp.A, j)
-    return matrix
+    return 2 * n * n + 2 * m + 2 * n + qp.b.size + m + 2 * n
 
 
 @compiled
-def borrowed_condensed(matrix: Condensed) -> Condensed:
-    """Return the same arrays, not counted, to code that their owner outlives."""
-    return Condensed(
-        borrowed(matrix.active),
-        borrowed(matrix.counted),
-        borrowed(matrix.gram),
-        borrowed(matrix.K),
-        borrowed(matrix.values),
+def condensed(qp: QPViews, work: Vector) -> Condensed:
+    """Lay the arrays of a program out in `work` (condensed_size,), with A^T A in `gram`."""
+    n = qp.q.size
+    m = qp.h.size
+    at_K = n * n
+    at_counted = 2 * n * n
+    at_active = at_counted + m
+    at_values = at_active + m + 2 * n
+    matrix = Condensed(
+        work[at_active:at_values],
+        work[at_counted:at_active],
+        work[:at_K].reshape(n, n),
+        work[at_K:at_counted].reshape(n, n),
+        work[at_values:],
     )
+    for k in range(at_K):
+        work[k] = 0.0
+    for j in range(m):
+        matrix.counted[j] = 0.0
+    for j in range(qp.b.size):
+        add_outer(matrix.gram, 1.0, qp.A, j)
+    return matrix
 
 
 @compiled
