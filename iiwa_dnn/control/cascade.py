@@ -76,10 +76,12 @@ class Cascade:
         self._tol = solver.tol
         n, m, _ = sizes
         for priority in sorted(set(priorities.tolist()) - {0}):
-            own, above = priorities == priority, priorities < priority
+            own = priorities == priority
+            above = priorities < priority
             p = int(above.sum())
             p = min(n, p + m) if self.levels else p
-            data, x = np.zeros((n + m + p) * (n + 1) + 2 * n), np.zeros(n)
+            data = np.zeros((n + m + p) * (n + 1) + 2 * n)
+            x = np.zeros(n)
             network = DNNSolver(solver.network, FINEST, solver.settler)
             self.levels.append(
                 Level(priority, (own, above), (n, m, p), network, data, x, np.zeros(own.sum()))
@@ -93,14 +95,17 @@ class Cascade:
         a row of A: levels below cannot leave it. Otherwise a single face would be all that is left
         to them, and rounding would decide whether a point is on it.
         """
-        lb, ub = qp.lb.copy(), qp.ub.copy()
+        lb = qp.lb.copy()
+        ub = qp.ub.copy()
         x: Vector = np.zeros(qp.q.size)
-        held, freedom = np.zeros(qp.h.size, dtype=bool), np.eye(x.size)
+        held = np.zeros(qp.h.size, dtype=bool)
+        freedom = np.eye(x.size)
         for level in self.levels:
             own, above = level.rows
             program = QP.from_data(level.data, level.sizes)
             if level is self.levels[0]:
-                program.A[:], program.b[:] = qp.A[above], qp.b[above]
+                program.A[:] = qp.A[above]
+                program.b[:] = qp.b[above]
             else:
                 rows = np.where(lb < ub, np.concatenate([qp.A[above], qp.G[held]]), 0.0)
                 _independent(rows, program.A)
@@ -108,8 +113,12 @@ class Cascade:
                 freedom = np.diag(1.0 * (lb < ub)) - program.A.T @ program.A
             left, sizes, right = _decomposed(qp.A[own] @ freedom)
             E = left * sizes @ right
-            program.P[:], program.q[:] = E.T @ E, -E.T @ (qp.b[own] - qp.A[own] @ x + E @ x)
-            program.G[:], program.h[:], program.lb[:], program.ub[:] = qp.G, qp.h, lb, ub
+            program.P[:] = E.T @ E
+            program.q[:] = -E.T @ (qp.b[own] - qp.A[own] @ x + E @ x)
+            program.G[:] = qp.G
+            program.h[:] = qp.h
+            program.lb[:] = lb
+            program.ub[:] = ub
             solution = level.solver.solve(program)
             level.x[:] = x = solution.x
             level.missing[:] = qp.b[own] - qp.A[own] @ x
@@ -119,7 +128,8 @@ class Cascade:
             lb[bound] = ub[bound] = x[bound]
             held |= solution.z > HELD
         if self.levels:
-            qp.lb[:], qp.ub[:] = lb, ub
+            qp.lb[:] = lb
+            qp.ub[:] = ub
             _independent(np.where(lb < ub, qp.A, 0.0), qp.A)
             qp.b[:] = qp.A @ x
 

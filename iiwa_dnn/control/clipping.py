@@ -32,7 +32,8 @@ def clip_command(qp: QP, dq: Vector, solver: DNNSolver) -> tuple[Vector, NDArray
         The velocities within the limits [rad/s], (n,), and 1 for each joint that was clipped.
     """
     n = dq.size
-    lb, ub = qp.lb[:n], qp.ub[:n]
+    lb = qp.lb[:n]
+    ub = qp.ub[:n]
     clipped: Vector = np.clip(np.where(np.isnan(dq), 0.0, dq), lb, ub)
     rows = qp.G[:, :n]
     # Rows on slack variables are the scheme's own affair.

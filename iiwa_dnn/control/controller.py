@@ -215,7 +215,7 @@ class Controller:
         program = step.program
         if program.moving:
             program.move(t)
-        program.update(q)
+        program.kinematics.update(q)
         if begin == ANSWER:
             wanted = self._accelerations(t) if program.accelerates and target is None else None
             data = layout.view(row, "program")
@@ -391,7 +391,7 @@ class Controller:
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
         program = self.program
-        program.update(q)
+        program.kinematics.update(q)
         return program.placement.copy()
 
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
@@ -401,7 +401,7 @@ class Controller:
         past[Q] = q
         data = np.empty(program.data_size)
         program.move(t)
-        program.update(q)
+        program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
 

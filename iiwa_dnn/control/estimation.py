@@ -69,7 +69,8 @@ class JointEstimator:
         Raises:
             InvalidInputError: `dt` is not a positive time.
         """
-        self.model, self.dt = model, checks.positive("dt", dt)
+        self.model = model
+        self.dt = checks.positive("dt", dt)
         self.reset()
 
     def reset(self) -> None:
@@ -82,24 +83,30 @@ class JointEstimator:
         model = self.model
         noise = model.measurement**2
         if self._q is None:
-            self._q, self.bias = reading.copy(), np.zeros_like(reading)
+            self._q = reading.copy()
+            self.bias = np.zeros_like(reading)
             # Covariance of (q, d): the first reading is all that is known of q.
-            self._qq, self._qd = noise, 0.0
+            self._qq = noise
+            self._qd = 0.0
             self._dd = model.bias**2 if model.bias_walk else 0.0
             return self._q.copy()
-        innovation, total = reading - self._q, self._qq + noise
-        k_q, k_d = self._qq / total, self._qd / total
+        innovation = reading - self._q
+        total = self._qq + noise
+        k_q = self._qq / total
+        k_d = self._qd / total
         self._q = self._q + k_q * innovation
         self.bias = self.bias + k_d * innovation
         # The measured direction's share goes; noise / total is 1 - k_q without cancellation.
         self._dd -= k_d * self._qd
-        self._qq, self._qd = noise * k_q, self._qd * noise / total
+        self._qq = noise * k_q
+        self._qd = self._qd * noise / total
         return self._q.copy()
 
     def predict(self, command: Vector) -> None:
         """Let the joints move with a velocity command (n,) [rad/s] for one control period."""
         assert self._q is not None, "predict comes after update"
-        dt, model = self.dt, self.model
+        dt = self.dt
+        model = self.model
         self._q = self._q + dt * (command + self.bias)
         self._qq += dt * (2.0 * self._qd + dt * self._dd) + (dt * model.velocity) ** 2
         self._qd += dt * self._dd

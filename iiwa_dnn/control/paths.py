@@ -18,7 +18,8 @@ from iiwa_dnn.schemes import OrientationTask, Scheme
 
 References = Reference | Mapping[str, Reference]
 
-FAR, TURNED = 0.05, 0.2
+FAR = 0.05
+TURNED = 0.2
 """Distance [m] and angle [rad] of a first target from which on a warning is given."""
 
 
@@ -61,7 +62,8 @@ def warn_if_far(
     """Warn where a first target, of (18 frames,), is far from its frame in a configuration."""
     turns = any(isinstance(task, OrientationTask) for task in getattr(scheme, "tasks", ()))
     for name, data in zip(frames, targets.reshape(-1, 18), strict=True):
-        frame, target = start.frame(name), Target.from_data(data)
+        frame = start.frame(name)
+        target = Target.from_data(data)
         distance = float(np.linalg.norm(target.position - frame.position))
         angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
         if distance > FAR or angle > TURNED:

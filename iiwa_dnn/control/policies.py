@@ -116,8 +116,7 @@ def resolve(
         failed: The network's last word on it.
         policy: One of ``POLICIES``.
         solver: The network, for the program with another b; its tolerance holds for all answers.
-        weights: Weight of each task row where the task yields, (p,) (`Layout.row_weights`); None
-            weighs all alike.
+        weights: `StepProgram.row_weights`, (p,); None weighs all task rows alike.
         yielding: Answers where there are limits on acceleration or jerk; then ``slow`` and
             ``relax`` take its command, and differ in the clock alone.
 
@@ -133,37 +132,52 @@ def resolve(
         return stopped(qp, failed, yielding=yielding)
     if yielding is not None and policy in ("slow", "relax"):
         missed = failed.status is Status.NOT_SETTLED
-        if missed and (reference := ask_reference(qp, solver.tol)) is not None:
-            none = np.zeros(qp.sizes[0], np.int8), np.zeros(qp.sizes[1], np.int8)
-            return Resolution(Action.FALLBACK, qp, reference, 1.0, *none)
-        return gave_way(qp, policy, yielding.answer(qp).reach)
-    reach = largest_fraction(qp)
-    if reach.fraction >= _FEASIBLE:
-        reference = ask_reference(qp, solver.tol)
-        if reference is not None:
-            free = np.zeros_like(reach.sides), np.zeros_like(reach.rows)
-            return Resolution(Action.FALLBACK, qp, reference, 1.0, *free)
+        fallback = _fallback(qp, solver.tol) if missed else None
+        return fallback or gave_way(qp, policy, yielding.answer(qp).reach)
+    largest = largest_fraction(qp)
+    if largest.fraction >= _FEASIBLE:
+        fallback = _fallback(qp, solver.tol)
+        if fallback is not None:
+            return fallback
     if policy == "raise":
         message = "no joint velocity inside the bounds fulfils the task"
         problem = qp.to_qpsolvers()
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
     if policy == "stop":
-        return stopped(qp, failed, reach, yielding)
-    creeps = False
-    if policy == "slow" and not np.isnan(reach.fraction):
-        share = _brake(qp, reach)
-        creeps = share * reach.fraction < REST and share < 1.0
-        if not creeps:
-            reach = reach._replace(fraction=share * reach.fraction, dq=share * reach.dq)
-            if not reach.dq.any() and _rest_is_allowed(qp):
-                return _settled(Action.SLOW, qp, reach)
-            return _slowed(qp, solver, reach)
+        return stopped(qp, failed, largest, yielding)
+    scales = policy == "slow" and not np.isnan(largest.fraction)
+    if scales:
+        slower = _slower(qp, solver, largest)
+        if slower is not None:
+            return slower
     relaxed = least_violation(qp, weights)
     if relaxed is None:
-        return stopped(qp, failed, reach)
-    if creeps:
+        return stopped(qp, failed, largest)
+    if scales:
         return _settled(Action.SLOW, qp, relaxed._replace(fraction=CREEP))
     return _settled(Action.RELAX, qp, relaxed)
+
+
+def _fallback(qp: QP, tol: float) -> Resolution | None:
+    """Decide for the reference solver's answer, if it has one."""
+    reference = ask_reference(qp, tol)
+    if reference is None:
+        return None
+    n, m, _ = qp.sizes
+    none = (np.zeros(n, np.int8), np.zeros(m, np.int8))
+    return Resolution(Action.FALLBACK, qp, reference, 1.0, *none)
+
+
+def _slower(qp: QP, solver: DNNSolver, largest: Reach) -> Resolution | None:
+    """Decide for a part of the task velocity; None in a singular pose, which would hold the arm."""
+    factor = _brake(qp, largest)
+    fraction = factor * largest.fraction
+    if fraction < REST and factor < 1.0:
+        return None
+    slower = largest._replace(fraction=fraction, dq=factor * largest.dq)
+    if not slower.dq.any() and _rest_is_allowed(qp):
+        return _settled(Action.SLOW, qp, slower)
+    return _slowed(qp, solver, slower)
 
 
 def gave_way(qp: QP, policy: Policy, reach: Reach) -> Resolution:
@@ -194,7 +208,8 @@ def _slowed(qp: QP, solver: DNNSolver, reach: Reach) -> Resolution:
 
 def _brake(qp: QP, reach: Reach) -> float:
     """Compute the share of a velocity to take where joints race and the tip hardly moves."""
-    tip, joints = np.linalg.norm(qp.A @ reach.dq), np.linalg.norm(reach.dq)
+    tip = np.linalg.norm(qp.A @ reach.dq)
+    joints = np.linalg.norm(reach.dq)
     if tip >= SINGULAR * joints or not _rest_is_allowed(qp):
         return 1.0
     return float(tip / (SINGULAR * joints))
@@ -235,6 +250,6 @@ def stopped(
         braked = yielding.brake(qp)
         still.point[: braked.size] = braked
     n, m, _ = qp.sizes
-    none = np.zeros(n, np.int8), np.zeros(m, np.int8)
-    sides, rows = none if reach is None else (reach.sides, reach.rows)
+    sides = np.zeros(n, np.int8) if reach is None else reach.sides
+    rows = np.zeros(m, np.int8) if reach is None else reach.rows
     return Resolution(Action.STOP, qp, still, 0.0, sides, rows)

@@ -64,7 +64,8 @@ def largest_fraction(qp: QP) -> Reach:
         dq: Vector = np.clip(found.x[:n], qp.lb, qp.ub)
         fraction = min(float(found.x[n]) / scale, 1.0)
     else:
-        dq, fraction = np.clip(np.zeros(n), qp.lb, qp.ub), np.nan
+        dq = np.clip(np.zeros(n), qp.lb, qp.ub)
+        fraction = np.nan
         found = _program(qp, scale, elastic=True)
     if not feasible and found.status != 0:
         return Reach(fraction, dq, (qp.lb > qp.ub).astype(np.int8), np.zeros(m, np.int8))
@@ -82,10 +83,13 @@ def _program(qp: QP, scale: float, elastic: bool = False) -> Any:
     """
     from scipy.optimize import linprog  # its 0.2 s are for the runs that need it
 
-    n, limited, p = qp.sizes[0], np.isfinite(qp.h), qp.sizes[2]
+    n = qp.sizes[0]
+    limited = np.isfinite(qp.h)
+    p = qp.sizes[2]
     k = int(limited.sum())
     free = elastic * (k + 2 * p)
-    above, off = np.eye(k, free), np.eye(p, free, k) - np.eye(p, free, k + p)
+    above = np.eye(k, free)
+    off = np.eye(p, free, k) - np.eye(p, free, k + p)
     return linprog(
         np.concatenate([np.zeros(n), [elastic - 1.0], np.ones(free)]),
         A_ub=np.column_stack([qp.G[limited], np.zeros(k), -above]),
@@ -118,7 +122,8 @@ def least_violation(
     """
     n = qp.sizes[0]
     weights = np.ones(qp.b.size) if weights is None else weights
-    rows, rhs = weights[:, np.newaxis] * qp.A, weights * qp.b
+    rows = weights[:, np.newaxis] * qp.A
+    rhs = weights * qp.b
     if damping is None:
         closest = _least_squares(rows, rhs, qp)
         if closest is None:

@@ -7,7 +7,7 @@ enters it once a step.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import typeof, types
@@ -23,31 +23,13 @@ from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.schemes.program import StepProgram, Table, assemble, step_views
+from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
 
 SAMPLE, WRITE, ANSWER = range(3)
 """Where a control step begins: at the targets, at the program, at the answer."""
-
-
-class LoopArrays(NamedTuple):
-    """Arrays of a control loop that stay the same from step to step.
-
-    Attributes:
-        table: Table of the program, a row for the network, a row for each reference.
-        constants: Their constants, (k,).
-        jacobian: `Kinematics.jacobian`, (dof, 6).
-        placements: `Kinematics.placements`, (frames, 12).
-        dt: Control period [s].
-    """
-
-    table: Table
-    constants: Vector
-    jacobian: Matrix
-    placements: Matrix
-    dt: float
 
 
 class ControlStep:
@@ -86,42 +68,40 @@ class ControlStep:
         status = Status.SOLVED if converged else Status.ADVANCED
         frames = program.target_frames
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), status)
-        entries: list[list[int]] = []
-        constants: list[Vector] = []
+        self.has_network = self._add_network(solver, 0.0 if converged else dt)
+        self.begin = SAMPLE if self._add_paths(references) else WRITE
+        if not program.is_compiled:
+            self.begin = ANSWER
+        self.arrays = program.arrays(dt)
+        self.run = self._entry()
+
+    def _add_network(self, solver: DNNSolver, duration: float) -> bool:
+        """Add the network's entry to the table; return whether the network is compiled."""
+        program = self.program
         answer = None
         # A subclass that solves in a way of its own is asked, not bypassed.
         if type(solver) is DNNSolver and not program.accelerates:
-            answer = solver.compiled_answer(program.sizes, 0.0 if converged else dt)
-        self.has_network = answer is not None
+            answer = solver.compiled_answer(program.sizes, duration)
         if answer is None:
-            entries.append([0, 0, 0, 0, 0, 0])
-        else:
-            own = answer.constants
-            if program.rate_limits is not None:
-                # A program that a few systems do not solve most likely has no solution.
-                own[BUDGET] = min(own[BUDGET], FEASIBLE_BUDGET)
-            entries.append([0, answer.address, answer.rates, 0, 0, own.size])
-            constants.append(own)
-        ahead = [name in program.ahead for name in frames]
+            program.append(0, np.zeros(0))
+            return False
+        if program.rate_limits is not None:
+            # A program that a few systems do not solve most likely has no solution.
+            answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
+        program.append(answer.address, answer.constants, answer.rates)
+        return True
+
+    def _add_paths(self, references: Mapping[str, Reference]) -> bool:
+        """Add an entry for each reference; return whether all of them are compiled."""
+        frames = self.program.target_frames
         paths = [references[name] for name in frames if name in references]
-        compiled_paths = len(paths) == len(frames) and all(path.compiled for path in paths)
-        self.begin = SAMPLE if compiled_paths else WRITE
-        if compiled_paths:
-            start = sum(array.size for array in constants)
-            for path, next_one in zip(paths, ahead, strict=True):
-                own = np.concatenate([path.base, path.constants])
-                address = PATH.address(path.compiled)
-                entries.append([int(next_one), address, 0, 0, start, start + own.size])
-                constants.append(own)
-                start += own.size
-        program.extend(entries, np.concatenate([np.zeros(0), *constants]))
-        if not program.is_compiled:
-            self.begin = ANSWER
-        kinematics = program.kinematics
-        self.arrays = LoopArrays(
-            program.table, program.constants, kinematics.jacobian, kinematics.placements, dt
-        )
-        self.run = self._entry()
+        if len(paths) < len(frames) or not all(path.compiled for path in paths):
+            return False
+        for name, path in zip(frames, paths, strict=True):
+            constants = np.concatenate([path.base, path.constants])
+            ahead = int(name in self.program.ahead)
+            self.program.append(PATH.address(path.compiled), constants, ahead)
+        return True
 
     def _entry(self) -> Any:
         """Compile the control step for the types of its arguments."""
@@ -140,7 +120,7 @@ _enter_path = PATH.enter
 @compiled
 def control_step(
     row: Vector,
-    arrays: LoopArrays,
+    arrays: ProgramArrays,
     past: Matrix,
     following: Matrix,
     state: Vector,
@@ -165,38 +145,36 @@ def control_step(
     """
     row = borrowed(row)
     past = borrowed(past)
-    table = borrowed(arrays.table)
-    constants = borrowed(arrays.constants)
-    jacobian = borrowed(arrays.jacobian)
-    placements = borrowed(arrays.placements)
+    arrays = ProgramArrays(
+        borrowed(arrays.table),
+        borrowed(arrays.constants),
+        borrowed(arrays.jacobian),
+        borrowed(arrays.placements),
+        borrowed(arrays.moves),
+        borrowed(arrays.inertia),
+        arrays.rate,
+    )
+    table = arrays.table
+    constants = arrays.constants
     n = table[0, 0]
     m = table[0, 1]
     p = table[0, 2]
     dof = table[0, 3]
-    network = 1 + table[0, 6]
+    network = 1 + table[0, 4]
     views = row_views(row, n, m, p, dof)
     qp = qp_views(views.program, n, m, p)
     if begin == SAMPLE:
+        period = 1.0 / arrays.rate
         for k in range(network + 1, table.shape[0]):
             own = constants[table[k, 4] : table[k, 5]]
             target = views.targets[k - network - 1]
             _sample(table[k, 1], own, t - delay, target)
-            if table[k, 0] != 0:
+            if table[k, 2] != 0:
                 then = np.empty(target.size)
-                _sample(table[k, 1], own, t - delay + arrays.dt, then)
-                set_mean_twist(target, then, arrays.dt)
+                _sample(table[k, 1], own, t - delay + period, then)
+                set_mean_twist(target, then, period)
     if begin <= WRITE:
-        clock = (t, 1.0 / arrays.dt)
-        step = step_views(
-            table,
-            constants,
-            past,
-            jacobian,
-            placements,
-            views.targets,
-            clock,
-        )
-        assemble(step, table, constants, qp)
+        assemble(step_views(arrays, past, views.targets, t), arrays, qp)
     own = constants[table[network, 4] : table[network, 5]]
     address = table[network, 1]
     rates = table[network, 2]
@@ -215,7 +193,7 @@ def control_step(
     views.figures[3] = dual
     views.figures[4] = gap
     for i in range(PLACEMENT):
-        views.placement[i] = placements[table[0, 7], i]
+        views.placement[i] = arrays.placements[table[0, 5], i]
     for i in range(dof):
         views.q[i] = past[Q, i]
         views.dq[i] = views.point[i]

@@ -33,14 +33,15 @@ from iiwa_dnn.control.reach import DRIFT, Reach
 from iiwa_dnn.control.state import LAST, WANTED, ControllerState, Q
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.dense import dot
-from iiwa_dnn.qp.layout import compiled, offsets
+from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
 from iiwa_dnn.schemes.motion_limits import braking
 
-DAMPING, NEAR = 0.05, 0.05
+DAMPING = 0.05
+NEAR = 0.05
 """Lambda [m/rad] and sigma_0 [m/rad] of the damping near singular poses."""
 
-BLEND, WISH = 1e-4, 0.1
+BLEND = 1e-4
+WISH = 0.1
 """Epsilon: weight of the scheme's own cost beside the task, and the share of the task's gradient in
 the joints that can follow it that the cost's own gradient may reach."""
 
@@ -104,7 +105,7 @@ class Yielding:
         n, m, p = qp.sizes
         dof = state.past.shape[1]
         data = np.empty((n + m) * (n + 1) + 2 * n)
-        damping = soften(qp.data, n, m, p, self._weights, self._limits, state.past[Q], data)
+        damping = soften(qp.data, qp.sizes, self._weights, self._limits, state.past[Q], data)
         solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
         x: Vector = solution.x.copy() if solution.found else np.zeros(n)
         # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
@@ -165,97 +166,146 @@ def approach_velocity(
 @compiled
 def on_rows(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
     """Move x (n,) to the nearest point on the equality rows; return False where that fails."""
-    _, _, at_A, at_lb = offsets(n, m, p)
     if p == 0:
         return True
-    A, gram, missing = data[at_A : at_A + p * n].reshape(p, n), np.empty((p, p)), np.empty(p)
+    qp = qp_views(data, n, m, p)
+    gram = np.empty((p, p))
+    missing = np.empty(p)
     for j in range(p):
-        missing[j] = data[at_lb - p + j] - dot(A[j], 0, x, n)
+        missing[j] = qp.b[j] - _product(qp.A, j, x)
         for k in range(p):
-            gram[j, k] = dot(A[j], 0, A[k], n) + (1e-13 if j == k else 0.0)
+            gram[j, k] = _product(qp.A, j, qp.A[k]) + (1e-13 if j == k else 0.0)
     multiplier = np.linalg.solve(gram, missing)
-    worst = 0.0
     for j in range(p):
         for i in range(n):
-            x[i] += A[j, i] * multiplier[j]
+            x[i] += qp.A[j, i] * multiplier[j]
+    worst = 0.0
     for j in range(p):
-        worst = max(worst, abs(dot(A[j], 0, x, n) - data[at_lb - p + j]))
+        worst = max(worst, abs(_product(qp.A, j, x) - qp.b[j]))
     return worst <= _REACHED
+
+
+@compiled
+def _product(rows: Matrix, j: int, x: Vector) -> float:
+    """Compute the product of row j and a point x (n,)."""
+    value = 0.0
+    for i in range(x.size):
+        value += rows[j, i] * x[i]
+    return value
 
 
 @compiled
 def inside(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
     """Return whether x (n,) is within the bounds and inequality rows of a program."""
-    _, at_G, _, at_lb = offsets(n, m, p)
+    qp = qp_views(data, n, m, p)
     most = 0.0
     for i in range(n):
-        most = max(most, data[at_lb + i] - x[i], x[i] - data[at_lb + n + i])
+        most = max(most, qp.lb[i] - x[i], x[i] - qp.ub[i])
     for j in range(m):
-        most = max(most, dot(data, at_G + j * n, x, n) - data[at_G + m * n + j])
+        most = max(most, _product(qp.G, j, x) - qp.h[j])
     return most == 0.0
 
 
 @compiled
 def soften(
-    data: Vector, n: int, m: int, p: int, weights: Vector, numbers: Vector, q: Vector, out: Vector
+    data: Vector,
+    sizes: tuple[int, int, int],
+    weights: Vector,
+    limits: Vector,
+    q: Vector,
+    out: Vector,
 ) -> float:
     """Write the program of the first stage, without equality rows, into `out`.
 
     Args:
         data: The step's program, laid out as `QP.data`, (size,).
-        n: Number of variables.
-        m: Number of inequality rows.
-        p: Number of task rows.
+        sizes: ``(n, m, p)`` of the program.
         weights: Weight of each task row, (p,).
-        numbers: `MotionLimits.constants`, (5 dof,).
+        limits: `MotionLimits.constants`, (5 dof,).
         q: Joint positions [rad], (dof,).
         out: The program, (size,), in the same way.
 
     Returns:
         The square of the damping, lambda.
     """
-    at_q, at_G, at_A, at_lb = offsets(n, m, p)
-    dof, damping = q.size, 0.0
-    if p > 0:
-        gram = np.empty((p, p))
-        for j in range(p):
-            for k in range(p):
-                gram[j, k] = (
-                    weights[j] * weights[k] * dot(data, at_A + j * n, data[at_A + k * n :], n)
-                )
-        smallest = np.linalg.eigvalsh(gram)[0]
-        damping = DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
-    pull, wish = np.zeros(n), 0.0
+    n, m, p = sizes
+    qp = qp_views(data, n, m, p)
+    soft = qp_views(out, n, m, 0)
+    damping = _damping(qp.A, weights)
+    pull = np.zeros(n)
+    asked = 0.0
     for j in range(p):
+        rhs = weights[j] * weights[j] * qp.b[j]
+        asked += rhs * qp.b[j]
         for i in range(n):
-            pull[i] += weights[j] * weights[j] * data[at_A + j * n + i] * data[at_lb - p + j]
-    for i in range(n):
-        lb, ub = data[at_lb + i], data[at_lb + n + i]
-        if i < dof:
-            most = numbers[2 * dof + i]
-            lb = min(max(POSITION_GAIN * (numbers[i] - q[i]), -most), most)
-            ub = min(max(POSITION_GAIN * (numbers[dof + i] - q[i]), -most), most)
-        out[at_A + i], out[at_A + n + i] = lb, ub
-    # A wish for another posture may not outweigh the task, or it would hold the tip away from its
-    # target: near a singular pose, or where joints at their limits leave the task little.
-    if damping == 0.0:
-        free, wished = 0.0, 0.0
-        for i in range(dof):
-            free += min(max(pull[i], out[at_A + i]), out[at_A + n + i]) ** 2
-            wished += data[at_q + i] ** 2
-        wish = min(BLEND, WISH * math.sqrt(free / wished)) if wished > 0.0 else BLEND
-    for i in range(at_A):
-        out[i] = data[i] * (BLEND if i < at_q else wish if i < at_G else 1.0)
-    for j in range(p):
-        row, square = at_A + j * n, weights[j] * weights[j]
-        for i in range(n):
-            for k in range(n):
-                out[i * n + k] += square * data[row + i] * data[row + k]
-    asked, size = 0.0, math.sqrt(dot(data, at_q, data[at_q:], n))
-    for j in range(p):
-        asked += (weights[j] * data[at_lb - p + j]) ** 2
+            pull[i] += rhs * qp.A[j, i]
+    _velocity_bounds(qp, limits, q, soft)
+    wish = _wish(qp.q, pull, soft, q.size) if damping == 0.0 else 0.0
+    size = math.sqrt(_squares(qp.q, n))
     drift = DRIFT * min(1.0, math.sqrt(asked) / FULL) / max(size, 1.0)
     for i in range(n):
-        out[at_q + i] += damping * drift * data[at_q + i] - pull[i]
-        out[i * n + i] += damping
+        for k in range(n):
+            soft.P[i, k] = BLEND * qp.P[i, k]
+        soft.P[i, i] += damping
+        soft.q[i] = wish * qp.q[i] + damping * drift * qp.q[i] - pull[i]
+    for j in range(p):
+        for i in range(n):
+            for k in range(n):
+                soft.P[i, k] += weights[j] * weights[j] * qp.A[j, i] * qp.A[j, k]
+    for j in range(m):
+        soft.h[j] = qp.h[j]
+        for i in range(n):
+            soft.G[j, i] = qp.G[j, i]
     return damping
+
+
+@compiled
+def _damping(A: Matrix, weights: Vector) -> float:
+    """Compute the square of the damping for task rows A (p, n), which grows near singular poses."""
+    p = weights.size
+    if p == 0:
+        return 0.0
+    gram = np.empty((p, p))
+    for j in range(p):
+        for k in range(p):
+            gram[j, k] = weights[j] * weights[k] * _product(A, j, A[k])
+    smallest = np.linalg.eigvalsh(gram)[0]
+    return DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
+
+
+@compiled
+def _velocity_bounds(qp: QPViews, limits: Vector, q: Vector, soft: QPViews) -> None:
+    """Write the bounds that velocity and position limits alone put on the variables."""
+    dof = q.size
+    for i in range(qp.q.size):
+        soft.lb[i] = qp.lb[i]
+        soft.ub[i] = qp.ub[i]
+        if i < dof:
+            most = limits[2 * dof + i]
+            soft.lb[i] = min(max(POSITION_GAIN * (limits[i] - q[i]), -most), most)
+            soft.ub[i] = min(max(POSITION_GAIN * (limits[dof + i] - q[i]), -most), most)
+
+
+@compiled
+def _wish(gradient: Vector, pull: Vector, soft: QPViews, dof: int) -> float:
+    """Compute the factor of the cost's own gradient (n,) beside the task's pull (n,).
+
+    A wish for another posture may not outweigh the task, or it would hold the tip away from its
+    target where joints at their limits leave the task little.
+    """
+    wished = _squares(gradient, dof)
+    if wished == 0.0:
+        return BLEND
+    free = 0.0
+    for i in range(dof):
+        free += min(max(pull[i], soft.lb[i]), soft.ub[i]) ** 2
+    return min(BLEND, WISH * math.sqrt(free / wished))
+
+
+@compiled
+def _squares(values: Vector, count: int) -> float:
+    """Compute the sum of the first squares."""
+    total = 0.0
+    for i in range(count):
+        total += values[i] * values[i]
+    return total

@@ -43,9 +43,9 @@ class Kinematics:
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.
         self.jacobian: Array = self.data.J.T.reshape(robot.dof, 6)
-        self.inertia: Array = self.data.M.reshape(robot.dof, robot.dof)
+        self.inertia: Array = self.data.M.T.reshape(robot.dof, robot.dof)
         self.placements = _placements(robot.model, self.data)
-        self.moves: Array = robot.moves
+        self.moves: Array = robot.moves.copy()  # compiled code takes arrays that are not protected
 
     def update(self, q: Array) -> None:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""

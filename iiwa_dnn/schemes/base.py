@@ -137,7 +137,7 @@ class Scheme:
             wanted = checks.finite_array("acceleration", acceleration, program.damping.shape)
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
         data = np.empty(program.data_size)
-        program.update(q)
+        program.kinematics.update(q)
         program.write(data, targets, np.array([q, velocity, velocity]), dt, wanted=wanted)
         return QP.from_data(data, program.sizes)
 

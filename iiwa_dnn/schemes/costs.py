@@ -156,9 +156,11 @@ class Manipulability(WeightedCost):
 
 def manipulability_gradient(J: Matrix) -> tuple[float, Vector]:
     """Compute Yoshikawa's measure of a chain's Jacobian J (6, n), n >= 6, and its gradient (n,)."""
-    linear, angular = J[:3].T, J[3:].T
+    linear = J[:3].T
+    angular = J[3:].T
     joints = np.arange(len(linear))
-    first, last = np.minimum.outer(joints, joints), np.maximum.outer(joints, joints)
+    first = np.minimum.outer(joints, joints)
+    last = np.maximum.outer(joints, joints)
     # d column j / d q_i: the joint nearer to the base turns what the other one moves.
     turned = np.cross(angular[first], linear[last])
     spun = np.cross(angular[:, np.newaxis], angular[np.newaxis])

@@ -36,7 +36,8 @@ class SpeedsBelowSlack(Limit):
 
     def __init__(self, robot: Robot) -> None:
         """State the rows for a robot with n joints: 2 n."""
-        self.rows, eye = 2 * robot.dof, np.eye(robot.dof)
+        self.rows = 2 * robot.dof
+        eye = np.eye(robot.dof)
         self._G = np.hstack([np.vstack([eye, -eye]), -np.ones((self.rows, 1))])
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:

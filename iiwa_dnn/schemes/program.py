@@ -40,6 +40,28 @@ Table = NDArray[np.int64]
 """What compiled code reads of a step program: the head, then a row of `_Entry` for each part."""
 
 
+class ProgramArrays(NamedTuple):
+    """Arrays with which compiled code writes programs.
+
+    Attributes:
+        table: `StepProgram.table`.
+        constants: `StepProgram.constants`, (k,).
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        moves: `Kinematics.moves`, (frames, dof).
+        inertia: `Kinematics.inertia`, (dof, dof).
+        rate: Inverse of the control period [1/s]; inf outside of a loop.
+    """
+
+    table: Table
+    constants: Vector
+    jacobian: Matrix
+    placements: Matrix
+    moves: Matrix
+    inertia: Matrix
+    rate: float
+
+
 class _Head(NamedTuple):
     """First row of a table."""
 
@@ -47,10 +69,10 @@ class _Head(NamedTuple):
     m: int
     p: int
     dof: int
-    frames: int
-    dynamics: int
     parts: int
     tip: int
+    unused: int = 0
+    unused_too: int = 0
 
 
 class _Entry(NamedTuple):
@@ -145,11 +167,8 @@ class StepProgram:
         """Write the table and the constants."""
         robot = self.robot
         n, m, p = self.sizes
-        moves = self.kinematics.moves
-        dynamics = int(self.needs_inertia)
-        inertia: Vector = np.zeros(robot.dof * robot.dof * dynamics)
-        arrays: list[Vector] = [moves.ravel(), inertia]
-        stop = moves.size + inertia.size
+        arrays: list[Vector] = [np.zeros(0)]
+        stop = 0
         entries = []
         for block in self.compiled_blocks:
             part = block.part
@@ -167,7 +186,7 @@ class StepProgram:
                 arrays.append(np.array([part.weight]))  # follows the task's own constants
                 stop += 1
         tip = robot.frame_id(self.target_frames[0])
-        first = _Head(n, m, p, robot.dof, len(moves), dynamics, len(entries), tip)
+        first = _Head(n, m, p, robot.dof, len(entries), tip)
         self.table: Table = np.array([first, *entries], dtype=np.int64)
         self.constants: Vector = np.concatenate(arrays)
 
@@ -246,7 +265,7 @@ class StepProgram:
     @property
     def placement(self) -> Vector:
         """Placement of the first tracked frame, (12,), a view."""
-        place: Vector = self.kinematics.placements[self.table[0, 7]]
+        place: Vector = self.kinematics.placements[self.table[0, 5]]
         return place
 
     @property
@@ -255,27 +274,31 @@ class StepProgram:
         n, m, p = self.sizes
         return (n + m + p) * (n + 1) + 2 * n
 
-    def extend(self, entries: list[list[int]], constants: Vector) -> None:
-        """Add rows and constants that other compiled code of a control step reads.
+    def append(self, address: int, constants: Vector, second: int = 0) -> None:
+        """Add an entry for another compiled function of a control step.
 
         Args:
-            entries: Rows of the table; column 4 and 5 count from the first of the constants.
-            constants: Their constants, (k,).
+            address: Address of the function.
+            constants: Numbers that it reads, (k,).
+            second: A further integer, in the third column.
         """
-        rows = np.zeros((len(entries), self.table.shape[1]), dtype=np.int64)
-        for row, entry in zip(rows, entries, strict=True):
-            row[: len(entry)] = entry
-            row[4:6] += self.constants.size
-        self.table = np.vstack([self.table, rows])
+        start = self.constants.size
+        entry = _Entry(0, address, second, 0, start, start + constants.size, 0)
+        self.table = np.vstack([self.table, np.array([entry], dtype=np.int64)])
         self.constants = np.concatenate([self.constants, constants])
 
-    def update(self, q: Vector) -> None:
-        """Bring the kinematics to joint positions q (n,) [rad]."""
-        self.kinematics.update(q)
-        if self.table[0, 5]:
-            moves = self.kinematics.moves.size
-            inertia = self.kinematics.inertia
-            self.constants[moves : moves + inertia.size] = inertia.ravel()
+    def arrays(self, dt: float) -> ProgramArrays:
+        """Return the arrays with which compiled code writes programs of a control period [s]."""
+        kinematics = self.kinematics
+        return ProgramArrays(
+            self.table,
+            self.constants,
+            kinematics.jacobian,
+            kinematics.placements,
+            kinematics.moves,
+            kinematics.inertia,
+            1.0 / dt if dt < np.inf else np.inf,
+        )
 
     def move(self, t: float) -> None:
         """Bring the constants that change along a run to a time [s]."""
@@ -291,7 +314,7 @@ class StepProgram:
         t: float = 0.0,
         wanted: Vector | None = None,
     ) -> None:
-        """Write the whole program of one step; the kinematics are those of `update`.
+        """Write the whole program of one step, at the joint positions of `kinematics`.
 
         Args:
             data: The program, `QP.data`, (size,), overwritten.
@@ -304,25 +327,14 @@ class StepProgram:
         Raises:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
-        kinematics = self.kinematics
-        rate = 1.0 / dt if dt < np.inf else np.inf
         of_kernels = (targets, past)
         if self.accelerates:
             of_kernels = self._lifted(targets, past, dt, wanted)
-        write_program(
-            data,
-            self.table,
-            self.constants,
-            of_kernels[1],
-            kinematics.jacobian,
-            kinematics.placements,
-            of_kernels[0],
-            (float(t), float(rate)),
-        )
+        write_program(data, self.arrays(dt), of_kernels[1], of_kernels[0], float(t))
         qp = QP.from_data(data, self.sizes)
         if self.numpy_blocks:
             by_name = dict(zip(self.target_frames, targets, strict=True))
-            step = Step.from_kinematics(kinematics, by_name, t, dt, past[0], past[1])
+            step = Step.from_kinematics(self.kinematics, by_name, t, dt, past[0], past[1])
             fill(self.numpy_blocks, qp, step, self.rate_limits is not None, self._unseen)
             self._unseen = False
         if self.accelerates:
@@ -413,67 +425,47 @@ _enter_limit = LIMIT.enter
 
 
 @compiled
-def step_views(
-    table: Table,
-    constants: Vector,
-    past: Matrix,
-    jacobian: Matrix,
-    placements: Matrix,
-    targets: Matrix,
-    clock: tuple[float, float],
-) -> StepViews:
+def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
     """Make the views of one instant; arguments as `write_program`."""
-    dof = table[0, 3]
-    frames = table[0, 4]
-    at_inertia = frames * dof
-    inertia_dof = table[0, 5] * dof
-    at_parts = at_inertia + inertia_dof * inertia_dof
     return StepViews(
-        clock[0],
-        clock[1],
+        t,
+        arrays.rate,
         past[0],
         past[1],
         past[2],
-        jacobian,
-        placements,
-        constants[:at_inertia].reshape(frames, dof),
-        constants[at_inertia:at_parts].reshape(inertia_dof, inertia_dof),
+        arrays.jacobian,
+        arrays.placements,
+        arrays.moves,
+        arrays.inertia,
         targets,
     )
 
 
 @compiled
 def write_program(
-    data: Vector,
-    table: Table,
-    constants: Vector,
-    past: Matrix,
-    jacobian: Matrix,
-    placements: Matrix,
-    targets: Matrix,
-    clock: tuple[float, float],
+    data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float
 ) -> None:
     """Write the rows of all parts with a kernel.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
-        table: `StepProgram.table`.
-        constants: `StepProgram.constants`, (k,).
+        arrays: `StepProgram.arrays`.
         past: Joint positions [rad], last command and the one before [rad/s], (3 or more, dof).
-        jacobian: `Kinematics.jacobian`, (dof, 6).
-        placements: `Kinematics.placements`, (frames, 12).
         targets: Targets of the tracked frames, (k, 18).
-        clock: Time [s] and inverse of the control period [1/s].
+        t: Time [s].
     """
-    step = step_views(table, constants, past, jacobian, placements, targets, clock)
-    assemble(step, table, constants, qp_views(data, table[0, 0], table[0, 1], table[0, 2]))
+    table = arrays.table
+    qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
+    assemble(step_views(arrays, past, targets, t), arrays, qp)
 
 
 @compiled
-def assemble(step: StepViews, table: Table, constants: Vector, qp: QPViews) -> None:
+def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
     """Write the rows of all parts with a kernel into a program; arguments as `write_program`."""
+    table = arrays.table
+    constants = arrays.constants
     _clear(qp)
-    for k in range(1, 1 + table[0, 6]):
+    for k in range(1, 1 + table[0, 4]):
         kind = table[k, 0]
         address = table[k, 1]
         first = table[k, 2]

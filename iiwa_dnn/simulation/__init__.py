@@ -5,6 +5,7 @@ from iiwa_dnn.simulation.disturbances import Disturbances as Disturbances
 from iiwa_dnn.simulation.disturbances import Push as Push
 from iiwa_dnn.simulation.motion import MOTIONS as MOTIONS
 from iiwa_dnn.simulation.noise import NOISE_ENTRIES as NOISE_ENTRIES
+from iiwa_dnn.simulation.noise import Disturbance as Disturbance
 from iiwa_dnn.simulation.noise import NoiseEntry as NoiseEntry
 from iiwa_dnn.simulation.noise import VelocityDisturbance as VelocityDisturbance
 from iiwa_dnn.simulation.noise import gaussian_noise as gaussian_noise
