@@ -201,10 +201,9 @@ class Controller:
         step = derived[0]
         layout = step.layout
         state = self._state
-        past = state.past
-        if type(q) is not np.ndarray or q.dtype is not _FLOAT or q.shape != (layout.dof,):
-            q = checks.finite_array("q", q, (layout.dof,))
-        past[Q] = q
+        joints: Any = q
+        if not _is_plain(q, layout.dof):
+            joints = checks.finite_array("q", q, (layout.dof,))
         if dq is not None:
             self._measure(dq)
         row = np.empty(layout.width)
@@ -215,19 +214,34 @@ class Controller:
         program = step.program
         if program.moving:
             program.move(t)
-        program.kinematics.update(q)
+        program.kinematics.update(joints)
         if begin == ANSWER:
-            wanted = self._accelerations(t) if program.accelerates and target is None else None
-            data = layout.view(row, "program")
-            program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t, wanted)
-            derived[1].cascade.resolve(QP.from_data(data, layout.sizes))
+            self._write_program(derived, row, joints, t, target is None)
         if step.has_network and not state.yields and state.halted is None:
             network = self.solver.warm_state(layout.sizes)
+            clock = (t, state.delay)
             if network is not None and step.run(
-                row, step.arrays, past, state.following, network, t, state.delay, begin
+                row, step.arrays, joints, state.past, state.following, network, clock, begin
             ):
                 return Command(row, layout)
+        state.past[Q] = joints
         return self._compute_in_python(derived, row, t, begin)
+
+    def _write_program(
+        self, derived: tuple[ControlStep, Fallback], row: Vector, q: Vector, t: float, own: bool
+    ) -> None:
+        """Write the program of a step of which Python code writes a part.
+
+        The targets are in the row; `own` says that they are the reference's.
+        """
+        step, fallback = derived
+        layout = step.layout
+        past = self._state.past
+        past[Q] = q
+        wanted = self._accelerations(t) if own and step.program.accelerates else None
+        data = layout.view(row, "program")
+        step.program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t, wanted)
+        fallback.cascade.resolve(QP.from_data(data, layout.sizes))
 
     def _compute_in_python(
         self, derived: tuple[ControlStep, Fallback], row: Vector, t: float, begin: int
@@ -404,6 +418,13 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
+
+
+def _is_plain(q: ArrayLike, dof: int) -> bool:
+    """Tell whether joint positions are an array as compiled code takes it."""
+    return (
+        type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,) and q.flags.c_contiguous
+    )
 
 
 _DERIVED = ("_derived", "_lock")

@@ -109,8 +109,9 @@ class ControlStep:
             return control_step
         vector = types.float64[::1]
         matrix = types.float64[:, ::1]
-        arguments = (vector, typeof(self.arrays), matrix, matrix, vector)
-        return control_step.compile((*arguments, types.float64, types.float64, types.int64))
+        clock = types.UniTuple(types.float64, 2)
+        arguments = (vector, typeof(self.arrays), vector, matrix, matrix, vector, clock)
+        return control_step.compile((*arguments, types.int64))
 
 
 PATH = Signature(types.void, types.float64, VECTOR, VECTOR)
@@ -121,11 +122,11 @@ _enter_path = PATH.enter
 def control_step(
     row: Vector,
     arrays: ProgramArrays,
+    q: Vector,
     past: Matrix,
     following: Matrix,
     state: Vector,
-    t: float,
-    delay: float,
+    clock: tuple[float, float],
     begin: int,
 ) -> bool:
     """Write targets, program and answer of one control step into a row.
@@ -133,11 +134,11 @@ def control_step(
     Args:
         row: The row, (width,); what comes before `begin` is in it already.
         arrays: Arrays of the loop.
-        past: `ControllerState.past`, (4, dof).
+        q: Joint positions [rad], (dof,), at which the kinematics are.
+        past: `ControllerState.past`, (4, dof); the joint positions are noted in it.
         following: `ControllerState.following`, (4, dof), overwritten.
         state: The network's state, (size,), advanced.
-        t: Time [s].
-        delay: Time by which the reference's clock is behind [s].
+        clock: Time, and time by which the reference's clock is behind [s].
         begin: `SAMPLE`, `WRITE` or `ANSWER`.
 
     Returns:
@@ -163,6 +164,10 @@ def control_step(
     network = 1 + table[0, 4]
     views = row_views(row, n, m, p, dof)
     qp = qp_views(views.program, n, m, p)
+    t, delay = clock
+    for i in range(dof):
+        past[Q, i] = q[i]
+        views.q[i] = q[i]
     if begin == SAMPLE:
         period = 1.0 / arrays.rate
         for k in range(network + 1, table.shape[0]):
@@ -195,7 +200,6 @@ def control_step(
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
     for i in range(dof):
-        views.q[i] = past[Q, i]
         views.dq[i] = views.point[i]
         following[BEFORE, i] = past[LAST, i]
         following[LAST, i] = views.point[i]

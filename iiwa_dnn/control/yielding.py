@@ -269,7 +269,7 @@ def _damping(A: Matrix, weights: Vector) -> float:
     for j in range(p):
         for k in range(p):
             gram[j, k] = weights[j] * weights[k] * _product(A, j, A[k])
-    smallest = np.linalg.eigvalsh(gram)[0]
+    smallest: float = np.linalg.eigvalsh(gram)[0]
     return DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
 
 

@@ -138,10 +138,11 @@ class DNNSolver:
 
     def warm_state(self, sizes: Sizes) -> Vector | None:
         """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
-        warm = self._warm()
-        if warm is None or warm[0] is not self.network or warm[1] != sizes:
+        try:
+            owner, last, state = self._kept[-1]
+        except IndexError:  # another thread has it, or there was no call yet
             return None
-        return warm[2]
+        return state if last == sizes and owner is self.network else None
 
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
         """Return the compiled function that answers programs of these sizes as this solver does.
