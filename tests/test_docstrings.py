@@ -84,6 +84,11 @@ def column_words(annotation: ast.expr) -> str:
     return " ".join(ast.unparse(argument) for call in calls for argument in call.args)
 
 
+def is_kernel(function: ast.FunctionDef) -> bool:
+    """Whether a function is a part's kernel, whose shapes schemes/parts.py states for all of them."""
+    return [argument.arg for argument in function.args.args[:2]] == ["step", "constants"]
+
+
 def is_public(name: str) -> bool:
     return not name.startswith("_")
 
@@ -94,6 +99,8 @@ def arrays(path: Path) -> Iterator[Item]:
     module = path.relative_to(PACKAGE).as_posix()
 
     def of_function(function: ast.FunctionDef, owner: str, inherited: str) -> Iterator[Item]:
+        if is_kernel(function):
+            return
         said = sections(ast.get_docstring(function) or "")
         if said[""].startswith("See :meth:") or (inherited and function.name in DESCRIBED):
             return

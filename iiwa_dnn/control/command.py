@@ -25,7 +25,7 @@ class RowViews(NamedTuple):
     """Parts of a row, for a program of sizes n, m, p, dof joints and k tracked frames.
 
     Attributes:
-        program: The program, `QP.data`.
+        program: The program, `QP.data`, (size,).
         point: The answer, `Solution.point`, (2 n + m + p,).
         figures: Iterations, network time, primal and dual residual, gap, (5,).
         placement: Placement of the first tracked frame, (12,).
@@ -108,7 +108,15 @@ class RowLayout:
     def fill(
         self, row: Vector, qp: QP, solution: Solution, placement: Vector, q: Vector, dq: Vector
     ) -> None:
-        """Write program, answer, placement (12,), positions (dof,) and command (dof,) into a row.
+        """Write a step into a row.
+
+        Args:
+            row: The row, (width,), overwritten but for the targets.
+            qp: The program.
+            solution: The answer.
+            placement: Placement of the first tracked frame, (12,).
+            q: Joint positions [rad], (dof,).
+            dq: Command [rad/s], (dof,).
 
         Raises:
             InvalidInputError: The program has another shape than the others.

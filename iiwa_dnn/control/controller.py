@@ -177,7 +177,13 @@ class Controller:
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
-        """Compute a command that does not count as sent, as `step`; `send` makes it count."""
+        """Compute a command that does not count as sent; `send` makes it count.
+
+        Args:
+            q: Joint positions [rad], (n,).
+            t: Time [s].
+            target: Targets by frame name, in place of the reference's.
+        """
         with self._lock:
             return self._compute(q, t, target, None)
 

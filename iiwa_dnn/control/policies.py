@@ -146,14 +146,18 @@ def resolve(
     if policy == "stop":
         return stopped(qp, failed, largest, yielding)
     scales = policy == "slow" and not np.isnan(largest.fraction)
-    if scales:
-        slower = _slower(qp, solver, largest)
-        if slower is not None:
-            return slower
+    slower = _slower(qp, solver, largest) if scales else None
+    return slower or _relaxed(qp, failed, largest, weights, scales)
+
+
+def _relaxed(
+    qp: QP, failed: Solution, largest: Reach, weights: Vector | None, creeps: bool
+) -> Resolution:
+    """Decide for the least violation of the tasks; the clock runs on, or creeps."""
     relaxed = least_violation(qp, weights)
     if relaxed is None:
         return stopped(qp, failed, largest)
-    if scales:
+    if creeps:
         return _settled(Action.SLOW, qp, relaxed._replace(fraction=CREEP))
     return _settled(Action.RELAX, qp, relaxed)
 

@@ -63,7 +63,15 @@ class ForeignProgram(StepProgram):
         t: float = 0.0,
         wanted: Vector | None = None,
     ) -> None:
-        """Write the whole program of one step; arguments as `StepProgram.write`.
+        """Write the whole program of one step.
+
+        Args:
+            data: The program, `QP.data`, (size,), overwritten.
+            targets: Target of the tip, (1, 18).
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+            dt: Control period [s].
+            t: Time [s].
+            wanted: Accelerations of the target, (6,).
 
         Raises:
             InvalidInputError: The program has other sizes than the first one.

@@ -7,6 +7,7 @@ call, each part by its own kernel; parts written in numpy are asked afterwards
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -132,10 +133,7 @@ class StepProgram:
         self.scheme = scheme
         accelerates = scheme.level == "acceleration"
         tasks: list[Task] = [*scheme.tasks, *couplings(robot)]
-        for limit in scheme.limits:
-            own = type(limit).inequalities is not Limit.inequalities
-            if own and limit.row_count(robot) < 1:
-                raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
+        _check_rows(robot, scheme.limits)
         self.target_frames = _tracked(robot, tasks)
         self.damping: Vector = np.zeros(0)
         if accelerates:
@@ -202,7 +200,7 @@ class StepProgram:
 
     @cached_property
     def moving(self) -> list[tuple[Limit, Vector]]:
-        """Limits with constants that change along a run, each with its constants."""
+        """Limits with constants that change along a run, each with its constants, (k,)."""
         entries = self.table[1:].tolist()
         return [
             (block.part, self.constants[entry[4] : entry[5]])
@@ -385,6 +383,14 @@ class StepProgram:
         return found
 
 
+def _check_rows(robot: Robot, limits: Sequence[Limit]) -> None:
+    """Raise InvalidInputError if a limit has inequalities but no rows."""
+    for limit in limits:
+        own = type(limit).inequalities is not Limit.inequalities
+        if own and limit.row_count(robot) < 1:
+            raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
+
+
 def _tracked(robot: Robot, tasks: list[Task]) -> tuple[str, ...]:
     """Return the names of the tracked frames, the tip first; the tip's if there are none.
 
@@ -426,7 +432,7 @@ _enter_limit = LIMIT.enter
 
 @compiled
 def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
-    """Make the views of one instant; arguments as `write_program`."""
+    """Make the views of one instant, from past (3, dof) and targets (k, 18) of `write_program`."""
     return StepViews(
         t,
         arrays.rate,

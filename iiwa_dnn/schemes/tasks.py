@@ -84,7 +84,7 @@ def gain_of(step: StepViews, constants: Vector) -> float:
 
 @compiled
 def vector_at(array: Vector, start: int) -> Vector3:
-    """Return three numbers of an array, from an index on."""
+    """Return three numbers of an array (k,), from an index on."""
     return array[start], array[start + 1], array[start + 2]
 
 

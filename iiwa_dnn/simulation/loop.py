@@ -173,27 +173,31 @@ class Loop:
             mean = velocity
         if self._misled:
             self._show_true_pose(commands[0])
-        resolutions = [command.resolution for command in commands]
-        self._yielded = any(each is not None for each in resolutions)
-        resolution = resolutions[0]
+        resolution = commands[0].resolution
+        self._yielded = any(command.resolution is not None for command in commands)
         if self._yielded:
             # If only a later stage has no solution, the answer at its start will do.
             commands = [commands[0]] * len(commands)
             velocity = commands[0].dq
             mean = 0.5 * (before + velocity) if accelerates else velocity
-        command = velocity
-        clipped = None
-        if self._alters and self._chain is not None:
-            qp = commands[0].qp
-            if self._misled:
-                qp = controller.program_at(self.q, commands[0].targets, t)
-            command, clipped = self._chain.act(k, velocity, qp, controller.solver)
+        command, clipped = self._altered(k, t, commands[0], velocity)
         controller.send(command, resolution)
-        acceleration = (velocity - before) / dt if accelerates else None
-        if accelerates and self.plant.exact:
-            command = mean
-        outcome = self._moved(commands, velocity, command, resolution)
-        return outcome._replace(acceleration=acceleration, clipped=clipped)
+        if not accelerates:
+            return self._moved(commands, velocity, command, resolution)._replace(clipped=clipped)
+        moving = mean if self.plant.exact else command
+        outcome = self._moved(commands, velocity, moving, resolution)
+        return outcome._replace(acceleration=(velocity - before) / dt)
+
+    def _altered(
+        self, k: int, t: float, command: Command, velocity: Vector
+    ) -> tuple[Vector, NDArray[np.int8] | None]:
+        """Return a velocity after noise and filters, and the joints that were clipped."""
+        if not self._alters or self._chain is None:
+            return velocity, None
+        qp = command.qp
+        if self._misled:
+            qp = self.controller.program_at(self.q, command.targets, t)
+        return self._chain.act(k, velocity, qp, self.controller.solver)
 
     def _moved(
         self,
