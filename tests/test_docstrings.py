@@ -85,7 +85,7 @@ def column_words(annotation: ast.expr) -> str:
 
 
 def is_kernel(function: ast.FunctionDef) -> bool:
-    """Whether a function is a part's kernel, whose shapes schemes/parts.py states for all of them."""
+    """Whether a function is a part's kernel, whose shapes schemes/parts.py states."""
     return [argument.arg for argument in function.args.args[:2]] == ["step", "constants"]
 
 

@@ -21,7 +21,7 @@ from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp import QP, Matrix, Solution, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -164,7 +164,9 @@ class Controller:
         delay = state.delay
         try:
             with self._lock:
-                command = self._compute(q, t, target, dq)
+                if dq is not None:
+                    self._measure(dq)
+                command = self._compute(q, t, target)
                 resolution = command.resolution
                 if resolution is not None:
                     state.delay += self.dt * (1.0 - resolution.fraction)
@@ -185,7 +187,7 @@ class Controller:
             target: Targets by frame name, in place of the reference's.
         """
         with self._lock:
-            return self._compute(q, t, target, None)
+            return self._compute(q, t, target)
 
     def send(self, dq: Vector, resolution: Resolution | None = None) -> None:
         """Count a velocity dq (n,) [rad/s] as sent, and let the clock go on as a policy decided."""
@@ -199,7 +201,6 @@ class Controller:
         q: ArrayLike,
         t: float,
         target: Target | Mapping[str, Target] | None,
-        dq: ArrayLike | None,
     ) -> Command:
         derived = self._derived
         if derived is None or derived[0].version != self.solver.version:
@@ -210,8 +211,6 @@ class Controller:
         joints: Any = q
         if not _is_plain(q, layout.dof):
             joints = checks.finite_array("q", q, (layout.dof,))
-        if dq is not None:
-            self._measure(dq)
         row = np.empty(layout.width)
         begin = step.begin
         if begin != SAMPLE or target is not None:
@@ -223,7 +222,7 @@ class Controller:
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
-        if step.has_network and not state.yields and state.halted is None:
+        if step.has_network and not state.yields:
             network = self.solver.warm_state(layout.sizes)
             clock = (t, state.delay)
             if network is not None and step.run(
@@ -275,17 +274,20 @@ class Controller:
         if resolution is not None:
             qp = resolution.qp
         dq = solution.x[: layout.dof].copy()
-        last = state.past[LAST]
         if program.accelerates:
-            if resolution is not None and resolution.action is Action.STOP:
-                n = qp.lb.size
-                solution.point[:n] = np.clip(-last / self.dt, qp.lb, qp.ub)
-                dq = solution.x[: layout.dof]
-            dq = last + self.dt * dq
+            dq = self._accelerated(qp, solution, resolution)
         layout.fill(row, qp, solution, program.placement, state.past[Q], dq)
         state.send(dq)
         unsolved = None if solution.status is layout.status else solution
         return Command(row, layout, resolution, unsolved)
+
+    def _accelerated(self, qp: QP, solution: Solution, resolution: Resolution | None) -> Vector:
+        """Return the velocity after a period of the accelerations of a solution, (n,) [rad/s]."""
+        last = self._state.past[LAST]
+        if resolution is not None and resolution.action is Action.STOP:
+            solution.x[:] = np.clip(-last / self.dt, qp.lb, qp.ub)
+        velocity: Vector = last + self.dt * solution.x[: last.size]
+        return velocity
 
     def _measure(self, dq: ArrayLike) -> None:
         """Take measured joint velocities (n,) [rad/s] for the last command."""
@@ -349,6 +351,7 @@ class Controller:
         step, fallback = self._laid_out()
         if self._state.halted is None and (fallback.yielding or step.program.accelerates):
             self._state.halted = resolution
+            self._state.yields = True
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

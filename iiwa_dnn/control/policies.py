@@ -131,9 +131,7 @@ def resolve(
     if np.isnan(qp.data).any() or not np.isfinite(qp.b).all():
         return stopped(qp, failed, yielding=yielding)
     if yielding is not None and policy in ("slow", "relax"):
-        missed = failed.status is Status.NOT_SETTLED
-        fallback = _fallback(qp, solver.tol) if missed else None
-        return fallback or gave_way(qp, policy, yielding.answer(qp).reach)
+        return _yielded(qp, failed, policy, solver, yielding)
     largest = largest_fraction(qp)
     if largest.fraction >= _FEASIBLE:
         fallback = _fallback(qp, solver.tol)
@@ -148,6 +146,15 @@ def resolve(
     scales = policy == "slow" and not np.isnan(largest.fraction)
     slower = _slower(qp, solver, largest) if scales else None
     return slower or _relaxed(qp, failed, largest, weights, scales)
+
+
+def _yielded(
+    qp: QP, failed: Solution, policy: Policy, solver: DNNSolver, yielding: Yielding
+) -> Resolution:
+    """Decide where there are limits on acceleration or jerk."""
+    missed = failed.status is Status.NOT_SETTLED
+    fallback = _fallback(qp, solver.tol) if missed else None
+    return fallback or gave_way(qp, policy, yielding.answer(qp).reach)
 
 
 def _relaxed(

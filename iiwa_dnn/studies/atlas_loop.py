@@ -88,7 +88,7 @@ class DisturbedLoop:
         """Write the program of step k for a target (18,) and the tool's placement (12,)."""
         program = self.program
         seen = self.disturbance.measure(self.q)
-        program.update(seen)
+        program.kinematics.update(seen)
         self._past[0] = seen
         self.disturbance.mislead(program, target, tool, self.q)
         t = k * DT
