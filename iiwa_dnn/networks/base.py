@@ -62,7 +62,10 @@ def evaluate_rates(
     state: Vector,
     rates: Vector,
 ) -> None:
-    """Write the rates of the network whose compiled function is at the address."""
+    """Write the rates (size,) at a state (size,) of the network whose function is at the address.
+
+    The program is `QP.data`; the constants (k,) are those of `Network.constants`.
+    """
     enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
@@ -73,7 +76,8 @@ class Network(ABC):
     Attributes:
         rho: Time constant [s].
         carries_x: True if the state begins with x; otherwise x is computed from it.
-        compiled_rates: The right-hand side as a static compiled function (`Rates`), if it has one.
+        compiled_rates: The right-hand side, rates (size,) at a state (size,), as a static compiled
+            function (`Rates`), if it has one.
     """
 
     rho: float = 9e-5

@@ -42,7 +42,7 @@ from iiwa_dnn.qp.program import QP
 
 @compiled
 def field(qp: QPViews, project: bool, s: Vector, rates: Vector) -> float:
-    """Write the network's rates rho ds/dt; with `project`, x goes through its bounds.
+    """Write rho ds/dt at a state, both (size,); with `project`, x goes through its bounds.
 
     Returns:
         The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
@@ -88,7 +88,7 @@ def _inequality_rate(multiplier: float, slack: float) -> float:
 
 @compiled
 def mark_active(s: Vector, rates: Vector, active: Vector) -> None:
-    """Mark the inequalities [G; I; -I] with mu + Omega x - chi > 0 by 1, the others by 0.
+    """Mark the inequalities [G; I; -I] with mu + Omega x - chi > 0 by 1, others by 0, (m + 2n,).
 
     A multiplier that is not active decays: it and its rate add up to zero exactly.
     """
@@ -99,7 +99,7 @@ def mark_active(s: Vector, rates: Vector, active: Vector) -> None:
 
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Write the rates; `constants` is [1] if x goes through its bounds, else [0]."""
+    """Write the rates (size,); `constants` (1,) is [1] if x goes through its bounds, else [0]."""
     field(qp, constants[0] != 0.0, state, rates)
 
 
@@ -130,7 +130,7 @@ def stable_step(qp: QPViews, active: Vector) -> float:
 
 @compiled
 def stable_step_of(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
-    """Compute `stable_step` for a program's flat array, `QP.data`."""
+    """Compute `stable_step` of an active set (m + 2n,), for a program's flat array, `QP.data`."""
     return stable_step(qp_views(data, n, m, p), active)
 
 

@@ -52,7 +52,7 @@ def _places(sizes: Sizes) -> tuple[tuple[slice, tuple[int, ...]], ...]:
 
 @lru_cache
 def absent_fields(n: int) -> list[NDArray[np.float64]]:
-    """Return what stands for each field that is left out."""
+    """Return an empty array, or infinite bounds (n,), for each field that is left out."""
     no_rows = np.empty((0, n))
     nothing = np.empty(0)
     free = np.full(n, np.inf)

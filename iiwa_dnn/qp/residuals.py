@@ -62,7 +62,7 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
 
 @compiled
 def residuals_of(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
-    """Compute `point_residuals` for a program's flat array, `QP.data`."""
+    """Compute `point_residuals` of a point (2n + m + p,), for a program's flat array, `QP.data`."""
     return point_residuals(qp_views(data, n, m, p), point)
 
 
@@ -128,7 +128,7 @@ def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
 
 @compiled
 def point_of_state(data: Vector, n: int, m: int, p: int, s: Vector, point: Vector) -> Triple:
-    """Write the `kkt_point` of a state for a program's flat array, `QP.data`."""
+    """Write the `kkt_point` (2n + m + p,) of a state, for a program's flat array, `QP.data`."""
     return kkt_point(qp_views(data, n, m, p), s, point)
 
 

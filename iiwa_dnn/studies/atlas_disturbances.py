@@ -144,7 +144,7 @@ class OtherArm(Disturbance):
         super().__init__(other_arm(robot, rng), rng, steps)
 
     def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
-        """Move the target (18,) by the model's error of the tool's placement (12,)."""
+        """Move the target (18,) by the model's error of the placement (12,); q is in [rad]."""
         as_measured(target, tool, program.placement)
 
 
@@ -152,14 +152,14 @@ class LockedJoint(Disturbance):
     """A joint that stands still from a step on, as the controller knows."""
 
     def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
-        """Fix the joint by its bounds."""
+        """Fix the joint by its bounds; the velocity (n,) is in [rad/s]."""
         if k >= self.moment:
             value = -velocity[self.joint] / DT if accelerates else 0.0
             qp.lb[self.joint] = value
             qp.ub[self.joint] = value
 
     def hold(self, k: int, velocity: Vector) -> None:
-        """Let the joint stand still, whatever the network answers."""
+        """Set the joint's velocity, of (n,) [rad/s], to zero."""
         if k >= self.moment:
             velocity[self.joint] = 0.0
 
@@ -171,7 +171,7 @@ class EstimatedJacobian(Disturbance):
     _last: tuple[Vector, Vector]
 
     def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
-        """Put the estimate in place of the Jacobian."""
+        """Replace the Jacobian by the estimate; placement (12,), positions (n,) [rad]."""
         jacobian = program.kinematics.jacobian
         if self._estimate is None:
             self._estimate = jacobian * (1.0 + 0.1 * self.rng.standard_normal(jacobian.shape))

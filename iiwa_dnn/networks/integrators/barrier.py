@@ -65,7 +65,7 @@ class Scaled(NamedTuple):
         P: Cost matrix, (n, n).
         q: Cost vector, (n,).
         A: Equality rows, a row for each variable whose bounds meet among them, (rows, n).
-        b: Their right-hand sides.
+        b: Their right-hand sides, (p,).
         omega: Inequality rows and bounds that are finite, (k, n).
         chi: Their limits, (k,).
         d: Scale of each variable, (n,).
@@ -128,7 +128,14 @@ def _inverse_roots(matrix: Matrix, axis: int) -> Vector:
 
 
 class Iterate(NamedTuple):
-    """A point of the smoothed flow: x, multipliers y and mu, and the slacks s of the limits."""
+    """A point of the smoothed flow.
+
+    Attributes:
+        x: Primal point, (n,).
+        y: Multipliers of the equality rows, (p,).
+        mu: Multipliers of the limits, (k,).
+        s: Slacks of the limits, (k,).
+    """
 
     x: Vector
     y: Vector
@@ -149,6 +156,7 @@ class System:
     """
 
     def __init__(self, program: Scaled, weights: Vector, delta: float) -> None:
+        """Factor the matrix for the weights (k,) of the inequality rows."""
         self._program = program
         self._weights = np.maximum(weights, LEAST)
         self._delta = delta
@@ -167,7 +175,7 @@ class System:
                 self._eps *= 10.0
 
     def solve(self, rx: Vector, ry: Vector, rmu: Vector) -> tuple[Vector, Vector, Vector]:
-        """Solve for dx, dy and dmu, and refine them."""
+        """Solve for dx (n,), dy (p,) and dmu (k,), refined."""
         P, _, A, _, omega, *_ = self._program
         w = self._weights
         dx = np.zeros_like(rx)
@@ -224,7 +232,7 @@ class Run:
     """
 
     def __init__(self, qp: QP, state: Vector, tol: float, limit: int) -> None:
-        """Write the best state into `state`; take at most `limit` systems."""
+        """Write the best state into `state` (3n + m + p,); take at most `limit` systems."""
         self.systems = 0
         self.time = 0.0
         self._qp = qp

@@ -48,7 +48,7 @@ class CompiledAnswer(NamedTuple):
     Attributes:
         address: Address of a function of the type `ANSWER`.
         rates: Address of the network's compiled function.
-        constants: ``[tolerance, budget, long step, duration, sub-steps, network's own ...]``.
+        constants: ``[tolerance, budget, long step, duration, sub-steps, network's own ...]``, (k,).
     """
 
     address: int
@@ -67,7 +67,11 @@ def answer_program(
     state: Vector,
     point: Vector,
 ) -> Settled:
-    """Enter a compiled answer that does not use the network's own function."""
+    """Enter a compiled answer that does not use the network's own function.
+
+    The program is `QP.data`; constants (k,), state (size,) and point (2n + m + p,) are those of
+    `ANSWER`.
+    """
     qp = qp_views(data, n, m, p)
     constants = borrowed(constants)
     state = borrowed(state)

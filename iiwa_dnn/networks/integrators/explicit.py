@@ -114,7 +114,10 @@ def follow_program(
     state: Vector,
     point: Vector,
 ) -> Settled:
-    """Advance a network as `follow` does, for a program's flat array, `QP.data`."""
+    """Advance a network as `follow` does, for a program's flat array, `QP.data`.
+
+    Constants (k,), state (size,) and point (2n + m + p,) are those of `ANSWER`.
+    """
     qp = qp_views(data, n, m, p)
     return follow(qp, rates, borrowed(constants), borrowed(state), borrowed(point))
 
@@ -149,8 +152,8 @@ def explicit_euler(
 ) -> int:
     """Advance the state in place by up to `count` explicit Euler steps of one length [rho].
 
-    `rates` is the address of the network's compiled function and `constants` are its own. The steps
-    end early once the largest rate is at most `tol`.
+    `rates` is the address of the network's compiled function, which takes the state (size,), and
+    `constants` (k,) are its own. The steps end early once the largest rate is at most `tol`.
 
     Returns:
         Steps taken.
@@ -171,6 +174,8 @@ def explicit_euler(
 @compiled
 def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Settled:
     """Advance the network by its time with explicit steps; a compiled answer (`ANSWER`).
+
+    It reads constants (k,), advances the state (size,) and writes the point (2n + m + p,).
 
     Returns:
         Sub-steps, 0 if none are stable; time [rho]; and the residuals of the point.
