@@ -103,7 +103,7 @@ def test_a_run_that_ends_early_is_said_and_exits_1(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--seeds", "1"], "seeds: must be at least 2"),
+        (["--seeds", "1"], "seeds: must be a whole number of at least 2"),
         (["--duration", "0"], "duration: "),
         (["--workers", "0"], "workers: must be a whole number of at least 1"),
         (["--seeds", "many"], "--seeds"),
