@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from iiwa_dnn.checks import read_only
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.compiling import Signature
@@ -332,7 +333,9 @@ class StepProgram:
         qp = QP.from_data(data, self.sizes)
         if self.numpy_blocks:
             by_name = dict(zip(self.target_frames, targets, strict=True))
-            step = Step.from_kinematics(self.kinematics, by_name, t, dt, past[0], past[1])
+            q = read_only(past[0])
+            dq = read_only(past[1])
+            step = Step.from_kinematics(self.kinematics, by_name, t, dt, q, dq)
             fill(self.numpy_blocks, qp, step, self.rate_limits is not None, self._unseen)
             self._unseen = False
         if self.accelerates:
