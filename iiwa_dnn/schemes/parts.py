@@ -54,7 +54,7 @@ class Part:
 
     @property
     def is_compiled(self) -> bool:
-        """Whether the kernel writes the rows; a subclass's own method in numpy goes before it."""
+        """Test whether the kernel writes the rows; a subclass's own numpy method goes first."""
         inherited = (_owner(type(self), name) in _KINDS for name in self._plain)
         return self.kernel is not None and all(inherited)
 

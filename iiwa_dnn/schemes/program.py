@@ -211,17 +211,17 @@ class StepProgram:
 
     @property
     def is_compiled(self) -> bool:
-        """Whether compiled code alone writes the programs."""
+        """Test whether compiled code alone writes the programs."""
         return not (self.numpy_blocks or self.accelerates or self.priorities.any())
 
     @property
     def accelerates(self) -> bool:
-        """Whether the programs are of the acceleration level."""
+        """Test whether the programs are of the acceleration level."""
         return self.damping.size > 0
 
     @property
     def needs_inertia(self) -> bool:
-        """Whether a cost takes the inertia matrix."""
+        """Test whether a cost takes the inertia matrix."""
         energies = (block.part for block in self.blocks if isinstance(block.part, KineticEnergy))
         return any(energy.kinetic == "inertia" for energy in energies)
 
@@ -258,7 +258,7 @@ class StepProgram:
 
     @property
     def needs_period(self) -> bool:
-        """Whether a program needs a control period."""
+        """Test whether a program needs a control period."""
         return self.accelerates or any(task.tracking == "next" for task in self.scheme.tasks)
 
     @property

@@ -33,19 +33,19 @@ class SignalChain:
 
     @property
     def misleads(self) -> bool:
-        """Whether the controller may see another posture than the robot has."""
+        """Test whether the controller may see another posture than the robot has."""
         return self._estimator is not None or self._noise_at("measurement")
 
     @property
     def changes(self) -> bool:
-        """Whether a velocity is changed on its way to the robot."""
+        """Test whether a velocity is changed on its way to the robot."""
         noisy = self._noise_at("velocity") or self._noise_at("network")
         averaged = self._disturbance.filter_window > 1
         return noisy or averaged or self._estimator is not None or self._added is not None
 
     @property
     def alters(self) -> bool:
-        """Whether more than the controller's own answer moves the robot."""
+        """Test whether more than the controller's own answer moves the robot."""
         return self._disturbance.noise > 0.0 or self.changes
 
     def _noise_at(self, entry: str) -> bool:
