@@ -15,6 +15,17 @@ if TYPE_CHECKING:
 class IiwaDnnError(Exception):
     """Base of every error that this package raises on purpose."""
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # Not by the constructor, whose arguments are others than the message.
+        return _remake, (type(self), self.args), vars(self)
+
+
+def _remake(kind: type[IiwaDnnError], args: tuple[Any, ...]) -> IiwaDnnError:
+    """Make an error anew that was pickled or copied; its attributes are filled in afterwards."""
+    error = kind.__new__(kind, *args)
+    error.args = args
+    return error
+
 
 class InvalidInputError(IiwaDnnError, ValueError):
     """An argument is outside what the function accepts.

@@ -5,19 +5,26 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from benchmarks import process
+from benchmarks import control, process
 from benchmarks.cli import bench_loop
-from benchmarks.control import measure_own_part, measure_runs, measure_steps
+from benchmarks.control import LOOPS, measure_own_part, measure_runs, measure_steps
 from benchmarks.loop_report import markdown
 from iiwa_dnn import IiwaDnnError
 
 
-def test_everyone_follows_the_heart() -> None:
-    measured, missing = measure_steps(100, 1e-3)
-    rows = {row["name"]: row for row in measured}
+@pytest.fixture(scope="module")
+def measured() -> tuple[list[dict[str, Any]], list[str]]:
+    """A hundred steps of everyone that is installed."""
+    return measure_steps(100, 1e-3)
+
+
+def test_everyone_follows_the_heart(measured: tuple[list[dict[str, Any]], list[str]]) -> None:
+    rows = {row["name"]: row for row in measured[0]}
+    missing = measured[1]
     assert set(missing) <= {"placo", "mink", "pydrake"}
     error = {name: row["max_position_error_m"] for name, row in rows.items()}
     # One period late is dt times the speed; the others have their methods' own errors.
@@ -33,8 +40,9 @@ def test_everyone_follows_the_heart() -> None:
     [(sys.executable, "PlaCo: ModuleNotFoundError"), ("no/python", "PlaCo: no/python: ")],
 )
 def test_a_python_without_the_library_is_named(python: str, reason: str) -> None:
+    placo = [loop for loop in LOOPS if loop.module == "placo"]
     with pytest.raises(IiwaDnnError, match=reason):
-        measure_steps(10, 1e-3, {"placo": Path(python)})
+        measure_steps(10, 1e-3, {"placo": Path(python)}, loops=placo)
 
 
 def test_a_limit_of_ones_own_is_measured_beside_the_built_in_parts() -> None:
@@ -52,14 +60,19 @@ def test_runs_are_measured_against_proxqp_on_the_same_programs() -> None:
 
 
 def test_a_long_runs_memory_is_measured() -> None:
-    memory = process.measure_memory(2.0)
+    memory = process.measure_memory(1.0)
     short, long = memory["record_bytes"]
     assert long == pytest.approx(10 * short, rel=0.01)
     # Nothing but the record grows.
     assert 0.8 < memory["growth_over_record"] < 1.2
 
 
-def test_the_script_writes_its_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_script_writes_its_report(
+    measured: tuple[list[dict[str, Any]], list[str]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(control, "measure_steps", lambda *arguments, **options: measured)
     # Compiling everything anew takes a minute, and is nothing that a test could judge.
     times = {"import_s": 0.5, "first_step_cold_s": 30.0, "first_step_warm_s": 1.5}
     monkeypatch.setattr(process, "measure_startup", lambda rounds: times)

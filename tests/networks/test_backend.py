@@ -8,6 +8,7 @@ import iiwa_dnn
 from benchmarks import programs
 
 
+@pytest.mark.long
 def test_qpsolvers_lists_the_network_once_and_solves_with_it() -> None:
     iiwa_dnn.qp.register()
     iiwa_dnn.qp.register()

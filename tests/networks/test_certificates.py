@@ -51,6 +51,7 @@ def linprog_status(qp: QP, cost: np.ndarray) -> int:
     ).status  # fmt: skip
 
 
+@pytest.mark.long
 def test_a_thousand_infeasible_programs_are_recognised_with_a_proof() -> None:
     for seed in range(1000):
         qp = programs.infeasible(np.random.default_rng([2, seed]))
@@ -62,6 +63,7 @@ def test_a_thousand_infeasible_programs_are_recognised_with_a_proof() -> None:
             assert linprog_status(qp, np.zeros(qp.q.size)) == 2, seed
 
 
+@pytest.mark.long
 def test_two_hundred_unbounded_programs_are_recognised_with_a_proof() -> None:
     # Seed 264 drifts for long before its last row takes part.
     for seed in [*range(200), 264]:
@@ -80,6 +82,7 @@ def test_two_hundred_unbounded_programs_are_recognised_with_a_proof() -> None:
         assert linprog_status(cone, qp.q) in (3, 4), seed  # HiGHS: "unbounded", or it says neither
 
 
+@pytest.mark.long
 def test_no_solvable_program_is_called_infeasible() -> None:
     # A budget too small to solve anything, so that a certificate is looked for each time.
     hurried = DNNSolver(settler=iiwa_dnn.ImplicitEuler(max_steps=1))

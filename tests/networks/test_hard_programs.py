@@ -94,6 +94,7 @@ def run(code: str) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="fork")
 def test_a_forked_child_may_use_the_batch_solver_too() -> None:
     child = run(
@@ -109,6 +110,7 @@ sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
     assert child.wait(timeout=60.0) == 0
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="signals")
 def test_an_interrupt_ends_a_long_settle() -> None:
     # A tolerance below rounding: the whole budget is used up, for minutes.

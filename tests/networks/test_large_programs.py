@@ -54,6 +54,7 @@ def test_a_step_of_the_barrier_solves_the_whole_system() -> None:
     np.testing.assert_allclose(found, known, rtol=1e-6, atol=1e-8 * np.abs(known).max())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 def test_sparse_programs_of_known_solution_settle(seed: int) -> None:
     qp, x = blend(seed)

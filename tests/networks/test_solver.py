@@ -290,6 +290,7 @@ def test_an_error_in_a_call_leaves_no_half_made_state() -> None:
     assert solver.solve(qp).found
 
 
+@pytest.mark.long
 def test_threads_may_share_a_solver() -> None:
     # In a process of its own: a state of the wrong size would end it.
     script = """
@@ -308,7 +309,7 @@ programs = [QP(np.eye(n), rng.standard_normal(n), lb=-np.ones(n), ub=np.ones(n))
 solver, wrong = DNNSolver(Slow()), []
 
 def work(qp, seed):
-    for k in range(200):
+    for k in range(60):
         solution = solver.solve(qp) if (k + seed) % 3 else solver.advance(qp, 1e-4)
         if (k + seed) % 3 and np.abs(solution.x - np.clip(-qp.q, -1.0, 1.0)).max() > 1e-6:
             wrong.append(solution.status)
@@ -361,6 +362,7 @@ def test_a_sharpened_answer_is_never_worse() -> None:
     assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
 
 
+@pytest.mark.long
 def test_sharpening_takes_no_state_of_another_program() -> None:
     big, small = QP(np.eye(300), np.ones(300)), QP(np.eye(2), np.ones(2))
     solver = DNNSolver()
@@ -383,12 +385,13 @@ qps = [
 ]
 solve = lambda k: iiwa_dnn.solve_problem(qps[k % 4], solver=solver, sharpen=True).found
 with ThreadPoolExecutor(4) as pool:
-    print(all(pool.map(solve, range(1500))))
+    print(all(pool.map(solve, range(600))))
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert (done.returncode, done.stdout.strip()) == (0, "True"), done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n", [2, 150, 400])
 def test_programs_without_a_choice_are_judged(n: int) -> None:
     one = np.ones(n)

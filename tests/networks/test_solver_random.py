@@ -30,6 +30,7 @@ def kkt_violation(qp: QP, x: np.ndarray, y: np.ndarray, z: np.ndarray, box: np.n
     return float(np.concatenate(parts).max())
 
 
+@pytest.mark.long
 def test_ten_thousand_random_programs() -> None:
     solver = DNNSolver()
     for seed in range(10_000):

@@ -58,6 +58,7 @@ def test_workers_change_nothing_and_keep_the_order() -> None:
     np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
 
 
+@pytest.mark.long
 def test_blocks_of_a_worker_that_dies_are_judged_all_the_same() -> None:
     blocks = jobs(6)
     alone = judged(CheckPool(CHECK, 120, workers=0), blocks)
@@ -70,6 +71,7 @@ def test_blocks_of_a_worker_that_dies_are_judged_all_the_same() -> None:
     assert_same(pool.finish(), alone)
 
 
+@pytest.mark.long
 def test_a_worker_that_dies_in_the_middle_of_a_block() -> None:
     class Dying(CrossCheck):
         """Kills the process that it runs in, unless that is the test's own."""

@@ -246,7 +246,7 @@ def test_kinova_has_three_joints_without_limits() -> None:
 
 
 @pytest.mark.parametrize("as_se3", [True, False])
-def test_a_tool_takes_the_tips_place(robot: Robot, as_se3: bool) -> None:
+def test_a_tool_takes_the_tips_place(robot: Robot, as_se3: bool, tmp_path: Path) -> None:
     numbers = [0.1, -0.02, 0.3, 0.4, -0.5, 0.6]
     place = pin.SE3(pin.rpy.rpyToMatrix(np.array(numbers[3:])), np.array(numbers[:3]))
     held = load_robot("iiwa7", tool=place if as_se3 else numbers)
@@ -267,6 +267,10 @@ def test_a_tool_takes_the_tips_place(robot: Robot, as_se3: bool) -> None:
     )
     with pytest.raises(InvalidInputError, match="a frame 'tool' already"):
         longer.with_tool(place)
+    text = (robot.path or Path()).read_text(encoding="utf-8")
+    (tmp_path / "arm.urdf").write_text(text.replace("iiwa7_flange", "tool"), encoding="utf-8")
+    with pytest.raises(InvalidInputError, match=r"^tool: the robot has a frame 'tool' already"):
+        load_robot(tmp_path / "arm.urdf", tool=place)
 
 
 @pytest.mark.parametrize("bad", [[0, 0, 0.1], [np.nan] * 6, "pen", np.eye(3)])

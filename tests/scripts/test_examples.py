@@ -3,21 +3,52 @@
 from __future__ import annotations
 
 import re
+import runpy
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
 
 import pytest
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
+Example = Callable[..., str]
 
 
-def example(folder: Path, name: str, *arguments: str) -> str:
-    """What an example prints, run in `folder`."""
+def call(name: str, *words: str) -> int | str | None:
+    """Run a script in this process, which has imported all; returns its exit code."""
+    arguments = [name, *words]
+    with mock.patch.object(sys, "argv", arguments), pytest.raises(SystemExit) as end:
+        runpy.run_path(str(SCRIPTS / name), run_name="__main__")
+    return end.value.code
+
+
+@pytest.fixture
+def example(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Example:
+    """Run an example in a folder of its own; returns what it prints."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(name: str, *words: str) -> str:
+        code = call(name, *words)
+        said = capsys.readouterr()
+        assert not code, said.out + said.err
+        return said.out
+
+    return run
+
+
+def process(folder: Path, name: str, *words: str) -> str:
+    """Run an example as a person does; returns what it prints."""
     done = subprocess.run(
-        [sys.executable, SCRIPTS / name, *arguments],
-        cwd=folder, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [sys.executable, SCRIPTS / name, *words],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -30,58 +61,59 @@ def number(pattern: str, text: str) -> float:
 
 
 @pytest.mark.parametrize("name", ["control_loop.py", "own_parts.py", "sweep_weight.py"])
-def test_what_an_example_takes_is_told(name: str, tmp_path: Path) -> None:
-    assert "positional arguments" in example(tmp_path, name, "--help")
+def test_what_an_example_takes_is_told(name: str, example: Example, tmp_path: Path) -> None:
+    assert "positional arguments" in example(name, "--help")
     assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
-    ("call", "said"),
+    ("arguments", "said"),
     [
         ("control_loop.py 0", "steps: must be a whole number of at least 1"),
         ("own_parts.py x", "float: 'x'"),
         ("faulty_joints.py 1 2", "'2'"),
     ],
 )
-def test_what_an_example_does_not_take_is_told_in_one_line(call: str, said: str) -> None:
-    name, *words = call.split()
-    done = subprocess.run(
-        [sys.executable, SCRIPTS / name, *words], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert done.stderr.startswith(f"{name.removesuffix('.py')}: error: ")
-    assert said in done.stderr
+def test_what_an_example_does_not_take_is_told_in_one_line(
+    arguments: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name, *words = arguments.split()
+    assert call(name, *words) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert error.startswith(f"{name.removesuffix('.py')}: error: ")
+    assert said in error
 
 
 def test_a_control_loop(tmp_path: Path) -> None:
-    text = example(tmp_path, "control_loop.py", "200")
+    text = process(tmp_path, "control_loop.py", "200")
     assert 0.0 < number(r"median ([\d.]+) us", text) <= number(r"p99 ([\d.]+) us", text)
     assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-5
 
 
-def test_a_limit_of_ones_own(tmp_path: Path) -> None:
-    text = example(tmp_path, "own_parts.py", "10", "5e-3")
+def test_a_limit_of_ones_own(example: Example) -> None:
+    text = example("own_parts.py", "10", "5e-3")
     assert 0.1999 <= number(r"smallest distance ([\d.]+) m", text) < 0.2001
     assert 100 < number(r"active in (\d+) of 2000", text) < 1000
     assert "failures []" in text
 
 
-def test_a_network_of_ones_own(tmp_path: Path) -> None:
-    text = example(tmp_path, "own_network.py", "100")
+def test_a_network_of_ones_own(example: Example) -> None:
+    text = example("own_network.py", "100")
     assert text.count("failures []") == 2
     errors = re.findall(r"largest error (\S+) m", text)
     assert float(errors[0]) == pytest.approx(float(errors[1]), rel=1e-3)
     assert number(r"velocities (\S+) rad/s", text) < 1e-7
 
 
-def test_a_second_paper(tmp_path: Path) -> None:
-    text = example(tmp_path, "posture_obstacle.py", "out", "1e-3", "0.1")
+def test_a_second_paper(example: Example, tmp_path: Path) -> None:
+    text = example("posture_obstacle.py", "out", "1e-3", "0.1")
     assert text.count("| authors |") == text.count("| ours |") == 4
     assert (tmp_path / "out" / "posture_obstacle.png").stat().st_size > 10_000
 
 
-def test_a_published_network(tmp_path: Path) -> None:
-    text = example(tmp_path, "faulty_joints.py", "0.05")
+def test_a_published_network(example: Example) -> None:
+    text = example("faulty_joints.py", "0.05")
     shares = re.search(r"bounds: (.*)", text)
     assert shares is not None
     assert 0.3 < max(map(float, shares[1].split())) < 0.62
@@ -89,7 +121,7 @@ def test_a_published_network(tmp_path: Path) -> None:
 
 
 def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
-    text = example(tmp_path, "sweep_weight.py")
+    text = process(tmp_path, "sweep_weight.py")
     drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]
     index = [float(value) for value in re.findall(r"kinetic index (\S+) rad", text)]
     assert len(drift) == len(index) == 7
@@ -100,36 +132,36 @@ def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
     assert figure.stat().st_size > 10_000
 
 
-def test_two_arms(tmp_path: Path) -> None:
-    text = example(tmp_path, "two_arms.py", "0.5")
+def test_two_arms(example: Example) -> None:
+    text = example("two_arms.py", "0.5")
     assert number(r"left (\S+) m", text) < 1e-6
     assert number(r"right (\S+) m", text) < 1e-6
     assert number(r"changes by (\S+) m", text) < 1e-6
     assert number(r"and (\S+) rad", text) < 1e-6
 
 
-def test_a_shaft_through_a_point(tmp_path: Path) -> None:
-    text = example(tmp_path, "remote_centre.py", "5")
+def test_a_shaft_through_a_point(example: Example) -> None:
+    text = example("remote_centre.py", "5")
     assert number(r"at most (\S+) m from the point", text) < 1e-7
     assert number(r"tilted by (\S+) deg", text) > 10.0
 
 
-def test_priorities(tmp_path: Path) -> None:
-    text = example(tmp_path, "priorities.py", "4", "4e-3")
+def test_priorities(example: Example) -> None:
+    text = example("priorities.py", "4", "4e-3")
     left = [float(value) for value in re.findall(r"residual at most (\S+)", text)]
     assert max(left[:2]) < 1e-8
     assert left[2] > 0.1
 
 
-def test_an_orientation_of_ones_own(tmp_path: Path) -> None:
-    text = example(tmp_path, "own_orientation.py", "1")
+def test_an_orientation_of_ones_own(example: Example) -> None:
+    text = example("own_orientation.py", "1")
     assert number(r"error (\S+) m,", text) < 3e-8
     assert number(r"m, (\S+) rad,", text) < 2e-7
     assert "failures []" in text
 
 
-def test_the_heart_around_an_obstacle(tmp_path: Path) -> None:
-    text = example(tmp_path, "avoid_obstacle.py", "figures", "5e-3")
+def test_the_heart_around_an_obstacle(example: Example, tmp_path: Path) -> None:
+    text = example("avoid_obstacle.py", "figures", "5e-3")
     errors = re.findall(r"error (\S+) m", text)
     nearest = [float(value) for value in re.findall(r"least distance (\S+) m", text)]
     assert float(errors[1]) < 1.1 * float(errors[0])
@@ -139,8 +171,8 @@ def test_the_heart_around_an_obstacle(tmp_path: Path) -> None:
     assert (tmp_path / "figures" / "obstacle.png").exists()
 
 
-def test_arms_of_other_libraries_examples(tmp_path: Path) -> None:
-    text = example(tmp_path, "arm_scenes.py", "4", "1e-2")
+def test_arms_of_other_libraries_examples(example: Example) -> None:
+    text = example("arm_scenes.py", "4", "1e-2")
     assert text.count("gap to ProxQP") == 8
     assert number(r"arm_ur5 +error (\S+) m", text) < 5e-5
     assert number(r"dual_iiwa +error (\S+) m", text) < 5e-6

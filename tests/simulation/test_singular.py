@@ -47,7 +47,7 @@ def test_the_block_sees_a_tilt_at_second_order_only() -> None:
     assert left["block", "continuous"] > 1.5 * left["block", "converged"]
 
 
-@pytest.mark.parametrize("dt", [1e-3, 1e-2])
+@pytest.mark.parametrize("dt", [2e-3, 1e-2])
 def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> None:
     record = stretched_run("relax", dt)
     robot = paper_robot()
@@ -64,7 +64,7 @@ def test_an_arm_pulled_beyond_its_reach_stretches_and_comes_back(dt: float) -> N
     assert np.abs(np.diff(record.dq, axis=0)).sum() / record.t[-1] < 50.0
 
 
-@pytest.mark.parametrize("dt", [1e-3, 1e-2])
+@pytest.mark.parametrize("dt", [2e-3, 1e-2])
 def test_the_slow_policy_keeps_to_the_path_up_to_the_singular_pose(dt: float) -> None:
     record = stretched_run("slow", dt)
     assert record.fraction is not None
@@ -91,7 +91,7 @@ def test_the_slow_policy_comes_back_from_the_singular_pose() -> None:
     assert error[-1] < 1e-3
 
 
-@pytest.mark.parametrize("limits", [(), (AccelerationLimits(),), (AccelerationLimits(), JERK)])
+@pytest.mark.parametrize("limits", [(), (AccelerationLimits(), JERK)])
 def test_an_arm_held_stretched_for_long_follows_its_target_back_at_once(
     limits: tuple[Limit, ...],
 ) -> None:
