@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators import barrier
 from iiwa_dnn.networks.integrators.base import ANSWER, enter_answer
+from iiwa_dnn.networks.integrators.equilibration import settle_equilibrated
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, field_shapes, qp_views, released
@@ -21,8 +21,8 @@ from iiwa_dnn.qp.program import FIELDS, QP, absent_fields, real_array, require_p
 CHUNK = 128
 """Programs that one thread solves before it takes the next ones."""
 
-BARRIER = 50
-"""Budget of linear systems, on top, of a program that starts again through the barrier."""
+AGAIN = 100
+"""Budget of linear systems, on top, of a program that starts again in other coordinates."""
 
 
 class BatchSolution(NamedTuple):
@@ -97,7 +97,7 @@ def solve_batch(
     The programs are shared out over all cores (`NUMBA_NUM_THREADS` limits them). Each answer
     depends on its own program alone, and a program with a wrong value spoils no other: it is not
     found, and `faults` names its argument. At most 1000 linear systems are solved for each; what is
-    not settled starts once more through the barrier (about 10 ms a program). No certificate is
+    not settled starts once more in other coordinates (about 1 ms a program). No certificate is
     looked for: `DNNSolver` does that for those that were not found.
 
     Args:
@@ -138,7 +138,7 @@ def solve_batch(
             figures[k] = (np.inf, np.inf, np.inf, 0.0)
             continue
         point = points[k].copy()
-        systems, _, *again = barrier.settle(qp, np.zeros(3 * n + m + p), point, tol, BARRIER)
+        systems, _, *again = settle_equilibrated(qp, np.zeros(3 * n + m + p), point, tol, AGAIN)
         iterations[k] += systems
         if max(again) < residuals[k].max():
             points[k] = point

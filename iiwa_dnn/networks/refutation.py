@@ -11,7 +11,7 @@ verifies the result.
 
 import numpy as np
 
-from iiwa_dnn.networks.integrators.implicit import advance_implicit, settle_program
+from iiwa_dnn.networks.integrators.implicit import advance_implicit
 from iiwa_dnn.qp.certificates import (
     RADIUS,
     infeasibility_radius,
@@ -27,16 +27,15 @@ ROUNDS = 3
 """Implicit steps whose growth is looked at before the search is given up."""
 
 _LONG = 1e6
-# Shares of the largest entry below which a row takes no part: how well a growth is known depends
-# on how fast it is beside what has grown before.
-_SHARES = (1e-8, 1e-6, 1e-4, 1e-2)
+_SLIGHT = 1e-4
+"""Fraction of the largest entry below which a row takes no part."""
 
 
 def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
     """Follow the network from where it was given up, and prove that there is no solution.
 
     Takes at most `ROUNDS` + 1 implicit steps, of at most 100 linear systems each, and after each
-    but the first ten small least-squares problems.
+    but the first at most four small least-squares problems.
 
     Args:
         qp: The program.
@@ -67,86 +66,43 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
             certificate = _verified(qp, growth)
             if certificate is not None:
                 return certificate
-            if count == ROUNDS:
-                return _verified(qp, _nearest(qp, growth))
     return None
 
 
 def _verified(qp: QP, growth: Vector) -> tuple[Status, Vector] | None:
     """Polish a growth of ``[x | y | z | z_box]``; returns a certificate that can be verified."""
     n = qp.sizes[0]
-    multipliers = [growth[n:], *(_polished_multipliers(qp, growth[n:], s) for s in _SHARES)]
-    radius, best = max((infeasibility_radius(qp, c), i) for i, c in enumerate(multipliers))
-    if radius >= RADIUS:
-        return Status.PRIMAL_INFEASIBLE, multipliers[best]
-    directions = [growth[:n], *(_polished_direction(qp, growth[:n], s) for s in _SHARES)]
-    radius, best = max((unboundedness_radius(qp, c), i) for i, c in enumerate(directions))
-    return (Status.UNBOUNDED, directions[best]) if radius >= RADIUS else None
+    for multipliers in (growth[n:], _polished_multipliers(qp, growth[n:])):
+        if infeasibility_radius(qp, multipliers) >= RADIUS:
+            return Status.PRIMAL_INFEASIBLE, multipliers
+    for direction in (growth[:n], _polished_direction(qp, growth[:n])):
+        if unboundedness_radius(qp, direction) >= RADIUS:
+            return Status.UNBOUNDED, direction
+    return None
 
 
-def _nearest(qp: QP, growth: Vector) -> Vector:
-    """Find the nearest direction and multipliers that have a certificate's signs and zeros.
-
-    Both solve strictly convex programs, which the network settles. The growth may not be there yet:
-    a row takes no part in it as long as its slack is not used up, which can take very long.
-    """
-    n, m, p = qp.sizes
-    upper = qp.ub < np.inf
-    lower = qp.lb > -np.inf
-    limited = np.isfinite(qp.h)
-    zeros = _unit_rows(np.vstack([qp.P, qp.A]))
-    falling = _unit_rows(qp.G[limited])
-    direction = QP(
-        np.eye(n),
-        -growth[:n],
-        G=falling,
-        h=np.zeros(len(falling)),
-        A=zeros,
-        b=np.zeros(len(zeros)),
-        lb=np.where(lower, 0.0, -np.inf),
-        ub=np.where(upper, 0.0, np.inf),
-    )
-    zeros = _unit_rows(np.hstack([qp.A.T, qp.G.T, np.eye(n)]))
-    free = np.ones(p, bool)
-    least = np.where(np.concatenate([free, np.zeros(m, bool), lower]), -np.inf, 0.0)
-    most = np.where(np.concatenate([free, limited, upper]), np.inf, 0.0)
-    multipliers = QP(
-        np.eye(p + m + n), -growth[n:], A=zeros, b=np.zeros(len(zeros)), lb=least, ub=most
-    )
-    return np.concatenate([_settled(direction), _settled(multipliers)])
-
-
-def _settled(qp: QP) -> Vector:
-    """Solve a program that has a solution, with the default integrator's settings."""
-    n, m, p = qp.sizes
-    state = np.zeros(3 * n + m + p)
-    point = np.empty(2 * n + m + p)
-    settle_program(qp, state, point, 1e-10, 1000, 1e7)
-    return point[:n]
-
-
-def _polished_multipliers(qp: QP, vector: Vector, share: float) -> Vector:
+def _polished_multipliers(qp: QP, vector: Vector) -> Vector:
     """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
     _, m, p = qp.sizes
     rows = np.vstack([qp.A, qp.G])
     weights = vector[: p + m].copy()
     bounds = vector[p + m :]
-    takes_part = np.abs(weights) > share
+    takes_part = np.abs(weights) > _SLIGHT
     takes_part[p:] &= (weights[p:] > 0.0) & np.isfinite(qp.h)
     weights[~takes_part] = 0.0
     # A bound that takes part carries whatever the rows leave over; the others carry nothing.
-    carries = (np.abs(bounds) > share) & towards_bound(qp, bounds)
+    carries = (np.abs(bounds) > _SLIGHT) & towards_bound(qp, bounds)
     weights[takes_part] = _on_null_space(rows[takes_part][:, ~carries].T, weights[takes_part])
     weights[p:] = np.maximum(weights[p:], 0.0)
     box = np.where(carries, -(rows.T @ weights), 0.0)
     return np.concatenate([weights, np.where(towards_bound(qp, box), box, 0.0)])
 
 
-def _polished_direction(qp: QP, direction: Vector, share: float) -> Vector:
+def _polished_direction(qp: QP, direction: Vector) -> Vector:
     """Find the nearest direction, along the same rows, whose residuals are zero to rounding."""
-    moves = (np.abs(direction) > share) & ~towards_bound(qp, direction)
+    moves = (np.abs(direction) > _SLIGHT) & ~towards_bound(qp, direction)
     polished = np.where(moves, direction, 0.0)
-    falls = qp.G @ polished < -share * np.abs(qp.G).sum(axis=1)
+    falls = qp.G @ polished < -_SLIGHT * np.abs(qp.G).sum(axis=1)
     rows = np.vstack([qp.P, qp.A, qp.G[~falls & np.isfinite(qp.h)]])[:, moves]
     polished[moves] = _on_null_space(rows, polished[moves])
     return polished

@@ -12,18 +12,18 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import RATES, Network
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator, barrier
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
 from iiwa_dnn.networks.integrators.base import (
     ANSWER,
-    BUDGET,
     CompiledAnswer,
     Settled,
     answer_program,
 )
-from iiwa_dnn.networks.integrators.explicit import follow, follow_program
+from iiwa_dnn.networks.integrators.equilibration import settle_equilibrated
+from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import (
+    AT_ONCE,
     settle,
-    settle_program,
     sharpen_implicit,
 )
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
@@ -33,8 +33,8 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
-LARGE = 150
-"""Variables from which on a cold start goes through the barrier first."""
+LARGE = 100
+"""Variables from which on starting again is quicker than to look for a proof first."""
 SHARPENING = 5
 """Linear systems of `DNNSolver.sharpen`."""
 
@@ -194,11 +194,9 @@ class DNNSolver:
         point = np.empty(2 * n + m + p)
         if self._first_try is None:
             settled = self.settler.settle(network, qp, state, point, tol)
-        elif n >= LARGE and not state.any():
-            settled = barrier.settle(qp, state, point, tol, int(self._first_try[BUDGET]))
         else:
             settled = answer_program(
-                qp.data, n, m, p, _settle_address(), self._first_try, state, point
+                qp.data, n, m, p, _settle_address(), 0, self._first_try, state, point
             )
         systems, time, primal, dual, gap = settled
         if primal <= tol and dual <= tol and gap <= tol:
@@ -260,9 +258,8 @@ class DNNSolver:
         state = self._take(self.network, qp)
         answer = self._following(sizes, duration)
         if answer is not None:
-            _, rates, constants = answer
             point = np.empty(2 * n + m + p)
-            settled = follow_program(qp.data, n, m, p, rates, constants, state, point)
+            settled = answer_program(qp.data, n, m, p, *answer, state, point)
             if settled[0] > 0:
                 return self._judged(sizes, state, point, settled)
         time = duration / self.network.rho
@@ -292,45 +289,44 @@ class DNNSolver:
         return Solution(point, sizes, status, *settled)
 
     def _first_constants(self) -> Vector | None:
-        """Return the constants of a first try by compiled code, with half of the budget.
+        """Return the constants of a first try by compiled code.
 
         None if the network or the integrator has no compiled code that settles it.
         """
         if type(self.settler) is not ImplicitEuler or not is_projection(self.network):
             return None
-        half = (self.settler.max_steps + 1) // 2
-        return np.array([self.tol, half, self.settler.long_step])
+        budget = min(AT_ONCE, (self.settler.max_steps + 1) // 2)
+        return np.array([self.tol, budget, self.settler.long_step])
 
     def _try_again(
         self, qp: QP, state: Vector, point: Vector, settled: Settled
     ) -> tuple[Settled, Status, Vector | None]:
-        """Prove that there is no solution or settle from a cold start, after a first try failed.
+        """Prove that there is no solution or start again, cold, after a first try failed.
 
         Returns:
             The progress, the better one of both tries; the status, and the certificate if any.
         """
         if not math.isfinite(sum(settled[2:])):
             return settled, Status.NOT_FINITE, None
-        proof = find_certificate(qp, point)
+        large = qp.sizes[0] >= LARGE
+        proof = None if large else find_certificate(qp, point)
         if proof is not None:
             return settled, *proof
         settler = self.settler
         if isinstance(settler, ImplicitEuler) and self._first_try is not None:
             left = settler.max_steps - settled[0]
             other = point.copy()
-            if qp.sizes[0] < LARGE:
-                again = barrier.settle(qp, state, other, self.tol, left)
-            else:
-                state[:] = 0.0
-                again = settle_program(qp, state, other, self.tol, left, settler.long_step)
+            again = settle_equilibrated(qp, state, other, self.tol, left)
             systems = settled[0] + again[0]
             if max(again[2:]) < max(settled[2:]):
                 point[:] = other
                 settled = (systems, settled[1] + again[1], *again[2:])
             else:
                 settled = (systems, *settled[1:])
-        status = Status.SOLVED if within(*settled[2:], self.tol) else Status.NOT_SETTLED
-        return settled, status, None
+        if within(*settled[2:], self.tol):
+            return settled, Status.SOLVED, None
+        proof = find_certificate(qp, point) if large else None
+        return settled, *(proof or (Status.NOT_SETTLED, None))
 
     def _warm(self) -> tuple[Network, Sizes, Vector] | None:
         """Return the last network, sizes and state; None while another call has them."""

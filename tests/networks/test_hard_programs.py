@@ -11,7 +11,7 @@ import qpsolvers
 import iiwa_dnn
 from benchmarks import programs
 from iiwa_dnn import QP, DNNSolver
-from iiwa_dnn.networks.integrators import barrier
+from iiwa_dnn.networks.integrators.equilibration import settle_equilibrated
 
 
 def test_degenerate_vertices_settle() -> None:
@@ -38,12 +38,12 @@ def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float)
     assert solution.z[0] == pytest.approx(-P * h / G / G, rel=1e-9)
 
 
-def test_the_barrier_finds_what_is_known_by_construction() -> None:
+def test_the_second_start_finds_what_is_known_by_construction() -> None:
     for seed in range(30):
         qp, known = programs.strictly_convex(np.random.default_rng([43, seed]), None, 1e2)
         n, m, p = qp.sizes
         state, point = np.zeros(3 * n + m + p), np.empty(2 * n + m + p)
-        residuals = barrier.settle(qp, state, point, 1e-9, 1000)[2:]
+        residuals = settle_equilibrated(qp, state, point, 1e-9, 1000)[2:]
         assert max(residuals) <= 1e-9, seed
         assert qp.residuals(*np.split(point, [n, n + p, n + p + m])).largest <= 1e-9
         # No eigenvalue of P is below 0.1, and half of it times |dx|^2 is at most the gap.

@@ -6,7 +6,6 @@ import scipy.sparse as spa
 
 import iiwa_dnn
 from iiwa_dnn import QP
-from iiwa_dnn.networks.integrators import barrier
 
 
 def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
@@ -34,26 +33,6 @@ def blend(seed: int, n: int = 200, size: float = 1.0) -> tuple[QP, np.ndarray]:
     return QP(P, q, G, h, A, A @ x, lb, ub), x
 
 
-def test_a_step_of_the_barrier_solves_the_whole_system() -> None:
-    rng = np.random.default_rng(5)
-    qp, _ = blend(0, 60)
-    program = barrier.equilibrate(qp)
-    P, _, A, _, omega, *_ = program
-    delta, w = 1e-4, 10.0 ** rng.uniform(-3.0, 3.0, len(omega))
-    right = [rng.standard_normal(len(v)) for v in (P, A, omega)]
-    found = np.concatenate(barrier.System(program, w, delta).solve(*right))
-    zeros = np.zeros((len(A), len(omega)))
-    K = np.block(
-        [
-            [P, A.T, omega.T],
-            [A, -delta * np.eye(len(A)), zeros],
-            [omega, zeros.T, -np.diag(1.0 / w)],
-        ]
-    )
-    known = np.linalg.solve(K, np.concatenate(right))
-    np.testing.assert_allclose(found, known, rtol=1e-6, atol=1e-8 * np.abs(known).max())
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 def test_sparse_programs_of_known_solution_settle(seed: int) -> None:
@@ -66,7 +45,7 @@ def test_sparse_programs_of_known_solution_settle(seed: int) -> None:
     np.testing.assert_allclose(solution.x, x, atol=np.sqrt(2e-9 / 0.1))
 
 
-def test_a_warm_start_from_the_barriers_state_is_at_rest() -> None:
+def test_a_warm_start_is_at_rest() -> None:
     qp, _ = blend(1)
     solver = iiwa_dnn.DNNSolver()
     assert solver.solve(qp).found

@@ -63,20 +63,21 @@ def answer_program(
     m: int,
     p: int,
     address: int,
+    rates: int,
     constants: Vector,
     state: Vector,
     point: Vector,
 ) -> Settled:
-    """Enter a compiled answer that does not use the network's own function.
+    """Enter the compiled answer at an address.
 
-    The program is `QP.data`; constants (k,), state (size,) and point (2n + m + p,) are those of
-    `ANSWER`.
+    The program is `QP.data`; rates, constants (k,), state (size,) and point (2n + m + p,) are those
+    of `ANSWER`. The address `rates` is 0 for an answer that does not use the network's function.
     """
     qp = qp_views(data, n, m, p)
     constants = borrowed(constants)
     state = borrowed(state)
     point = borrowed(point)
-    settled: Settled = enter_answer(address, qp, 0, constants, state, point)
+    settled: Settled = enter_answer(address, qp, rates, constants, state, point)
     return settled
 
 

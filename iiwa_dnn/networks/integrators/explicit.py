@@ -12,7 +12,7 @@ from iiwa_dnn.networks.base import RATES, Network, enter_rates
 from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
 from iiwa_dnn.networks.projection import mark_active, stable_step
 from iiwa_dnn.qp.compiling import borrowed
-from iiwa_dnn.qp.layout import QPViews, Vector, check_size, compiled, larger, qp_views, released
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size, compiled, larger, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
@@ -101,25 +101,6 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
             return done
         state += step * rates
     return count
-
-
-@released
-def follow_program(
-    data: Vector,
-    n: int,
-    m: int,
-    p: int,
-    rates: int,
-    constants: Vector,
-    state: Vector,
-    point: Vector,
-) -> Settled:
-    """Advance a network as `follow` does, for a program's flat array, `QP.data`.
-
-    Constants (k,), state (size,) and point (2n + m + p,) are those of `ANSWER`.
-    """
-    qp = qp_views(data, n, m, p)
-    return follow(qp, rates, borrowed(constants), borrowed(state), borrowed(point))
 
 
 @compiled

@@ -69,6 +69,8 @@ FIRST_STEP = 30.0
 """Length of the first backward Euler step [rho]."""
 GROWTH = 10.0
 """Growth of that length from round to round."""
+AT_ONCE = 500
+"""Linear systems after which compiled code returns, so that Ctrl-C ends a long settle."""
 MAX_NEWTON = 50
 """Newton iterations of one backward Euler step of `settle`, half as many as one of `advance`."""
 
@@ -278,12 +280,21 @@ def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vect
 def settle_program(
     qp: QP, state: Vector, point: Vector, tol: float, max_systems: int, long_step: float
 ) -> Settled:
-    """Settle the projection network from `state` (size,); see `settle`."""
+    """Settle the projection network from `state` (size,), interruptibly; see `settle`."""
     n, m, p = qp.sizes
     check_size("state", state, 3 * n + m + p)
     check_size("point", point, 2 * n + m + p)
-    constants = np.array([tol, max_systems, long_step])
-    return answer_program(qp.data, n, m, p, ANSWER.address(settle), constants, state, point)
+    address = ANSWER.address(settle)
+    systems = 0
+    time = 0.0
+    while True:
+        budget = min(AT_ONCE, max_systems - systems)
+        constants = np.array([tol, budget, long_step])
+        settled = answer_program(qp.data, n, m, p, address, 0, constants, state, point)
+        systems += settled[0]
+        time += settled[1]
+        if settled[0] < AT_ONCE or systems >= max_systems or within(*settled[2:], tol):
+            return systems, time, *settled[2:]
 
 
 @released
