@@ -195,9 +195,8 @@ class DNNSolver:
         if self._first_try is None:
             settled = self.settler.settle(network, qp, state, point, tol)
         else:
-            settled = answer_program(
-                qp.data, n, m, p, _settle_address(), 0, self._first_try, state, point
-            )
+            address = _settle_address()
+            settled = answer_program(qp.data, sizes, address, 0, self._first_try, state, point)
         systems, time, primal, dual, gap = settled
         if primal <= tol and dual <= tol and gap <= tol:
             self._kept.append((network, sizes, state))
@@ -259,7 +258,7 @@ class DNNSolver:
         answer = self._following(sizes, duration)
         if answer is not None:
             point = np.empty(2 * n + m + p)
-            settled = answer_program(qp.data, n, m, p, *answer, state, point)
+            settled = answer_program(qp.data, sizes, *answer, state, point)
             if settled[0] > 0:
                 return self._judged(sizes, state, point, settled)
         time = duration / self.network.rho

@@ -33,6 +33,8 @@ class Recorder:
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
         layout: Columns of the commands' rows.
+        last_step: Step at which the run ended early; None: it has not.
+        diverged: Whether it ended since the plant diverged.
     """
 
     def __init__(
@@ -55,6 +57,8 @@ class Recorder:
         self._frame_ids = [program.robot.frame_id(name) for name in further]
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
+        self.last_step: int | None = None
+        self.diverged = False
         self._done = 0
         self._series = 0
         self.arrays: dict[str, NDArray[Any]] = {}
@@ -65,6 +69,9 @@ class Recorder:
     def observe(self, k: int, outcome: Outcome) -> None:
         """Take in the outcome of step k."""
         self._outcomes.append(outcome)
+        if outcome.ends:
+            self.last_step = k
+            self.diverged = outcome.resolution is None
         if outcome.action is not Action.NONE or self._series:
             self._count_fallbacks(k, outcome.action)
 

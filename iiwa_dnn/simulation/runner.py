@@ -26,7 +26,7 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.judgement import Judgement
-from iiwa_dnn.simulation.loop import Loop, Outcome
+from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import Disturbance, VelocityDisturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
@@ -201,11 +201,10 @@ class Simulation:
         recorder = Recorder(self.steps, controller, self._q0, self._settings)
         stages = MOTIONS[self._motion].stages
         layout = recorder.layout
-        last = _Last()
         done = 0
         with Judgement(self._check, self.steps, stages, layout, controller.levels) as judgement:
-            observers = (recorder.observe, judgement.observe, last.observe)
-            while done < self.steps and not last.ends:
+            observers = (recorder.observe, judgement.observe)
+            while done < self.steps and recorder.last_step is None:
                 taken = loop.run(min(BLOCK, self.steps - done), observers, done)
                 judgement.submit(recorder.flush())
                 done += taken
@@ -221,7 +220,7 @@ class Simulation:
             solution_gap=agreement.solution_gap,
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
-            settings={**self._settings, "status": self._status(done - 1, last, recorder)},
+            settings={**self._settings, "status": self._status(recorder)},
             **collision_arrays(controller.scheme, controller.robot, columns["q"], t),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )
@@ -237,27 +236,15 @@ class Simulation:
         integral = IntegralFeedback(gain) if gain else None
         return Loop(controller, self._plant, self._motion, chain, integral)
 
-    def _status(self, k: int, last: _Last, recorder: Recorder) -> str:
-        """Describe the end of a run whose last step is number k."""
-        if not last.ends:
+    def _status(self, recorder: Recorder) -> str:
+        """Describe the end of a run."""
+        k = recorder.last_step
+        if k is None:
             return COMPLETED
         where = f"stopped at step {k} (t = {k * self._controller.dt:g} s)"
-        if last.diverged:
+        if recorder.diverged:
             return f"{where}: the physics diverged"
         return f"{where}: no solution{recorder.stop_reason(k)}"
-
-
-class _Last:
-    """The last outcome of a loop."""
-
-    def __init__(self) -> None:
-        self.ends = False
-        self.diverged = False
-
-    def observe(self, k: int, outcome: Outcome) -> None:
-        if outcome.ends:
-            self.ends = True
-            self.diverged = outcome.resolution is None
 
 
 def simulate(

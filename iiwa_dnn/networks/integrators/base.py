@@ -6,7 +6,7 @@ from numba import types
 
 from iiwa_dnn.networks.base import Network, settings_of
 from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
-from iiwa_dnn.qp.layout import QP_VIEWS, Vector, qp_views, released
+from iiwa_dnn.qp.layout import QP_VIEWS, Sizes, Vector, qp_views, released
 from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
@@ -59,9 +59,7 @@ class CompiledAnswer(NamedTuple):
 @released
 def answer_program(
     data: Vector,
-    n: int,
-    m: int,
-    p: int,
+    sizes: Sizes,
     address: int,
     rates: int,
     constants: Vector,
@@ -70,9 +68,11 @@ def answer_program(
 ) -> Settled:
     """Enter the compiled answer at an address.
 
-    The program is `QP.data`; rates, constants (k,), state (size,) and point (2n + m + p,) are those
-    of `ANSWER`. The address `rates` is 0 for an answer that does not use the network's function.
+    The program is `QP.data` with its sizes (n, m, p); constants (k,), state (size,) and point
+    (2n + m + p,) are those of `ANSWER`, and so is the address `rates`, which is 0 for an answer
+    that does not use the network's function.
     """
+    n, m, p = sizes
     qp = qp_views(data, n, m, p)
     constants = borrowed(constants)
     state = borrowed(state)

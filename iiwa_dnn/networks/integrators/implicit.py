@@ -290,7 +290,7 @@ def settle_program(
     while True:
         budget = min(AT_ONCE, max_systems - systems)
         constants = np.array([tol, budget, long_step])
-        settled = answer_program(qp.data, n, m, p, address, 0, constants, state, point)
+        settled = answer_program(qp.data, qp.sizes, address, 0, constants, state, point)
         systems += settled[0]
         time += settled[1]
         if settled[0] < AT_ONCE or systems >= max_systems or within(*settled[2:], tol):
