@@ -85,14 +85,14 @@ def test_piped_output_has_no_colour_and_errors_are_one_line() -> None:
     assert done.stderr == "iiwa-dnn track: error: no robot 'iiwa8'; did you mean: iiwa7\n"
 
 
-def test_completion_knows_commands_and_options() -> None:
-    done = program("completion", "bash")
-    assert done.returncode == 0
+def test_completion_knows_commands_and_options(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", "bash"]) == 0
+    script = capsys.readouterr().out
     bash = shutil.which("bash")
     assert bash is not None
-    checked = subprocess.run([bash, "-n"], input=done.stdout, text=True, capture_output=True)
+    checked = subprocess.run([bash, "-n"], input=script, text=True, capture_output=True)
     assert (checked.returncode, checked.stderr) == (0, "")
-    assert all(name in done.stdout for name in (*COMMANDS, "--filter-window"))
+    assert all(name in script for name in (*COMMANDS, "--filter-window"))
 
 
 def test_after_the_warm_up_runs_compile_nothing(

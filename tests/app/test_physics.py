@@ -11,6 +11,7 @@ import pytest
 from helpers_physics import needs_opengl, run_python
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
+from iiwa_dnn.results import pictures
 from iiwa_dnn.robot import offscreen
 
 QUICK = ("--duration", "0.05", "--quiet", "--no-plots")
@@ -36,7 +37,10 @@ def run(capsys, *arguments: str) -> tuple[int, str, str]:
 
 @needs_mujoco
 @needs_opengl
-def test_everything_is_written(capsys, tmp_path):
+def test_everything_is_written(capsys, tmp_path, monkeypatch):
+    # What the pictures show is a matter of tests/results/test_pictures.py.
+    monkeypatch.setattr(pictures, "MOMENTS", 2)
+    monkeypatch.setattr(pictures, "FRAME_RATE", 10)
     arguments = ("--duration", "0.2", "--out", str(tmp_path), "--disturb", "--push", "0", "10", "0")
     code, out, err = run(capsys, *arguments, "--push-at", "0.1", "--push-for", "0.05")
     assert (code, err) == (0, "")

@@ -597,14 +597,6 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
     assert here.read_bytes() == there.read_bytes()
 
 
-def test_the_scripts_exit_code_is_the_functions(tmp_path: Path) -> None:
-    done = script(tmp_path, *QUICK, "--weight", "1.5")
-    assert done.returncode == 2
-    assert done.stdout == ""
-    assert done.stderr == "track_heart: error: weight: must be in [0, 1], not 1.5\n"
-    assert list(tmp_path.iterdir()) == []
-
-
 # Paths that turn
 
 
