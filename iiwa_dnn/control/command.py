@@ -19,6 +19,12 @@ FIGURES = 5
 """Numbers that judge an answer: iterations, network time, primal and dual residual, gap."""
 PLACEMENT = 12
 """Numbers of a frame's placement, as `Kinematics.placements` has them."""
+DECISION = 3
+"""Numbers of a decision: action, share of the period, status."""
+
+STATUSES = tuple(Status)
+"""Statuses by their number in a row."""
+SOLVED, ADVANCED, NOT_SETTLED, NOT_FINITE, *_ = range(len(STATUSES))
 
 
 class RowViews(NamedTuple):
@@ -31,6 +37,10 @@ class RowViews(NamedTuple):
         placement: Placement of the first tracked frame, (12,).
         q: Joint positions that the program was built at [rad], (dof,).
         dq: Command [rad/s], (dof,).
+        decision: Action, share of the period by which the reference's clock advances, and number of
+            the answer's status in `STATUSES`, (3,).
+        blocking: Where there is an action: for each variable 1 if its upper bound stood in the way,
+            -1 if its lower one did, else 0, and for each inequality row 1 or 0, (n + m,).
         targets: Targets of the tracked frames, (k, 18).
     """
 
@@ -40,6 +50,8 @@ class RowViews(NamedTuple):
     placement: Vector
     q: Vector
     dq: Vector
+    decision: Vector
+    blocking: Vector
     targets: Matrix
 
 
@@ -51,14 +63,18 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     at_placement = at_figures + FIGURES
     at_q = at_placement + PLACEMENT
     at_dq = at_q + dof
-    at_targets = at_dq + dof
+    at_decision = at_dq + dof
+    at_blocking = at_decision + DECISION
+    at_targets = at_blocking + n + m
     return RowViews(
         row[:at_point],
         row[at_point:at_figures],
         row[at_figures:at_placement],
         row[at_placement:at_q],
         row[at_q:at_dq],
-        row[at_dq:at_targets],
+        row[at_dq:at_decision],
+        row[at_decision:at_blocking],
+        row[at_blocking:at_targets],
         row[at_targets:].reshape((row.size - at_targets) // TARGET_SIZE, TARGET_SIZE),
     )
 
@@ -69,13 +85,12 @@ class RowLayout:
     Attributes:
         sizes: ``(n, m, p)`` of the programs.
         dof: Number of joints.
-        status: Status of an answer that is taken as it is.
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         dq: Columns of the command.
     """
 
-    def __init__(self, sizes: Sizes, dof: int, frames: int, status: Status) -> None:
+    def __init__(self, sizes: Sizes, dof: int, frames: int) -> None:
         """Lay out rows for programs of these sizes, and a number of tracked frames."""
         n, m, p = sizes
         lengths = {
@@ -85,11 +100,12 @@ class RowLayout:
             "placement": PLACEMENT,
             "q": dof,
             "dq": dof,
+            "decision": DECISION,
+            "blocking": n + m,
             "targets": TARGET_SIZE * frames,
         }
         self.sizes = sizes
         self.dof = dof
-        self.status = status
         self.columns: dict[str, slice] = {}
         self.width = 0
         for name, length in lengths.items():
@@ -105,18 +121,8 @@ class RowLayout:
         """Return the targets of a row, (k, 18)."""
         return row[self.columns["targets"]].reshape(-1, TARGET_SIZE)
 
-    def fill(
-        self, row: Vector, qp: QP, solution: Solution, placement: Vector, q: Vector, dq: Vector
-    ) -> None:
-        """Write a step into a row.
-
-        Args:
-            row: The row, (width,), overwritten but for the targets.
-            qp: The program.
-            solution: The answer.
-            placement: Placement of the first tracked frame, (12,).
-            q: Joint positions [rad], (dof,).
-            dq: Command [rad/s], (dof,).
+    def fill(self, row: Vector, qp: QP, solution: Solution) -> None:
+        """Write a program and its answer into a row (width,), without an action.
 
         Raises:
             InvalidInputError: The program has another shape than the others.
@@ -125,9 +131,10 @@ class RowLayout:
             problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
             raise InvalidInputError("scheme", problem)
         figures = (solution.iterations, solution.network_time, *solution.residuals)
-        parts: Any = (qp.data, solution.point, figures, placement, q, dq)
-        for name, part in zip(self.columns, parts, strict=False):
-            row[self.columns[name]] = part
+        self.view(row, "program")[:] = qp.data
+        self.view(row, "point")[:] = solution.point
+        self.view(row, "figures")[:] = figures
+        self.view(row, "decision")[:] = (Action.NONE, 1.0, STATUSES.index(solution.status))
 
     def bound_multipliers(self, rows: Matrix) -> Matrix:
         """Return the multipliers of the joints' bounds, `Solution.z_box`, (..., dof)."""
@@ -145,31 +152,39 @@ class Command:
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        resolution: Decision of the policy where the network had no answer; else None.
+        action: The action taken; ``Action.NONE`` where the network's answer was taken.
     """
 
-    __slots__ = ("_layout", "_unsolved", "dq", "resolution", "row")
+    __slots__ = ("_layout", "action", "dq", "row")
 
-    def __init__(
-        self,
-        row: Vector,
-        layout: RowLayout,
-        resolution: Resolution | None = None,
-        unsolved: Solution | None = None,
-    ) -> None:
+    def __init__(self, row: Vector, layout: RowLayout, action: Action = Action.NONE) -> None:
         """Take a row, which is not copied.
 
         Args:
             row: The numbers of the command, (width,).
             layout: Columns of the row.
-            resolution: Decision of a policy.
-            unsolved: Answer of another status than the layout's.
+            action: What was done in place of the network's answer.
         """
         self.row = row
         self.dq = row[layout.dq]
-        self.resolution = resolution
+        self.action = action
         self._layout = layout
-        self._unsolved = unsolved
+
+    @property
+    def fraction(self) -> float:
+        """Share of the control period by which the reference's clock advances, in [0, 1]."""
+        return float(self._layout.view(self.row, "decision")[1])
+
+    @property
+    def resolution(self) -> Resolution | None:
+        """Decision of the policy where the network had no answer; else None."""
+        if self.action is Action.NONE:
+            return None
+        n = self._layout.sizes[0]
+        blocking = self._layout.view(self.row, "blocking").astype(np.int8)
+        return Resolution(
+            self.action, self.qp, self.solution, self.fraction, blocking[:n], blocking[n:]
+        )
 
     @property
     def qp(self) -> QP:
@@ -188,26 +203,24 @@ class Command:
 
     @property
     def solution(self) -> Solution:
-        """The answer: the network's unless there is a resolution."""
-        if self._unsolved is not None:
-            return self._unsolved
+        """The answer to `qp`: the network's, or the one that a relaxed program led to."""
         layout = self._layout
         iterations, time, *residuals = layout.view(self.row, "figures").tolist()
         point = layout.view(self.row, "point")
-        return Solution(point, layout.sizes, layout.status, int(iterations), time, *residuals)
-
-    @property
-    def action(self) -> Action:
-        """The action taken; ``Action.NONE`` where the network's answer was taken."""
-        return Action.NONE if self.resolution is None else self.resolution.action
+        status = STATUSES[int(layout.view(self.row, "decision")[2])]
+        return Solution(point, layout.sizes, status, int(iterations), time, *residuals)
 
     @property
     def ok(self) -> bool:
-        """True if the command does all that the tasks ask: solved, by the network or a fallback."""
-        return self.action in (Action.NONE, Action.FALLBACK) and self._unsolved is None
+        """True if the command does all that the tasks ask."""
+        solution = self.solution
+        return self.action <= Action.FALLBACK and solution.status in (
+            Status.SOLVED,
+            Status.ADVANCED,
+        )
 
     def __getstate__(self) -> tuple[Any, ...]:
-        return self.row, self._layout, self.resolution, self._unsolved
+        return self.row, self._layout, self.action
 
     def __setstate__(self, state: tuple[Any, ...]) -> None:
         Command.__init__(self, *state)
@@ -238,7 +251,7 @@ class Command:
 
 _WORDS = {
     Action.NONE: "solved",
-    Action.FALLBACK: "solved by the reference solver",
+    Action.FALLBACK: "solved at a second attempt",
     Action.SLOW: "no solution: slower along the path",
     Action.RELAX: "no solution: as near to the task as the limits allow",
     Action.STOP: "no solution: stopped",

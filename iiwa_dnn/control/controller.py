@@ -12,16 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.cascade import Level
+from iiwa_dnn.control.cascade import Cascade, Level
 from iiwa_dnn.control.command import Command, RowLayout
-from iiwa_dnn.control.fallback import Fallback
 from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far, warn_if_outside
-from iiwa_dnn.control.policies import POLICIES, Action, Policy, Resolution
+from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.control.yielding import guard_step, yield_step
+from iiwa_dnn.errors import InvalidInputError, NoSolutionError
+from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -92,7 +93,7 @@ class Controller:
         """
         self._lock = threading.Lock()
         self._state = ControllerState(0)
-        self._derived: tuple[ControlStep, Fallback] | None
+        self._derived: tuple[ControlStep, Cascade] | None
         self.mode = mode
         self.policy = policy
         self.dt = dt
@@ -167,9 +168,8 @@ class Controller:
                 if dq is not None:
                     self._measure(dq)
                 command = self._compute(q, t, target)
-                resolution = command.resolution
-                if resolution is not None:
-                    state.delay += self.dt * (1.0 - resolution.fraction)
+                if command.action is not Action.NONE:
+                    state.delay += self.dt * (1.0 - command.fraction)
                 state.commit()
                 return command
         except BaseException:
@@ -189,11 +189,10 @@ class Controller:
         with self._lock:
             return self._compute(q, t, target)
 
-    def send(self, dq: Vector, resolution: Resolution | None = None) -> None:
-        """Count a velocity dq (n,) [rad/s] as sent, and let the clock go on as a policy decided."""
+    def send(self, dq: Vector, fraction: float = 1.0) -> None:
+        """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
         self._state.send(dq)
-        if resolution is not None:
-            self._state.delay += self.dt * (1.0 - resolution.fraction)
+        self._state.delay += self.dt * (1.0 - fraction)
         self._state.commit()
 
     def _compute(
@@ -222,72 +221,139 @@ class Controller:
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
-        if step.has_network and not state.yields:
-            network = self.solver.warm_state(layout.sizes)
+        asks = not state.yields and state.halted is None
+        if step.has_network and asks:
+            network = self._network_state(layout)
             clock = (t, state.delay)
-            if network is not None and step.run(
+            if step.run(
                 row, step.arrays, joints, state.past, state.following, network, clock, begin
-            ):
+            ) and self._is_stoppable(step, row):
                 return Command(row, layout)
+            return self._yield(step, row, network)
         state.past[Q] = joints
-        return self._compute_in_python(derived, row, t, begin)
+        return self._compute_in_python(step, row, t, begin, asks)
 
     def _write_program(
-        self, derived: tuple[ControlStep, Fallback], row: Vector, q: Vector, t: float, own: bool
+        self, derived: tuple[ControlStep, Cascade], row: Vector, q: Vector, t: float, own: bool
     ) -> None:
         """Write the program of a step of which Python code writes a part.
 
         The targets are in the row; `own` says that they are the reference's.
         """
-        step, fallback = derived
+        step, cascade = derived
         layout = step.layout
         past = self._state.past
         past[Q] = q
         wanted = self._accelerations(t) if own and step.program.accelerates else None
         data = layout.view(row, "program")
         step.program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t, wanted)
-        fallback.cascade.resolve(QP.from_data(data, layout.sizes))
+        cascade.resolve(QP.from_data(data, layout.sizes))
 
     def _compute_in_python(
-        self, derived: tuple[ControlStep, Fallback], row: Vector, t: float, begin: int
+        self, step: ControlStep, row: Vector, t: float, begin: int, asks: bool
     ) -> Command:
-        """Compute the first command, one without a compiled form, or one that does not succeed."""
-        step, fallback = derived
+        """Compute the first command, one without a compiled form, or one whose task yields."""
         layout = step.layout
         program = step.program
         state = self._state
-        checks.finite_array("q", state.past[Q], (layout.dof,))
+        solver = self.solver
         if begin == SAMPLE:
             layout.targets(row)[:] = self.targets(t - state.delay)
         targets = layout.targets(row)
-        checks.finite_array("target", targets, targets.shape)
         data = layout.view(row, "program")
         if begin != ANSWER:
             program.write(data, targets, state.past[: LAST + 2], self.dt, t)
         qp = QP.from_data(data, layout.sizes)
-        if self.mode == "converged" and step.has_network and fallback.yielding is None:
-            self.solver.reset()  # compiled code has tried from the last state already
-        policy = self.policy
-        if program.accelerates and policy == "slow":
-            policy = "relax"  # the clock of an arm that is in motion cannot be slowed down at once
-        solution, resolution = fallback.answer(qp, policy)
-        if resolution is not None:
-            qp = resolution.qp
-        dq = solution.x[: layout.dof].copy()
-        if program.accelerates:
-            dq = self._accelerated(qp, solution, resolution)
-        layout.fill(row, qp, solution, program.placement, state.past[Q], dq)
-        state.send(dq)
-        unsolved = None if solution.status is layout.status else solution
-        return Command(row, layout, resolution, unsolved)
+        if not asks:
+            layout.view(row, "decision")[:] = 0.0  # the network was not asked
+            return self._yield(step, row, self._network_state(layout))
+        if self.mode == "converged":
+            solution = solver.solve(qp)
+            solved = solution.status is Status.SOLVED
+        else:
+            solution = solver.advance(qp, self.dt)
+            solved = solution.status is Status.ADVANCED
+        layout.fill(row, qp, solution)
+        layout.view(row, "placement")[:] = program.placement
+        layout.view(row, "q")[:] = state.past[Q]
+        self._send(step, row)
+        if solved and self._is_stoppable(step, row):
+            return Command(row, layout)
+        return self._yield(step, row, self._network_state(layout))
 
-    def _accelerated(self, qp: QP, solution: Solution, resolution: Resolution | None) -> Vector:
-        """Return the velocity after a period of the accelerations of a solution, (n,) [rad/s]."""
-        last = self._state.past[LAST]
-        if resolution is not None and resolution.action is Action.STOP:
-            solution.x[:] = np.clip(-last / self.dt, qp.lb, qp.ub)
-        velocity: Vector = last + self.dt * solution.x[: last.size]
-        return velocity
+    def _network_state(self, layout: RowLayout) -> Vector:
+        """Return the state from which the projection network starts, (size,)."""
+        solver = self.solver
+        n, m, p = layout.sizes
+        if not is_projection(solver.network):
+            return np.zeros(3 * n + m + p)
+        warm = solver.warm_state(layout.sizes)
+        return solver.cold_state(layout.sizes) if warm is None else warm
+
+    def _is_stoppable(self, step: ControlStep, row: Vector) -> bool:
+        """Test whether the arm can brake from a command without coming near to an obstacle."""
+        if not len(step.scenes):
+            return True
+        state = self._state
+        targets = step.layout.targets(row)
+        arrays = (step.arrays, state.past, state.following, targets)
+        return bool(guard_step(*arrays, step.yielding, step.scenes))
+
+    def _yield(self, step: ControlStep, row: Vector, network: Vector) -> Command:
+        """Answer a step without a solution as the policy says."""
+        state = self._state
+        layout = step.layout
+        halted = state.halted
+        policy = self.policy
+        targets = layout.targets(row)
+        checks.finite_array("q", state.past[Q], (layout.dof,))
+        checks.finite_array("target", targets, targets.shape)
+        if policy == "raise" and halted is None:
+            self._raise(QP.from_data(layout.view(row, "program"), layout.sizes))
+        action = Action.SLOW if policy == "slow" else Action.RELAX
+        if step.program.accelerates and policy == "slow":
+            action = Action.RELAX  # the clock of an arm in motion cannot be slowed down at once
+        if policy == "stop" or halted is not None or self.mode == "continuous":
+            action = Action.STOP
+        taken = yield_step(
+            row,
+            step.arrays,
+            state.past,
+            state.following,
+            network,
+            step.yielding,
+            step.scenes,
+            int(action),
+            state.yields,
+        )
+        state.yields = taken in (Action.SLOW, Action.RELAX)
+        if halted is not None:
+            layout.view(row, "blocking")[:] = halted
+        if step.program.accelerates:
+            self._send(step, row)
+        return Command(row, layout, Action(taken))
+
+    def _raise(self, qp: QP) -> None:
+        """Raise the error of a program without a solution."""
+        failed = self.solver.solve(qp)
+        message = "no joint velocity inside the bounds fulfils the task"
+        problem = qp.to_qpsolvers()
+        raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
+
+    def _send(self, step: ControlStep, row: Vector) -> None:
+        """Note the velocity of a row's answer; at the acceleration level, that after the period."""
+        layout = step.layout
+        state = self._state
+        x = layout.view(row, "point")[: layout.dof]
+        dq = layout.view(row, "dq")
+        dq[:] = x
+        if step.program.accelerates:
+            last = state.past[LAST]
+            if layout.view(row, "decision")[0] == Action.STOP:
+                qp = QP.from_data(layout.view(row, "program"), layout.sizes)
+                x[:] = np.clip(-last / self.dt, qp.lb, qp.ub)
+            dq[:] = last + self.dt * x
+        state.send(dq)
 
     def _measure(self, dq: ArrayLike) -> None:
         """Take measured joint velocities (n,) [rad/s] for the last command."""
@@ -298,7 +364,7 @@ class Controller:
 
     def _prepare(
         self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None
-    ) -> tuple[ControlStep, Fallback]:
+    ) -> tuple[ControlStep, Cascade]:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong."""
         state = self._state
         posture = checks.finite_array("q", q, (self.robot.dof,))
@@ -309,7 +375,7 @@ class Controller:
             self.warn_if_far(start, t, stacklevel=5)
         return self._laid_out()
 
-    def _laid_out(self) -> tuple[ControlStep, Fallback]:
+    def _laid_out(self) -> tuple[ControlStep, Cascade]:
         """Return what is derived from the settings."""
         derived = self._derived
         if derived is None or derived[0].version != self.solver.version:
@@ -320,8 +386,7 @@ class Controller:
                 program = ForeignProgram(self.robot, self.scheme, self._state.past[Q])
             references = by_frame(self.reference, self.robot.tip)
             step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
-            fallback = Fallback(program, self.solver, self._state, duration, self.dt)
-            derived = (step, fallback)
+            derived = (step, Cascade(program.priorities, program.sizes, self.solver))
             self._derived = derived
         return derived
 
@@ -344,14 +409,13 @@ class Controller:
     @property
     def levels(self) -> list[Level]:
         """Levels of the tasks with priorities, as the last command has left them."""
-        return self._laid_out()[1].cascade.levels
+        return self._laid_out()[1].levels
 
-    def halt(self, resolution: Resolution) -> None:
+    def halt(self, command: Command) -> None:
         """Brake at every step from now on, where the arm cannot stop at once."""
-        step, fallback = self._laid_out()
-        if self._state.halted is None and (fallback.yielding or step.program.accelerates):
-            self._state.halted = resolution
-            self._state.yields = True
+        step, _ = self._laid_out()
+        if self._state.halted is None and (step.yields or step.program.accelerates):
+            self._state.halted = step.layout.view(command.row, "blocking").copy()
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from iiwa_dnn.qp import Vector
 
-if TYPE_CHECKING:
-    from iiwa_dnn.control.policies import Resolution
-
-Q, LAST, BEFORE, WANTED = range(4)
+Q, LAST, BEFORE, WANTED, REST = range(5)
 """Rows of `ControllerState.past`."""
 
 
@@ -22,21 +17,23 @@ class ControllerState:
     is broken off leaves the state as it was.
 
     Attributes:
-        past: Joint positions of this step [rad], last command, the one before, and the velocity
-            that a yielding task wanted at the last step [rad/s], (4, n).
-        following: The same for the next step, (4, n).
+        past: Joint positions of this step [rad], last command, the one before, the velocity that a
+            yielding task wanted at the last step [rad/s], and in the first entry of its last row
+            the periods until the braking motion in hand rests, 0 if there is none, (5, n).
+        following: The same for the next step, (5, n).
         delay: Time by which the reference's clock is behind [s].
         begun: Whether a first step was taken.
         yields: Whether the task yielded at the last step.
-        halted: Decision to stop, after which every step brakes; None: there was none.
+        halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
+            step brakes; None: it did not.
     """
 
     __slots__ = ("begun", "delay", "following", "halted", "past", "yields")
 
     def __init__(self, dof: int) -> None:
         """Start at rest."""
-        self.past = np.zeros((4, dof))
-        self.following = np.zeros((4, dof))
+        self.past = np.zeros((5, dof))
+        self.following = np.zeros((5, dof))
         self.begun = False
         self.reset()
 
@@ -45,12 +42,13 @@ class ControllerState:
         self.past[LAST:] = 0.0
         self.delay = 0.0
         self.yields = False
-        self.halted: Resolution | None = None
+        self.halted: Vector | None = None
 
     def send(self, dq: Vector) -> None:
         """Take note of a command dq (n,) [rad/s] that the next `commit` makes the last one."""
         self.following[BEFORE] = self.past[LAST]
         self.following[LAST] = dq
+        self.following[REST] = 0.0
 
     def commit(self) -> None:
         """Count the command that `following` holds as sent."""

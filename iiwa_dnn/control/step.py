@@ -13,20 +13,35 @@ import numpy as np
 from numba import typeof, types
 from numba.core.dispatcher import Dispatcher
 
-from iiwa_dnn.control.command import PLACEMENT, RowLayout, row_views
-from iiwa_dnn.control.state import BEFORE, LAST, WANTED, Q
+from iiwa_dnn.control import yielding
+from iiwa_dnn.control.command import (
+    ADVANCED,
+    NOT_FINITE,
+    NOT_SETTLED,
+    PLACEMENT,
+    SOLVED,
+    RowLayout,
+    row_views,
+)
+from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import Matrix, Status, Vector
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
 from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
 
+LONG_STEP = ImplicitEuler().long_step
+"""Length of the long step in which relaxed programs settle [rho]."""
+
 FEASIBLE_BUDGET = 60.0
-"""Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
+"""Linear systems after which a program counts as one without a solution."""
 
 SAMPLE, WRITE, ANSWER = range(3)
 """Where a control step begins: at the targets, at the program, at the answer."""
@@ -44,6 +59,9 @@ class ControlStep:
         begin: Stage at which the compiled step begins: `SAMPLE` if all references are compiled
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
+        yielding: What relaxed programs need beside a step's own.
+        scenes: Beginning and end of the constants of each scene that braking keeps away from,
+            (scenes, 2); none without acceleration limits.
     """
 
     def __init__(
@@ -65,15 +83,27 @@ class ControlStep:
         """
         self.program = program
         self.version = solver.version
-        status = Status.SOLVED if converged else Status.ADVANCED
         frames = program.target_frames
-        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), status)
+        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames))
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
         self.begin = SAMPLE if self._add_paths(references) else WRITE
         if not program.is_compiled:
             self.begin = ANSWER
         self.arrays = program.arrays(dt)
         self.run = self._entry()
+        limits = np.zeros(0)
+        scenes = []
+        if program.rate_limits is not None and not program.accelerates:
+            limits = program.rate_limits.constants(program.robot)
+            scenes = program.constants_of(CollisionAvoidance)
+        settings = np.array([solver.tol, yielding.BUDGET, LONG_STEP])
+        self.yielding = Yielding(program.row_weights, limits, settings, dt)
+        self.scenes = np.array(scenes, dtype=np.int64).reshape(-1, 2)
+
+    @property
+    def yields(self) -> bool:
+        """Test whether the task yields to acceleration or jerk limits."""
+        return self.yielding.limits.size > 0
 
     def _add_network(self, solver: DNNSolver, duration: float) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""
@@ -85,9 +115,8 @@ class ControlStep:
         if answer is None:
             program.append(0, np.zeros(0))
             return False
-        if program.rate_limits is not None:
-            # A program that a few systems do not solve most likely has no solution.
-            answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
+        # A program that a few systems do not solve most likely has no solution.
+        answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
         program.append(answer.address, answer.constants, answer.rates)
         return True
 
@@ -135,8 +164,8 @@ def control_step(
         row: The row, (width,); what comes before `begin` is in it already.
         arrays: Arrays of the loop.
         q: Joint positions [rad], (dof,), at which the kinematics are.
-        past: `ControllerState.past`, (4, dof); the joint positions are noted in it.
-        following: `ControllerState.following`, (4, dof), overwritten.
+        past: `ControllerState.past`, (5, dof); the joint positions are noted in it.
+        following: `ControllerState.following`, (5, dof), overwritten.
         state: The network's state, (size,), advanced.
         clock: Time, and time by which the reference's clock is behind [s].
         begin: `SAMPLE`, `WRITE` or `ANSWER`.
@@ -185,25 +214,30 @@ def control_step(
     rates = table[network, 2]
     before = state.copy()
     iterations, time, primal, dual, gap = enter_answer(address, qp, rates, own, state, views.point)
-    succeeded = primal + dual + gap < np.inf
-    if own[DURATION] == 0.0:
-        succeeded = within(primal, dual, gap, own[TOLERANCE])
-    if not succeeded:
-        for i in range(state.size):
-            state[i] = before[i]
-        return False
     views.figures[0] = iterations
     views.figures[1] = time
     views.figures[2] = primal
     views.figures[3] = dual
     views.figures[4] = gap
+    views.decision[0] = 0.0
+    views.decision[1] = 1.0
+    views.decision[2] = ADVANCED if own[DURATION] > 0.0 else SOLVED
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
+    succeeded = primal + dual + gap < np.inf
+    if own[DURATION] == 0.0:
+        succeeded = within(primal, dual, gap, own[TOLERANCE])
+    if not succeeded:
+        views.decision[2] = NOT_SETTLED if primal + dual + gap < np.inf else NOT_FINITE
+        for i in range(state.size):
+            state[i] = before[i]
+        return False
     for i in range(dof):
         views.dq[i] = views.point[i]
         following[BEFORE, i] = past[LAST, i]
         following[LAST, i] = views.point[i]
         following[WANTED, i] = past[WANTED, i]
+    following[REST, 0] = 0.0
     return True
 
 

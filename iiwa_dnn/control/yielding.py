@@ -1,311 +1,539 @@
-r"""Steps at which the task has to yield to acceleration and jerk limits.
+"""What is done at a step without a solution, in one compiled call: limits hold, the task yields.
 
-Such limits leave a command little choice, so a program whose rows contradict them is common: at a
-jump of the target, at every start. Two stages answer it within microseconds. The first finds the
-velocity that the joints should have, inside the velocity and position limits alone,
+`iiwa_dnn.control.policies` says what each policy means. With acceleration or jerk limits a command
+goes on a straight line towards the velocity that the softened program asks for. Where collisions
+are avoided too, a command is given only if it is stoppable (`iiwa_dnn.control.stopping`); if not,
+one nearer to the braking motion in hand is, and in the end that motion itself.
 
-.. math::
-
-    \min_{v} \; \tfrac12 \|W (A v - b)\|^2 + \tfrac12 \lambda^2 \|v - v_0\|^2
-        + \tfrac12 \varepsilon\, v^T P v + \varepsilon'\, q^T v, \quad
-    \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma / \sigma_0)^2\bigr)
-
-with :math:`\sigma` the smallest singular value of W A: away from singular poses it is the task's
-velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction of singular
-value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at most, so that
-the tip lags a target of speed u by :math:`u \lambda^2 / (\delta s^2)`, :math:`\delta` the task's
-gain; the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. The second
-stage lets each joint approach that velocity as quickly as its limits allow without passing it
-(`iiwa_dnn.schemes.motion_limits.braking`): looking one step ahead only, a limited jerk would make
-it swing about it for ever.
-
-Source of the damping: Y. Nakamura, H. Hanafusa, "Inverse kinematic solutions with singularity
-robustness for robot manipulator control", J. Dynamic Systems, Measurement, and Control 108 (1986).
+Every way through `decide` ends after `ATTEMPTS` times `BUDGET` linear systems.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from iiwa_dnn.control.clipping import clip_command
-from iiwa_dnn.control.reach import DRIFT, Reach
-from iiwa_dnn.control.state import LAST, WANTED, ControllerState, Q
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.control.command import NOT_SETTLED, PLACEMENT, SOLVED, RowViews, row_views
+from iiwa_dnn.control.policies import Action
+from iiwa_dnn.control.relaxed import (
+    REACHED,
+    Yielding,
+    held_rows,
+    inside,
+    largest_factor,
+    least_violation,
+    nearest_within,
+    note_blocking,
+    on_rows,
+    settled,
+)
+from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
+from iiwa_dnn.control.stopping import (
+    has_jerk,
+    keeps_distances,
+    keeps_joint_limits,
+    least_periods,
+    motion_to_rest,
+    next_velocity,
+)
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
-from iiwa_dnn.schemes.motion_limits import braking
+from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.schemes.program import ProgramArrays, step_views
+from iiwa_dnn.schemes.step import StepViews
 
-DAMPING = 0.05
-NEAR = 0.05
-"""Lambda [m/rad] and sigma_0 [m/rad] of the damping near singular poses."""
+BUDGET = 60
+"""Linear systems of one program."""
 
-BLEND = 1e-4
-WISH = 0.1
-"""Epsilon: weight of the scheme's own cost beside the task, and the share of the task's gradient in
-the joints that can follow it that the cost's own gradient may reach."""
+ATTEMPTS = 13
+"""Programs at most: the step's own, five passes of the scaled one, then three times the step's own
+from its last state and from a cold start, and the softened one or that of the nearest command."""
 
-POSITION_GAIN = 20.0
-"""Rate at which the wanted velocity falls towards a position limit [1/s]."""
+NONE = int(Action.NONE)
+FALLBACK = int(Action.FALLBACK)
+SLOW = int(Action.SLOW)
+RELAX = int(Action.RELAX)
+STOP = int(Action.STOP)
 
 CREEP = 0.1
 """Share of a period by which a slowed clock always advances: an arm that rests in a singular or
 unreachable pose does not hold its target there."""
 
-FULL = 0.1
-"""Task velocity [m/s] below which the drift of the damping is less, so that a target is reached."""
+FEASIBLE = 1.0 - 1e-9
+"""Scaling factor above which the step's own program has a solution."""
 
-_REACHED = 1e-9
+NEARLY = 0.5
+"""Share of the task velocity from which on it is worth looking whether all of it can be had."""
+
+SINGULAR = 0.05
+"""Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
+There the joints would race for next to nothing; ``slow`` goes slower in proportion."""
+
+STUCK = 1e-3
+"""A scaling factor below it is none: the task yields as with ``relax``, and the clock creeps on."""
+
+LESS = (1.0, 0.99)
+"""Shares of the scaled task that are asked for: at the very edge of what is feasible the
+multipliers may grow without bound, where a little less has room enough."""
+
+TOWARDS = (1.0, 0.5, 0.25, 0.125)
+"""Shares of the way from the braking motion in hand to the wanted command that are tried."""
 
 
-class Yielded(NamedTuple):
-    """A command where the task yields.
+class Instant(NamedTuple):
+    """What is known at a step, beside its program.
 
     Attributes:
-        reach: The command, with the share of the task velocity that it gives.
-        fits: Whether the task has a velocity within the limits after all.
+        step: Kinematics, last commands and targets.
+        before: Velocity that was wanted at the last step [rad/s], (dof,).
+        rest: Periods until the braking motion in hand rests; 0 where there is none.
+        following: `ControllerState.following`, (5, dof), overwritten.
+        constants: Constants of all parts, (k,).
+        scenes: Beginning and end in them of those of each scene, (scenes, 2).
     """
 
-    reach: Reach
-    fits: bool
-
-
-class Yielding:
-    """Answers of the steps at which a task yields to acceleration and jerk limits."""
-
-    def __init__(self, limits: Vector, weights: Vector, dt: float, state: ControllerState) -> None:
-        """Prepare for a robot's loop.
-
-        Args:
-            limits: `MotionLimits.constants`, (5 n,).
-            weights: Weight of each task row, (p,).
-            dt: Control period [s].
-            state: State of the controller.
-        """
-        self._state = state
-        self._limits = limits
-        self._weights = weights
-        self._dt = dt
-        self._solver = DNNSolver(tol=1e-8)
-        self._clipper = DNNSolver()
-
-    def brake(self, qp: QP) -> Vector:
-        """Compute the command (n,) [rad/s] that comes to rest quickest.
-
-        It is within the bounds of `qp`, and within its rows if any velocity is.
-        """
-        state = self._state
-        dq = np.zeros(state.past.shape[1])
-        approach_velocity(self._limits, state.past, state.following, dq, qp.lb, qp.ub, self._dt)
-        return clip_command(qp, dq, self._clipper)[0] if qp.sizes[1] else dq
-
-    def answer(self, qp: QP) -> Yielded:
-        """Compute the command at a program of n variables whose rows may contradict its bounds."""
-        state = self._state
-        n, m, p = qp.sizes
-        dof = state.past.shape[1]
-        data = np.empty((n + m) * (n + 1) + 2 * n)
-        damping = soften(qp.data, qp.sizes, self._weights, self._limits, state.past[Q], data)
-        solution = self._solver.solve(QP.from_data(data, (n, m, 0)))
-        x: Vector = solution.x.copy() if solution.found else np.zeros(n)
-        # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
-        exact = x.copy()
-        on = on_rows(qp.data, n, m, p, exact)
-        if on and damping == 0.0 and inside(data, n, m, 0, exact):
-            x = exact
-        wanted = x[:dof].copy()
-        if on and inside(qp.data, n, m, p, exact):
-            state.following[WANTED] = wanted
-            return Yielded(Reach(1.0, x, np.zeros(n, np.int8), np.zeros(m, np.int8)), True)
-        approach_velocity(
-            self._limits, state.past, state.following, x[:dof], qp.lb, qp.ub, self._dt
-        )
-        if m:
-            x[:dof] = clip_command(qp, x[:dof], self._clipper)[0]
-        rhs = self._weights * qp.b
-        length = float(rhs @ rhs)
-        share = 1.0 if length == 0.0 else float(rhs @ (self._weights * (qp.A @ x))) / length
-        sides = np.zeros(n, np.int8)
-        sides[:dof] = np.sign(wanted - x[:dof]) * (np.abs(wanted - x[:dof]) > _REACHED)
-        reach = Reach(min(max(share, CREEP), 1.0), x, sides, np.zeros(m, np.int8))
-        return Yielded(reach, False)
+    step: StepViews
+    before: Vector
+    rest: float
+    following: Matrix
+    constants: Vector
+    scenes: NDArray[np.int64]
 
 
 @compiled
-def approach_velocity(
-    limits: Vector,
-    past: Matrix,
-    following: Matrix,
-    wanted: Vector,
-    lb: Vector,
-    ub: Vector,
-    dt: float,
-) -> None:
-    """Overwrite wanted velocities by the commands that approach them in the shortest time.
+def decide(
+    views: RowViews,
+    qp: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+    action: int,
+    yields: bool,
+) -> int:
+    """Answer a step for which the network has no answer, or whose task still yields.
 
     Args:
-        limits: `MotionLimits.constants`, (5 n,).
-        past: `ControllerState.past`, (4, n).
-        following: `ControllerState.following`, (4, n); the wanted velocities are noted in it.
-        wanted: Velocities that are wanted [rad/s], (n,); becomes the commands.
-        lb: Lower bounds [rad/s], (n,) or more.
-        ub: Upper bounds [rad/s], (n,) or more.
-        dt: Control period [s].
-    """
-    n = wanted.size
-    for i in range(n):
-        aim = wanted[i]
-        most = limits[3 * n + i] * dt
-        change = min(max(aim - past[WANTED, i], -most), most)
-        behind = past[LAST, i] - (aim - change)
-        dq = aim + braking(behind, lb[i] - aim, ub[i] - aim, limits[4 * n + i], dt)
-        following[WANTED, i] = aim
-        wanted[i] = min(max(dq, lb[i]), ub[i])
-
-
-@compiled
-def on_rows(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
-    """Move x (n,) to the nearest point on the equality rows; return False where that fails."""
-    if p == 0:
-        return True
-    qp = qp_views(data, n, m, p)
-    gram = np.empty((p, p))
-    missing = np.empty(p)
-    for j in range(p):
-        missing[j] = qp.b[j] - _product(qp.A, j, x)
-        for k in range(p):
-            gram[j, k] = _product(qp.A, j, qp.A[k]) + (1e-13 if j == k else 0.0)
-    multiplier = np.linalg.solve(gram, missing)
-    for j in range(p):
-        for i in range(n):
-            x[i] += qp.A[j, i] * multiplier[j]
-    worst = 0.0
-    for j in range(p):
-        worst = max(worst, abs(_product(qp.A, j, x) - qp.b[j]))
-    return worst <= _REACHED
-
-
-@compiled
-def _product(rows: Matrix, j: int, x: Vector) -> float:
-    """Compute the product of row j and a point x (n,)."""
-    value = 0.0
-    for i in range(x.size):
-        value += rows[j, i] * x[i]
-    return value
-
-
-@compiled
-def inside(data: Vector, n: int, m: int, p: int, x: Vector) -> bool:
-    """Return whether x (n,) is within the bounds and inequality rows of a program."""
-    qp = qp_views(data, n, m, p)
-    most = 0.0
-    for i in range(n):
-        most = max(most, qp.lb[i] - x[i], x[i] - qp.ub[i])
-    for j in range(m):
-        most = max(most, _product(qp.G, j, x) - qp.h[j])
-    return most == 0.0
-
-
-@compiled
-def soften(
-    data: Vector,
-    sizes: tuple[int, int, int],
-    weights: Vector,
-    limits: Vector,
-    q: Vector,
-    out: Vector,
-) -> float:
-    """Write the program of the first stage, without equality rows, into `out`.
-
-    Args:
-        data: The step's program, laid out as `QP.data`, (size,).
-        sizes: ``(n, m, p)`` of the program.
-        weights: Weight of each task row, (p,).
-        limits: `MotionLimits.constants`, (5 dof,).
-        q: Joint positions [rad], (dof,).
-        out: The program, (size,), in the same way.
+        views: The step's row; answer and decision are written into it.
+        qp: The program, in the row; its b is replaced by what is attained.
+        instant: What else is known.
+        yielding: Weights, limits and settings of the relaxed programs.
+        state: The network's state, (size,), advanced where its answer is taken.
+        action: Action that the policy asks for: `SLOW`, `RELAX` or `STOP`.
+        yields: Whether the task yielded at the last step, so that the network was not asked.
 
     Returns:
-        The square of the damping, lambda.
+        The action that was taken.
     """
-    n, m, p = sizes
-    qp = qp_views(data, n, m, p)
-    soft = qp_views(out, n, m, 0)
-    damping = _damping(qp.A, weights)
-    pull = np.zeros(n)
+    for k in range(views.blocking.size):
+        views.blocking[k] = 0.0
+    finite = True
+    for value in views.program:
+        finite = finite and value == value
+    for value in qp.b:
+        finite = finite and abs(value) < np.inf
+    if action == STOP or not finite:
+        if finite and views.decision[2] == NOT_SETTLED:
+            n = qp.q.size
+            point = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
+            largest_factor(qp, yielding, point)
+            note_blocking(point, n, qp.h.size, 1, views.blocking)
+        return _stop(views, qp, instant, yielding)
+    if yielding.limits.size > 0:
+        return _approach(views, qp, instant, yielding, state, action, yields)
+    if action == SLOW and _is_path(instant.step.targets):
+        return _slow(views, qp, instant, yielding, state, yields)
+    return _relax(views, qp, instant, yielding, state, 1.0, yields)
+
+
+@compiled
+def _is_path(targets: Matrix) -> bool:
+    """Test whether a target (k, 18) has a velocity."""
+    for k in range(targets.shape[0]):
+        for i in range(12, 18):
+            if targets[k, i] != 0.0:
+                return True
+    return False
+
+
+@compiled
+def _answered(views: RowViews, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
+    """Let the network answer a program from its last state or, if need be, from a cold start."""
+    tried = state.copy()
+    solved = settled(qp, yielding.settings, tried, views.point)
+    if not solved:
+        for i in range(tried.size):
+            tried[i] = 0.0
+        solved = settled(qp, yielding.settings, tried, views.point)
+    if solved:
+        for i in range(tried.size):
+            state[i] = tried[i]
+        _judge(views, qp, 1.0, SOLVED)
+    return solved
+
+
+@compiled
+def _judge(views: RowViews, qp: QPViews, fraction: float, status: int) -> None:
+    """Note the residuals of the answer, how far the clock advances, and a status."""
+    views.figures[0] = 0.0
+    views.figures[1] = 0.0
+    views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
+    views.decision[1] = fraction
+    views.decision[2] = status
+
+
+@compiled
+def _slow(
+    views: RowViews,
+    qp: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+    yields: bool,
+) -> int:
+    """Go along the path, slower; arguments and result as those of `decide`."""
+    n = qp.q.size
+    m = qp.h.size
+    point = np.empty(2 * n + 2 + m + qp.b.size)
+    factor = largest_factor(qp, yielding, point)
+    if factor >= FEASIBLE and _answered(views, qp, yielding, state):
+        return NONE if yields else FALLBACK
+    if not factor >= 0.0:
+        return _relax(views, qp, instant, yielding, state, CREEP, yields)
+    share = _brake(qp, point)
+    if share * factor < STUCK:
+        return _relax(views, qp, instant, yielding, state, CREEP, yields)
+    note_blocking(point, n, m, 1, views.blocking)
+    asked = qp.b.copy()
+    for less in LESS:
+        for j in range(qp.b.size):
+            # Not s b: this right-hand side has a solution to the last bit.
+            qp.b[j] = asked[j]
+            if yielding.weights[j] > 0.0:
+                qp.b[j] = less * share * row_dot(qp.A, j, point[:n])
+        if _answered(views, qp, yielding, state):
+            views.decision[1] = less * share * factor
+            return SLOW
+    for j in range(qp.b.size):
+        qp.b[j] = asked[j]
+    return _relax(views, qp, instant, yielding, state, CREEP, yields)
+
+
+@compiled
+def _brake(qp: QPViews, point: Vector) -> float:
+    """Compute the share of a velocity to take where joints race and the tip hardly moves.
+
+    The velocity (n,) begins `point`. An arm that may not rest is not braked.
+    """
+    joints = 0.0
+    for i in range(qp.q.size):
+        joints += point[i] * point[i]
+        if qp.lb[i] > 0.0 or qp.ub[i] < 0.0:
+            return 1.0
+    for j in range(qp.h.size):
+        if qp.h[j] < 0.0:
+            return 1.0
+    tip = 0.0
+    for j in range(qp.b.size):
+        tip += row_dot(qp.A, j, point[: qp.q.size]) ** 2
+    if tip >= SINGULAR * SINGULAR * joints:
+        return 1.0
+    return math.sqrt(tip / joints) / SINGULAR
+
+
+@compiled
+def _relax(
+    views: RowViews,
+    qp: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+    fraction: float,
+    yields: bool,
+) -> int:
+    """Violate the task least; the clock advances by a fraction of the period; as `decide`."""
+    n = qp.q.size
+    m = qp.h.size
+    point = np.empty(2 * n + m + held_rows(yielding.weights))
+    found = least_violation(qp, yielding, instant.step.q, point)
+    may_hold = found and fraction == 1.0 and _has_solution(qp, yielding, point)
+    if may_hold and _answered(views, qp, yielding, state):
+        return NONE if yields else FALLBACK
+    note_blocking(point, n, m, 0, views.blocking)
+    if not found:
+        return _stop(views, qp, instant, yielding)
+    _take(views, qp, point, fraction)
+    return RELAX if fraction == 1.0 else SLOW
+
+
+@compiled
+def _has_solution(qp: QPViews, yielding: Yielding, point: Vector) -> bool:
+    """Test whether a step's program has a solution, from the softened program's, (n,) or more."""
+    n = qp.q.size
+    x = point[:n].copy()
+    if on_rows(qp, x) and inside(qp, x):
+        return True
+    if _attained(qp, yielding.weights, point) < NEARLY:
+        return False
+    scaled = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
+    return largest_factor(qp, yielding, scaled) >= FEASIBLE
+
+
+@compiled
+def _take(views: RowViews, qp: QPViews, x: Vector, fraction: float) -> None:
+    """Take a velocity (n,) as the solution of the program that asks for what it gives."""
+    n = qp.q.size
+    for k in range(views.point.size):
+        views.point[k] = x[k] if k < n else 0.0
+    for i in range(n):
+        qp.q[i] = -row_dot(qp.P, i, x)
+        qp.lb[i] = min(qp.lb[i], x[i])
+        qp.ub[i] = max(qp.ub[i], x[i])
+    for j in range(qp.h.size):
+        value = row_dot(qp.G, j, x)
+        if value > qp.h[j] + REACHED:  # a row that asked for more than can be had
+            qp.h[j] = value
+    for j in range(qp.b.size):
+        qp.b[j] = row_dot(qp.A, j, x)
+    _judge(views, qp, fraction, SOLVED)
+
+
+@compiled
+def _stop(views: RowViews, qp: QPViews, instant: Instant, yielding: Yielding) -> int:
+    """Stop at once or, with acceleration limits, brake; the residuals of what failed stay."""
+    for k in range(views.point.size):
+        views.point[k] = 0.0
+    if yielding.limits.size > 0:
+        braked = views.point[: instant.step.q.size]
+        rest = _braking_command(qp, instant, yielding, braked)
+        _follow(instant, braked, rest)
+    if views.decision[2] < NOT_SETTLED:
+        _judge(views, qp, 0.0, NOT_SETTLED)
+    views.decision[1] = 0.0
+    return STOP
+
+
+@compiled
+def _follow(instant: Instant, wanted: Vector, rest: float) -> None:
+    """Note for the next step which velocity is wanted (dof,) and how long braking takes then."""
+    for i in range(instant.step.q.size):
+        instant.following[WANTED, i] = wanted[i]
+    instant.following[REST, 0] = rest
+
+
+@compiled
+def _braking_command(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> float:
+    """Write the next command (dof,) of the braking motion in hand, or of the quickest one.
+
+    Returns:
+        Periods that are left afterwards; 0 if the motion was not in hand.
+    """
+    limits = yielding.limits
+    step = instant.step
+    periods = instant.rest
+    if periods == 0.0:
+        periods = least_periods(step.last, step.before, limits, yielding.dt)
+    cubic = has_jerk(limits)
+    for i in range(dq.size):
+        dq[i] = 0.0
+        if periods < np.inf:
+            dq[i] = next_velocity(step.last[i], step.before[i], periods, cubic)
+        if instant.rest == 0.0:
+            dq[i] = min(max(dq[i], qp.lb[i]), qp.ub[i])
+    return max(instant.rest - 1.0, 0.0)
+
+
+@compiled
+def stoppable(instant: Instant, yielding: Yielding, dq: Vector) -> float:
+    """Compute the periods of the motion to rest from a command dq (dof,); -1 if it is unsafe."""
+    step = instant.step
+    motion = motion_to_rest(dq, step.last, yielding.limits, yielding.dt)
+    if motion.periods < 0.0:
+        return -1.0
+    if not keeps_joint_limits(motion, step.q, yielding.limits, yielding.dt):
+        return -1.0
+    for k in range(len(instant.scenes)):
+        scene = instant.constants[instant.scenes[k, 0] : instant.scenes[k, 1]]
+        if not keeps_distances(motion, step, scene):
+            return -1.0
+    return motion.periods
+
+
+@compiled
+def _approach(
+    views: RowViews,
+    qp: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+    action: int,
+    yields: bool,
+) -> int:
+    """Go towards the wanted velocity within acceleration limits; as `decide`."""
+    n = qp.q.size
+    m = qp.h.size
+    dof = instant.step.q.size
+    wanted = np.empty(2 * n + m + held_rows(yielding.weights))
+    found = least_violation(qp, yielding, instant.step.q, wanted)
+    note_blocking(wanted, n, m, 0, views.blocking)
+    if not found:
+        for i in range(n):
+            wanted[i] = 0.0
+    may_hold = found and _has_solution(qp, yielding, wanted)
+    if may_hold and _answered(views, qp, yielding, state):
+        rest = 0.0
+        if len(instant.scenes) > 0:
+            rest = stoppable(instant, yielding, views.point[:dof])
+        if rest >= 0.0:
+            _follow(instant, wanted, rest)
+            for k in range(views.blocking.size):
+                views.blocking[k] = 0.0
+            return NONE if yields else FALLBACK
+    x = wanted[:n].copy()
+    _step_towards(qp, instant, yielding, x[:dof])
+    if not nearest_within(qp, x, yielding.settings):
+        for i in range(n):
+            x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
+    rest = 0.0
+    if len(instant.scenes) > 0:
+        rest = _keep_stoppable(qp, instant, yielding, x[:dof])
+    _follow(instant, wanted, rest)
+    for i in range(dof):
+        missing = wanted[i] - x[i]
+        if abs(missing) > REACHED:
+            views.blocking[i] = 1.0 if missing > 0.0 else -1.0
+    fraction = 1.0 if action == RELAX else max(_attained(qp, yielding.weights, x), CREEP)
+    _take(views, qp, x, fraction)
+    return action
+
+
+@compiled
+def _step_towards(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> None:
+    """Replace the wanted velocity dq (dof,) by the next command on the straight line to it."""
+    dof = dq.size
+    step = instant.step
+    limits = yielding.limits
+    now = np.empty(dof)
+    before = np.empty(dof)
+    for i in range(dof):
+        most = limits[3 * dof + i] * yielding.dt
+        change = min(max(dq[i] - instant.before[i], -most), most)
+        now[i] = step.last[i] - (dq[i] - change)
+        before[i] = step.before[i] - (dq[i] - 2.0 * change)
+    periods = least_periods(now, before, limits, yielding.dt)
+    cubic = has_jerk(limits)
+    for i in range(dof):
+        if periods < np.inf:
+            dq[i] += next_velocity(now[i], before[i], periods, cubic)
+        dq[i] = min(max(dq[i], qp.lb[i]), qp.ub[i])
+
+
+@compiled
+def _keep_stoppable(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> float:
+    """Replace a command dq (dof,) by a stoppable one; return the periods that braking takes."""
+    braking = np.empty(dq.size)
+    left = _braking_command(qp, instant, yielding, braking)
+    wanted = dq.copy()
+    for share in TOWARDS:
+        for i in range(dq.size):
+            dq[i] = braking[i] + share * (wanted[i] - braking[i])
+        rest = stoppable(instant, yielding, dq)
+        if rest >= 0.0:
+            return rest
+    for i in range(dq.size):
+        dq[i] = braking[i]
+    return left
+
+
+@compiled
+def _attained(qp: QPViews, weights: Vector, x: Vector) -> float:
+    """Compute the share of the task velocity that a velocity x (n,) gives, at most 1."""
     asked = 0.0
-    for j in range(p):
+    given = 0.0
+    for j in range(qp.b.size):
         rhs = weights[j] * weights[j] * qp.b[j]
         asked += rhs * qp.b[j]
-        for i in range(n):
-            pull[i] += rhs * qp.A[j, i]
-    _velocity_bounds(qp, limits, q, soft)
-    wish = _wish(qp.q, pull, soft, q.size) if damping == 0.0 else 0.0
-    size = math.sqrt(_squares(qp.q, n))
-    drift = DRIFT * min(1.0, math.sqrt(asked) / FULL) / max(size, 1.0)
-    for i in range(n):
-        for k in range(n):
-            soft.P[i, k] = BLEND * qp.P[i, k]
-        soft.P[i, i] += damping
-        soft.q[i] = wish * qp.q[i] + damping * drift * qp.q[i] - pull[i]
-    for j in range(p):
-        for i in range(n):
-            for k in range(n):
-                soft.P[i, k] += weights[j] * weights[j] * qp.A[j, i] * qp.A[j, k]
-    for j in range(m):
-        soft.h[j] = qp.h[j]
-        for i in range(n):
-            soft.G[j, i] = qp.G[j, i]
-    return damping
+        given += rhs * row_dot(qp.A, j, x)
+    return min(given / asked, 1.0) if asked > 0.0 else 1.0
 
 
 @compiled
-def _damping(A: Matrix, weights: Vector) -> float:
-    """Compute the square of the damping for task rows A (p, n), which grows near singular poses."""
-    p = weights.size
-    if p == 0:
-        return 0.0
-    gram = np.empty((p, p))
-    for j in range(p):
-        for k in range(p):
-            gram[j, k] = weights[j] * weights[k] * _product(A, j, A[k])
-    smallest: float = np.linalg.eigvalsh(gram)[0]
-    return DAMPING**2 * max(0.0, 1.0 - smallest / NEAR**2)
+def yield_step(
+    row: Vector,
+    arrays: ProgramArrays,
+    past: Matrix,
+    following: Matrix,
+    state: Vector,
+    yielding: Yielding,
+    scenes: NDArray[np.int64],
+    action: int,
+    yields: bool,
+) -> int:
+    """Answer a step whose program is in its row by `decide`, and note the command.
 
+    Args:
+        row: The row, (width,), with program and targets.
+        arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
+        past: `ControllerState.past`, (5, dof).
+        following: `ControllerState.following`, (5, dof), overwritten.
+        state: The network's state, (size,), advanced.
+        yielding: Weights, limits and settings of the relaxed programs.
+        scenes: Beginning and end of the constants of each scene that braking keeps away from,
+            (scenes, 2).
+        action: Action that the policy asks for.
+        yields: Whether the task yielded at the last step.
 
-@compiled
-def _velocity_bounds(qp: QPViews, limits: Vector, q: Vector, soft: QPViews) -> None:
-    """Write the bounds that velocity and position limits alone put on the variables."""
-    dof = q.size
-    for i in range(qp.q.size):
-        soft.lb[i] = qp.lb[i]
-        soft.ub[i] = qp.ub[i]
-        if i < dof:
-            most = limits[2 * dof + i]
-            soft.lb[i] = min(max(POSITION_GAIN * (limits[i] - q[i]), -most), most)
-            soft.ub[i] = min(max(POSITION_GAIN * (limits[dof + i] - q[i]), -most), most)
-
-
-@compiled
-def _wish(gradient: Vector, pull: Vector, soft: QPViews, dof: int) -> float:
-    """Compute the factor of the cost's own gradient (n,) beside the task's pull (n,).
-
-    A wish for another posture may not outweigh the task, or it would hold the tip away from its
-    target where joints at their limits leave the task little.
+    Returns:
+        The action that was taken.
     """
-    wished = _squares(gradient, dof)
-    if wished == 0.0:
-        return BLEND
-    free = 0.0
+    table = arrays.table
+    dof = table[0, 3]
+    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], dof)
+    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
+    instant = instant_of(arrays, past, following, views.targets, scenes)
     for i in range(dof):
-        free += min(max(pull[i], soft.lb[i]), soft.ub[i]) ** 2
-    return min(BLEND, WISH * math.sqrt(free / wished))
+        following[WANTED, i] = past[WANTED, i]
+    following[REST, 0] = 0.0
+    taken = decide(views, qp, instant, yielding, state, action, yields)
+    views.decision[0] = taken
+    for i in range(PLACEMENT):
+        views.placement[i] = arrays.placements[table[0, 5], i]
+    for i in range(dof):
+        views.q[i] = past[Q, i]
+        views.dq[i] = views.point[i]
+        following[BEFORE, i] = past[LAST, i]
+        following[LAST, i] = views.point[i]
+    return taken
 
 
 @compiled
-def _squares(values: Vector, count: int) -> float:
-    """Compute the sum of the first squares."""
-    total = 0.0
-    for i in range(count):
-        total += values[i] * values[i]
-    return total
+def instant_of(
+    arrays: ProgramArrays,
+    past: Matrix,
+    following: Matrix,
+    targets: Matrix,
+    scenes: NDArray[np.int64],
+) -> Instant:
+    """Bring together what is known at a step; arguments as those of `yield_step`."""
+    step = step_views(arrays, past, targets, 0.0)
+    return Instant(step, past[WANTED], past[REST, 0], following, arrays.constants, scenes)
+
+
+@compiled
+def guard_step(
+    arrays: ProgramArrays,
+    past: Matrix,
+    following: Matrix,
+    targets: Matrix,
+    yielding: Yielding,
+    scenes: NDArray[np.int64],
+) -> bool:
+    """Test whether the command that `following` holds is stoppable, and note its way to rest.
+
+    The arguments are those of `yield_step`, `targets` (k, 18) the row's.
+    """
+    instant = instant_of(arrays, past, following, targets, scenes)
+    rest = stoppable(instant, yielding, following[LAST])
+    following[REST, 0] = max(rest, 0.0)
+    return rest >= 0.0

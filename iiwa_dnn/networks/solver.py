@@ -144,6 +144,16 @@ class DNNSolver:
             return None
         return state if last == sizes and owner is self.network else None
 
+    def cold_state(self, sizes: Sizes) -> Vector:
+        """Return a new state of the projection network, (size,), from which the next call starts.
+
+        The programs have sizes ``(n, m, p)``.
+        """
+        n, m, p = sizes
+        state = np.zeros(3 * n + m + p)
+        self._kept.append((self.network, sizes, state))
+        return state
+
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:
         """Return the compiled function that answers programs of these sizes as this solver does.
 

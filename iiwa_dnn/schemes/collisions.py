@@ -28,7 +28,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
 from iiwa_dnn.schemes.distances import difference, dot, point_of
@@ -45,10 +45,6 @@ from iiwa_dnn.schemes.scene import (
     scene_views,
 )
 from iiwa_dnn.schemes.step import StepViews
-
-RETREAT = 0.9
-"""Largest fraction of the velocity limits that a row asks for, so that it has a solution."""
-
 
 @compiled
 def collision_rows(
@@ -71,7 +67,7 @@ def collision_rows(
         contact = contact_of(pair, ends, scene.points)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
         taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
-        limits[k] = _approach_limit(scene.damper, pair, contact, taken, fastest, step.rate)
+        limits[k] = _approach_limit(scene.damper, pair, contact, taken, step.rate)
         slacks[k] = limits[k] - fastest
     row = 0
     for k in range(pairs):
@@ -104,16 +100,24 @@ def _write_gradient(
     for j in range(dq_max.size):
         value = 0.0
         if moves[k, j] != 0.0:
-            x, y, z = contact.second if moves[k, j] > 0.0 else contact.first
-            wx = jacobian[j, 3]
-            wy = jacobian[j, 4]
-            wz = jacobian[j, 5]
-            value = contact.normal[0] * (jacobian[j, 0] + wy * z - wz * y)
-            value += contact.normal[1] * (jacobian[j, 1] + wz * x - wx * z)
-            value += contact.normal[2] * (jacobian[j, 2] + wx * y - wy * x)
+            point = contact.second if moves[k, j] > 0.0 else contact.first
+            value = rate_along(jacobian, j, point, contact.normal)
         gradients[k, j] = -moves[k, j] * value
         fastest += abs(value) * dq_max[j]
     return fastest
+
+
+@compiled
+def rate_along(jacobian: Matrix, j: int, point: Triple, normal: Triple) -> float:
+    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad]."""
+    x, y, z = point
+    wx = jacobian[j, 3]
+    wy = jacobian[j, 4]
+    wz = jacobian[j, 5]
+    value = normal[0] * (jacobian[j, 0] + wy * z - wz * y)
+    value += normal[1] * (jacobian[j, 1] + wz * x - wx * z)
+    value += normal[2] * (jacobian[j, 2] + wx * y - wy * x)
+    return value
 
 
 @compiled
@@ -138,12 +142,7 @@ def _taken_distance(pair: PairConstants, contact: Contact, ends: Matrix, dt: flo
 
 @compiled
 def _approach_limit(
-    damper: Damper,
-    pair: PairConstants,
-    contact: Contact,
-    taken: float,
-    fastest: float,
-    rate: float,
+    damper: Damper, pair: PairConstants, contact: Contact, taken: float, rate: float
 ) -> float:
     """Limit the rate at which a pair's distance may shrink [m/s]; inf if the row is idle."""
     strays = pair.obstacle_speed
@@ -156,7 +155,7 @@ def _approach_limit(
     idle = max(damper.activation, damper.least + taken + 1.0 / rate * (pair.speed + strays))
     if damper.activation > 0.0 and contact.distance > idle:
         return np.inf
-    return max(approach - strays, -RETREAT * fastest)
+    return approach - strays
 
 
 @dataclass(frozen=True, eq=False)

@@ -71,6 +71,8 @@ class JointCouplingTask(FeedbackTask):
 
     .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
 
+    It is a limit where the tasks yield: a linkage is not pulled apart.
+
     Attributes:
         coefficients: c by joint name.
         offset: c_0 [rad].
@@ -81,7 +83,7 @@ class JointCouplingTask(FeedbackTask):
     offset: float = 0.0
     tracks: bool = field(default=False, init=False, repr=False)
     rows: int = field(default=1, init=False, repr=False)
-    row_weight: float = field(default=0.1, init=False, repr=False)
+    row_weight: float = field(default=0.0, init=False, repr=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()

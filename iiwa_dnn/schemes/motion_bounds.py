@@ -33,6 +33,8 @@ class MotionBounds(NamedTuple):
         turning_change: Change of the turning rate [rad/s^2].
         moves: 1 for each joint that moves the link alone, -1 for each that moves the other link
             alone, else 0, (n,).
+        radii: Largest distance of the points from the axis of each joint that moves them [m], -1
+            for a prismatic joint, 0 for the others, (n,).
     """
 
     speed: float
@@ -40,6 +42,7 @@ class MotionBounds(NamedTuple):
     turning: float
     turning_change: float
     moves: Vector
+    radii: Vector
 
 
 def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> MotionBounds:
@@ -55,13 +58,17 @@ def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> M
     acceleration = 0.0
     turning = 0.0
     change = 0.0
+    radii = np.zeros(robot.dof)
     for index, joint in enumerate(path):
-        fastest = float(robot.dq_max[model.idx_vs[joint]])
+        at = model.idx_vs[joint]
+        fastest = float(robot.dq_max[at])
         if _slides(robot, joint):
+            radii[at] = -1.0
             speed += fastest
             acceleration += 2.0 * fastest * turning
         else:
-            moved = fastest * _largest_radius(robot, path[index:], up, points)
+            radii[at] = _largest_radius(robot, path[index:], up, points)
+            moved = fastest * radii[at]
             speed += moved
             acceleration += moved * (2.0 * turning + fastest)
             change += fastest * turning
@@ -69,7 +76,7 @@ def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> M
     moves = np.zeros(robot.dof)
     for joint in path:
         moves[model.idx_vs[joint]] = -1.0 if joint in up else 1.0
-    return MotionBounds(speed, acceleration, turning, change, moves)
+    return MotionBounds(speed, acceleration, turning, change, moves, radii)
 
 
 def _largest_radius(robot: Robot, path: list[int], up: list[int], points: Matrix) -> float:

@@ -125,7 +125,7 @@ class Task(Part):
     Attributes:
         tracks: Whether the task asks for a target of its frame.
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
-            the task yield (`iiwa_dnn.control.policies`).
+            the task yield (`iiwa_dnn.control.policies`); 0: they are a limit and hold.
         weight: None for hard rows, else the weight of the soft task.
         priority: Level of a hard task in a cascade, 1 the first; None: it has to hold
             (`iiwa_dnn.control.cascade`).

@@ -209,6 +209,13 @@ class StepProgram:
             if isinstance(block.part, Limit) and block.part.moves
         ]
 
+    def constants_of(self, kind: type[Part]) -> list[tuple[int, int]]:
+        """Return beginning and end in `constants` of those of each part of a kind."""
+        blocks = self.compiled_blocks
+        entries = self.table[1 : 1 + len(blocks)].tolist()
+        pairs = zip(blocks, entries, strict=True)
+        return [(entry[4], entry[5]) for block, entry in pairs if isinstance(block.part, kind)]
+
     @property
     def is_compiled(self) -> bool:
         """Test whether compiled code alone writes the programs."""

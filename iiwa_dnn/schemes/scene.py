@@ -129,11 +129,12 @@ class PairConstants(NamedTuple):
 
 
 class _Row(NamedTuple):
-    """A pair, its constants, and `MotionBounds.moves`."""
+    """A pair, its constants, and `MotionBounds.moves` and `radii`."""
 
     names: Pair
     constants: PairConstants
     moves: Vector
+    radii: Vector
 
 
 class _Shape(NamedTuple):
@@ -211,7 +212,7 @@ def _pairs_of_links(robot: Robot, links: list[_Link]) -> Iterator[_Row]:
         corners = 1 if first.a == first.b else 2
         bodies = (k, second.radius, i, first.radius, corners)
         constants = PairConstants(*bounds[:4], 0.0, *bodies)
-        yield _Row(Pair(first.link, second.link), constants, bounds.moves)
+        yield _Row(Pair(first.link, second.link), constants, bounds.moves, bounds.radii)
 
 
 def _pairs_of_obstacle(
@@ -241,7 +242,7 @@ def _pairs_of_obstacle(
         for second in seconds:
             bodies = (second, link.capsule.radius, -1, obstacle.thickness, corners)
             constants = PairConstants(*bounds[:4], obstacle.speed, *bodies, start, *normal)
-            yield _Row(Pair(name, link.capsule.link), constants, bounds.moves)
+            yield _Row(Pair(name, link.capsule.link), constants, bounds.moves, bounds.radii)
 
 
 class SceneViews(NamedTuple):
@@ -254,6 +255,7 @@ class SceneViews(NamedTuple):
         ends: Ends of the shapes' segments in their frames [m], (2 s, 3).
         pairs: `PairConstants` of each pair, (k, 14).
         moves: `MotionBounds.moves` of each pair, (k, n).
+        radii: `MotionBounds.radii` of each pair, (k, n).
         points: Points of the obstacles [m], (p, 3).
     """
 
@@ -263,6 +265,7 @@ class SceneViews(NamedTuple):
     ends: Matrix
     pairs: Matrix
     moves: Matrix
+    radii: Matrix
     points: Matrix
 
 
@@ -283,6 +286,7 @@ def _constants(
         [shape.ends for shape in shapes],
         [row.constants for row in rows],
         [row.moves for row in rows],
+        [row.radii for row in rows],
         points,
     ]
     return np.concatenate([np.ravel(part) for part in parts])
@@ -298,14 +302,16 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
     at_ends = at_frames + shapes
     at_pairs = at_ends + 6 * shapes
     at_moves = at_pairs + _PER_PAIR * pairs
-    at_points = at_moves + dof * pairs
+    at_radii = at_moves + dof * pairs
+    at_points = at_radii + dof * pairs
     return SceneViews(
         Damper(constants[0], constants[1], constants[2]),
         constants[_HEAD:at_frames],
         constants[at_frames:at_ends],
         constants[at_ends:at_pairs].reshape(2 * shapes, 3),
         constants[at_pairs:at_moves].reshape(pairs, _PER_PAIR),
-        constants[at_moves:at_points].reshape(pairs, dof),
+        constants[at_moves:at_radii].reshape(pairs, dof),
+        constants[at_radii:at_points].reshape(pairs, dof),
         constants[at_points : at_points + 3 * points].reshape(points, 3),
     )
 

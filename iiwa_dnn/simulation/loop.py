@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.feedback import IntegralFeedback
-from iiwa_dnn.control.policies import Action, Resolution
+from iiwa_dnn.control.policies import Action
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.references import Target
@@ -32,7 +32,6 @@ class Outcome(NamedTuple):
         velocity: Velocity that the controller answered, the mean of the stages [rad/s], (n,).
         dq: Velocity that moved the robot [rad/s], (n,).
         q: True joint positions after the step [rad], (n,).
-        resolution: Decision of a policy that the step followed; else None.
         action: Action in place of the network's answer.
         acceleration: Joint accelerations [rad/s^2], (n,), at the acceleration level; else None.
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
@@ -45,7 +44,6 @@ class Outcome(NamedTuple):
     velocity: Vector
     dq: Vector
     q: Vector
-    resolution: Resolution | None = None
     action: Action = Action.NONE
     acceleration: Vector | None = None
     clipped: NDArray[np.int8] | None = None
@@ -138,10 +136,9 @@ class Loop:
             self._note_levels()
         if self._misled:
             self._show_true_pose(command)
-        resolution = command.resolution
-        self._yielded = resolution is not None
-        if resolution is not None or not plant.exact:
-            return self._moved((command,), dq, dq, resolution)
+        self._yielded = command.action is not Action.NONE
+        if self._yielded or not plant.exact:
+            return self._moved((command,), dq, dq)
         plant.move(dq)
         self.q = plant.q
         levels = self._taken_levels() if self._has_levels else ()
@@ -173,19 +170,18 @@ class Loop:
             mean = velocity
         if self._misled:
             self._show_true_pose(commands[0])
-        resolution = commands[0].resolution
-        self._yielded = any(command.resolution is not None for command in commands)
+        self._yielded = any(command.action is not Action.NONE for command in commands)
         if self._yielded:
             # If only a later stage has no solution, the answer at its start will do.
             commands = [commands[0]] * len(commands)
             velocity = commands[0].dq
             mean = 0.5 * (before + velocity) if accelerates else velocity
         command, clipped = self._altered(k, t, commands[0], velocity)
-        controller.send(command, resolution)
+        controller.send(command, commands[0].fraction)
         if not accelerates:
-            return self._moved(commands, velocity, command, resolution)._replace(clipped=clipped)
+            return self._moved(commands, velocity, command)._replace(clipped=clipped)
         moving = mean if self.plant.exact else command
-        outcome = self._moved(commands, velocity, moving, resolution)
+        outcome = self._moved(commands, velocity, moving)
         return outcome._replace(acceleration=(velocity - before) / dt)
 
     def _altered(
@@ -204,18 +200,17 @@ class Loop:
         commands: Sequence[Command],
         velocity: Vector,
         dq: Vector,
-        resolution: Resolution | None,
     ) -> Outcome:
         """Let the plant follow a command, unless a policy has stopped the run."""
         action = Action.NONE
         if self._yielded:
-            action = Action.EULER if resolution is None else resolution.action
+            action = commands[0].action or Action.EULER
         levels = self._taken_levels()
         torque = None
         ends = False
         before = self.q
-        if resolution is not None and action is Action.STOP:
-            self.controller.halt(resolution)
+        if action is Action.STOP:
+            self.controller.halt(commands[0])
             ends = not commands[0].dq.any()
         if not ends:
             self.plant.move(dq)
@@ -232,7 +227,6 @@ class Loop:
             velocity,
             dq,
             self.q,
-            resolution,
             action,
             torque=torque,
             levels=levels,

@@ -174,7 +174,7 @@ class Recorder:
             residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
-        resolution = outcome.resolution
+        resolution = outcome.commands[0].resolution
         if resolution is None:
             return
         self._array("fraction")[k] = resolution.fraction

@@ -71,14 +71,25 @@ def test_commands_stay_what_they_were() -> None:
         assert command.ok
 
 
-def test_a_target_out_of_reach_is_not_ok_and_moves_slowly_towards_it() -> None:
+def test_a_target_out_of_reach_is_not_ok_and_is_gone_to_directly() -> None:
     controller = Controller(paper_robot(), DoubleIndicator(), dt=DT)
     start = paper_start()
     far = Target(start.position + [3.0, 0.0, 0.0], start.rotation)
     command = controller.step(PAPER_Q0, 0.0, far)
     assert not command.ok
+    assert command.action is Action.RELAX
+    assert (start.jacobian @ command.dq)[0] > 0.0
+    assert controller.delay == 0.0
+
+
+def test_a_path_that_is_too_quick_is_followed_more_slowly() -> None:
+    controller = Controller(paper_robot(), DoubleIndicator(), dt=DT)
+    start = paper_start()
+    quick = Target(start.position, start.rotation, [9.0, 0.0, 0.0])
+    command = controller.step(PAPER_Q0, 0.0, quick)
+    assert not command.ok
     assert command.action is Action.SLOW
-    # Today's default handed out six of seven joints at their limits.
+    # The direction stays, and with it most joints away from their limits.
     at_limit = np.abs(command.dq) > 0.999 * paper_robot().dq_max
     assert at_limit.sum() <= 2
     moved = start.jacobian @ command.dq

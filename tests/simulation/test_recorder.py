@@ -12,7 +12,7 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.policies import Action, Resolution, stopped
+from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation.loop import Outcome
@@ -29,8 +29,19 @@ def recorder(steps: int = 5) -> Recorder:
     return Recorder(steps, CONTROLLER, np.array(PAPER_Q0), {"rows": ROWS})
 
 
-def outcome(**facts: Any) -> Outcome:
-    command = CONTROLLER.compute(np.array(PAPER_Q0), 0.1)
+class Decided(Command):
+    """A command with a decision about a program of other sizes."""
+
+    decision: Resolution | None = None
+
+    @property
+    def resolution(self) -> Resolution | None:
+        return self.decision
+
+
+def outcome(resolution: Resolution | None = None, **facts: Any) -> Outcome:
+    command = Decided(CONTROLLER.compute(np.array(PAPER_Q0), 0.1).row, CONTROLLER.layout)
+    command.decision = resolution
     return Outcome([command], command.dq, command.dq, np.array(PAPER_Q0), **facts)
 
 
@@ -44,8 +55,7 @@ def decided(sides: list[int], rows: list[int]) -> Resolution:
     failed = Solution(np.zeros(19), qp.sizes, Status.NOT_SETTLED, 0, 0.0, 1.0, 1.0, 1.0)
     signs = np.array(sides, np.int8)
     acting = np.array(rows, np.int8)
-    decision = stopped(qp, failed)._replace(fraction=0.25, sides=signs, rows=acting)
-    return decision._replace(action=Action.SLOW)
+    return Resolution(Action.SLOW, qp, failed, 0.25, signs, acting)
 
 
 def recorded(outcomes: list[Outcome]) -> dict[str, Any]:

@@ -1,0 +1,436 @@
+r"""Relaxed programs, which have a solution where a step's own program has none.
+
+The **scaled program** keeps the direction of the task. With one more variable, the speed
+:math:`\sigma` along the direction :math:`\hat b = b / \beta`, :math:`\beta = \|b\|_\infty`,
+
+.. math::
+
+    \min_{x,\,\sigma} \; -\sigma + w \, \tfrac12 (x - x_0)^T P (x - x_0) \quad \text{with} \quad
+    A x = \sigma \hat b, \quad 0 \le \sigma \le \beta, \quad G x \le h, \quad lb \le x \le ub,
+
+and the scaling factor is :math:`s = \sigma / \beta`. Further passes start from the last one's point,
+:math:`x_0`, which takes off what the cost has held back (docs/robustness.md).
+
+The **softened program** moves the violation of the task into the cost,
+
+.. math::
+
+    \min_{x} \; \tfrac12 \|W (A x - b)\|^2 + \tfrac12 \lambda^2 \|x - v_0\|^2
+        + \tfrac12 \varepsilon\, x^T P x + \varepsilon'\, q^T x, \quad
+    \lambda^2 = \Lambda^2 \max\bigl(0, 1 - (\sigma_1 / \sigma_0)^2\bigr)
+
+with :math:`\sigma_1` the smallest singular value of W A: away from singular poses its solution is
+the task's velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction
+of singular value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at
+most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift.
+
+Rows of joints that follow others are limits: both programs keep them as they are.
+
+Sources: O. L. Mangasarian, R. R. Meyer, "Nonlinear perturbation of linear programs", SIAM J.
+Control and Optimization 17 (1979), for the exactness of the scaling factor; Y. Nakamura,
+H. Hanafusa, "Inverse kinematic solutions with singularity robustness for robot manipulator
+control", J. Dynamic Systems, Measurement, and Control 108 (1986), for the damping.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.dense import cholesky_factor, extreme_eigenvalues, factor_solve, row_dot
+from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.residuals import within
+
+PENALTY = 1e-5
+"""w, for a cost whose largest entry is one."""
+
+MAX_PASSES = 4
+"""Passes after the first one; one that changes nothing has the linear program's solution."""
+
+BLOCKING = 1e-5
+"""Multiplier, relative to the largest, above which a bound or row stands in the way."""
+
+DAMPING = 0.05
+NEAR = 0.05
+"""Lambda [m/rad] and sigma_0 [m/rad] of the damping near singular poses."""
+
+BLEND = 1e-4
+WISH = 0.1
+"""Epsilon: weight of the scheme's own cost beside the task, and the share of the task's gradient in
+the joints that can follow it that the cost's own gradient may reach."""
+
+DRIFT = 0.02
+"""Speed at most [rad/s] that damping leaves, towards the posture that the cost wishes for. Damped
+to rest, an arm pulled beyond its reach ends up exactly stretched, and finds back too late."""
+
+FULL = 0.1
+"""Task velocity [m/s] below which the drift of the damping is less, so that a target is reached."""
+
+RETREAT = 0.9
+"""Largest part of what the bounds let a row be that it may ask for where the task yields."""
+
+REACHED = 1e-9
+"""Residual of the task rows below which a point counts as on them."""
+
+
+class Yielding(NamedTuple):
+    """What relaxed programs need beside a step's own.
+
+    Attributes:
+        weights: Weight of each task row, (p,); 0 for a row that is a limit.
+        limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (5 dof,);
+            empty where there are none.
+        settings: Constants with which the network settles, ``[tol, budget, long step]``, (3,).
+        dt: Control period [s].
+    """
+
+    weights: Vector
+    limits: Vector
+    settings: Vector
+    dt: float
+
+
+@compiled
+def settled(qp: QPViews, settings: Vector, state: Vector, point: Vector) -> bool:
+    """Settle the network on a program from a state (size,); test whether it has a solution."""
+    _, _, primal, dual, gap = settle(qp, 0, settings, state, point)
+    return within(primal, dual, gap, settings[0])
+
+
+@compiled
+def largest_factor(qp: QPViews, yielding: Yielding, point: Vector) -> float:
+    """Compute the largest scaling factor of the task that the limits allow, in [0, 1].
+
+    Args:
+        qp: The step's program, of n variables, m inequality and p equality rows.
+        yielding: Which rows are the task's, and how the network settles.
+        point: The scaled program's solution, (2 (n + 1) + m + p,), overwritten.
+
+    Returns:
+        The factor; NaN where not even 0 is feasible.
+    """
+    data = program_data(qp.q.size + 1, qp.h.size, qp.b.size)
+    return _largest_factor(qp, yielding, data, point)
+
+
+@compiled
+def program_data(n: int, m: int, p: int) -> Vector:
+    """Make room for a program, `QP.data`, (size,), zero.
+
+    Its views do not keep it: the function that makes them gets it as an argument.
+    """
+    return np.zeros((n + m + p) * (n + 1) + 2 * n)
+
+
+@compiled
+def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector) -> float:
+    """Compute `largest_factor` in the room for the scaled program, (size,)."""
+    n = qp.q.size
+    m = qp.h.size
+    p = qp.b.size
+    size = n + 1
+    scaled = qp_views(data, size, m, p)
+    longest = _write_scaled(qp, yielding.weights, scaled)
+    state = np.zeros(3 * size + m + p)
+    if not settled(scaled, yielding.settings, state, point):
+        return np.nan
+    for _ in range(MAX_PASSES):
+        before = point[n]
+        for i in range(n):
+            scaled.q[i] = -row_dot(scaled.P, i, point[:n])
+        if not settled(scaled, yielding.settings, state, point):
+            return np.nan
+        if abs(point[n] - before) <= 0.1 * REACHED:
+            break
+    return min(max(point[n] / longest, 0.0), 1.0)
+
+
+@compiled
+def _write_scaled(qp: QPViews, weights: Vector, scaled: QPViews) -> float:
+    """Write the scaled program of a step's program; return the task's largest entry."""
+    n = qp.q.size
+    longest = 0.0
+    for j in range(qp.b.size):
+        if weights[j] > 0.0:
+            longest = max(longest, abs(qp.b[j]))
+    if longest == 0.0:
+        longest = 1.0
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, abs(qp.q[i]))
+        for k in range(n):
+            largest = max(largest, abs(qp.P[i, k]))
+    weight = PENALTY / largest if largest > 0.0 else 0.0
+    for i in range(n):
+        scaled.q[i] = weight * qp.q[i]
+        scaled.lb[i] = qp.lb[i]
+        scaled.ub[i] = qp.ub[i]
+        for k in range(n):
+            scaled.P[i, k] = weight * qp.P[i, k]
+    scaled.q[n] = -1.0
+    scaled.ub[n] = longest
+    for j in range(qp.h.size):
+        scaled.h[j] = qp.h[j]
+        for i in range(n):
+            scaled.G[j, i] = qp.G[j, i]
+    for j in range(qp.b.size):
+        for i in range(n):
+            scaled.A[j, i] = qp.A[j, i]
+        if weights[j] > 0.0:
+            scaled.A[j, n] = -qp.b[j] / longest
+        else:
+            scaled.b[j] = qp.b[j]
+    return longest
+
+
+@compiled
+def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -> None:
+    """Note which bounds and rows stand in the way of a relaxed program.
+
+    Args:
+        point: Its solution, ``[x | y | z | z_box]`` with `extra` more variables than n.
+        n: Number of the step's variables.
+        m: Number of inequality rows.
+        extra: Number of further variables.
+        blocking: For each variable the sign of its bound's multiplier, and for each row 1 where its
+            multiplier counts, (n + m,), overwritten.
+    """
+    at_box = point.size - n - extra
+    at_rows = at_box - m
+    largest = 0.0
+    for i in range(n + m):
+        largest = max(largest, abs(point[at_box + i if i < n else at_rows + i - n]))
+    least = BLOCKING * largest
+    for i in range(n + m):
+        value = point[at_box + i if i < n else at_rows + i - n]
+        blocking[i] = 0.0
+        if abs(value) > least:
+            blocking[i] = 1.0 if value > 0.0 else -1.0
+
+
+@compiled
+def least_violation(qp: QPViews, yielding: Yielding, q: Vector, point: Vector) -> bool:
+    """Solve the softened program of a step; where the task can be had, move onto its rows.
+
+    Args:
+        qp: The step's program, of n variables, m inequality and p equality rows.
+        yielding: Weights and limits; with acceleration limits, velocity and position limits alone
+            bound the joints.
+        q: Joint positions [rad], (dof,).
+        point: Its solution, ``[x | z | z_box]``, (2 n + m,), or with the multipliers y of rows that
+            are limits; overwritten.
+
+    Returns:
+        Whether there is a solution.
+    """
+    data = program_data(qp.q.size, qp.h.size, held_rows(yielding.weights))
+    return _least_violation(qp, yielding, q, data, point)
+
+
+@compiled
+def _least_violation(
+    qp: QPViews, yielding: Yielding, q: Vector, data: Vector, point: Vector
+) -> bool:
+    """Solve the softened program in the room for it, (size,); as `least_violation`."""
+    n = qp.q.size
+    m = qp.h.size
+    held = held_rows(yielding.weights)
+    soft = qp_views(data, n, m, held)
+    damping = _write_softened(qp, yielding, q, soft)
+    state = np.zeros(3 * n + m + held)
+    if not settled(soft, yielding.settings, state, point):
+        return False
+    # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
+    exact = point[:n].copy()
+    if damping == 0.0 and on_rows(qp, exact) and inside(soft, exact):
+        for i in range(n):
+            point[i] = exact[i]
+    return True
+
+
+@compiled
+def held_rows(weights: Vector) -> int:
+    """Count the equality rows that are limits, by the weights (p,) of all rows."""
+    count = 0
+    for j in range(weights.size):
+        if weights[j] == 0.0:
+            count += 1
+    return count
+
+
+@compiled
+def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -> float:
+    """Write the softened program of a step; return the square of the damping, lambda."""
+    n = qp.q.size
+    weights = yielding.weights
+    damping = _damping(qp.A, weights)
+    pull = np.zeros(n)
+    asked = 0.0
+    held = 0
+    for j in range(qp.b.size):
+        rhs = weights[j] * weights[j] * qp.b[j]
+        asked += rhs * qp.b[j]
+        for i in range(n):
+            pull[i] += rhs * qp.A[j, i]
+            for k in range(n):
+                soft.P[i, k] += weights[j] * weights[j] * qp.A[j, i] * qp.A[j, k]
+        if weights[j] == 0.0:
+            soft.b[held] = qp.b[j]
+            for i in range(n):
+                soft.A[held, i] = qp.A[j, i]
+            held += 1
+    _write_bounds(qp, yielding.limits, q, soft)
+    wish = _wish(qp.q, pull, soft, q.size) if damping == 0.0 else 0.0
+    drift = DRIFT * min(1.0, math.sqrt(asked) / FULL) / max(_length(qp.q), 1.0)
+    for i in range(n):
+        for k in range(n):
+            soft.P[i, k] += BLEND * qp.P[i, k]
+        soft.P[i, i] += damping
+        soft.q[i] = wish * qp.q[i] + damping * drift * qp.q[i] - pull[i]
+    for j in range(qp.h.size):
+        lowest = 0.0
+        for i in range(n):
+            entry = qp.G[j, i]
+            soft.G[j, i] = entry
+            if entry != 0.0:
+                lowest += entry * (soft.lb[i] if entry > 0.0 else soft.ub[i])
+        soft.h[j] = max(qp.h[j], RETREAT * lowest if lowest < 0.0 else lowest)
+    return damping
+
+
+@compiled
+def _damping(A: Matrix, weights: Vector) -> float:
+    """Compute the square of the damping for task rows A (p, n), which grows near singular poses."""
+    p = weights.size - held_rows(weights)
+    if p == 0:
+        return 0.0
+    gram = np.empty((p, p))
+    row = 0
+    for j in range(weights.size):
+        if weights[j] == 0.0:
+            continue
+        column = 0
+        for k in range(weights.size):
+            if weights[k] > 0.0:
+                gram[row, column] = weights[j] * weights[k] * row_dot(A, j, A[k])
+                column += 1
+        row += 1
+    smallest, _ = extreme_eigenvalues(gram)
+    return DAMPING * DAMPING * max(0.0, 1.0 - smallest / (NEAR * NEAR))
+
+
+@compiled
+def _write_bounds(qp: QPViews, limits: Vector, q: Vector, soft: QPViews) -> None:
+    """Write the bounds of the variables: without acceleration limits those of the step."""
+    dof = q.size
+    for i in range(qp.q.size):
+        soft.lb[i] = qp.lb[i]
+        soft.ub[i] = qp.ub[i]
+        if limits.size > 0 and i < dof:
+            fastest = limits[2 * dof + i]
+            soft.lb[i] = min(max(POSITION_GAIN * (limits[i] - q[i]), -fastest), fastest)
+            soft.ub[i] = min(max(POSITION_GAIN * (limits[dof + i] - q[i]), -fastest), fastest)
+
+
+POSITION_GAIN = 20.0
+"""Rate at which the wanted velocity falls towards a position limit [1/s]."""
+
+
+@compiled
+def _wish(gradient: Vector, pull: Vector, soft: QPViews, dof: int) -> float:
+    """Compute the factor of the cost's own gradient (n,) beside the task's pull (n,).
+
+    A wish for another posture may not outweigh the task, or it would hold the tip away from its
+    target where joints at their limits leave the task little.
+    """
+    wished = _length(gradient[:dof])
+    if wished == 0.0:
+        return BLEND
+    free = 0.0
+    for i in range(dof):
+        free += min(max(pull[i], soft.lb[i]), soft.ub[i]) ** 2
+    return min(BLEND, WISH * math.sqrt(free) / wished)
+
+
+@compiled
+def _length(values: Vector) -> float:
+    """Compute the Euclidean norm of values (k,)."""
+    total = 0.0
+    for i in range(values.size):
+        total += values[i] * values[i]
+    return math.sqrt(total)
+
+
+@compiled
+def on_rows(qp: QPViews, x: Vector) -> bool:
+    """Move x (n,) to the nearest point on the equality rows; return False where that fails."""
+    p = qp.b.size
+    if p == 0:
+        return True
+    gram = np.empty((p, p))
+    missing = np.empty(p)
+    multiplier = np.empty(p)
+    for j in range(p):
+        missing[j] = qp.b[j] - row_dot(qp.A, j, x)
+        for k in range(p):
+            gram[j, k] = row_dot(qp.A, j, qp.A[k])
+        gram[j, j] += 1e-13
+    if not cholesky_factor(gram):
+        return False
+    factor_solve(gram, missing, multiplier)
+    worst = 0.0
+    for j in range(p):
+        for i in range(x.size):
+            x[i] += qp.A[j, i] * multiplier[j]
+    for j in range(p):
+        worst = max(worst, abs(row_dot(qp.A, j, x) - qp.b[j]))
+    return worst <= REACHED
+
+
+@compiled
+def inside(qp: QPViews, x: Vector) -> bool:
+    """Test whether x (n,) is within the bounds and inequality rows of a program."""
+    for i in range(x.size):
+        if x[i] < qp.lb[i] or x[i] > qp.ub[i]:
+            return False
+    for j in range(qp.h.size):
+        if row_dot(qp.G, j, x) > qp.h[j]:
+            return False
+    return True
+
+
+@compiled
+def nearest_within(qp: QPViews, x: Vector, settings: Vector) -> bool:
+    """Move x (n,) to the nearest point within the bounds and inequality rows of a program.
+
+    Returns:
+        False if the network finds none; x then stays.
+    """
+    if inside(qp, x):
+        return True
+    return _nearest_within(qp, x, settings, program_data(x.size, qp.h.size, 0))
+
+
+@compiled
+def _nearest_within(qp: QPViews, x: Vector, settings: Vector, data: Vector) -> bool:
+    """Move x (n,) as `nearest_within` does, in the room for the program, (size,)."""
+    n = x.size
+    m = qp.h.size
+    nearest = qp_views(data, n, m, 0)
+    for i in range(n):
+        nearest.P[i, i] = 1.0
+        nearest.q[i] = -x[i]
+        nearest.lb[i] = qp.lb[i]
+        nearest.ub[i] = qp.ub[i]
+    for j in range(m):
+        nearest.h[j] = qp.h[j]
+        for i in range(n):
+            nearest.G[j, i] = qp.G[j, i]
+    point = np.empty(2 * n + m)
+    if not settled(nearest, settings, np.zeros(3 * n + m), point):
+        return False
+    for i in range(n):
+        x[i] = point[i]
+    return True

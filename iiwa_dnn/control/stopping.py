@@ -1,0 +1,348 @@
+r"""Motions to a wanted velocity on a straight line, and the way to rest that a command leaves.
+
+From the velocities :math:`v_0` of now and :math:`v_{-1}` of the period before, all joints reach the
+wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = i / M`,
+
+.. math::
+
+    x_i = x_0 \,(1 - u)^2 (1 + 2 u) + b\, u\,(1 - u)^2
+
+where a jerk is limited, with b such that :math:`x_{-1}` is on the curve too, and
+:math:`x_i = x_0 (1 - u)` where it is not. The second difference of a cubic is its second derivative
+in the middle, so the jerk is linear in u and largest at an end. M is the least number of periods
+that the limits allow; a motion that is gone along keeps its M, and stays on the same curve.
+
+A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
+distances: a pair at the distance d, with the gradient g of the distance and the joints' way
+:math:`\Delta q`, still has at least
+
+.. math::  d + g \cdot \Delta q - \tfrac12 B - \max(0,\; \omega \ell - \eta) - v_o T
+
+by inequality (1) of docs/collisions.md. Along the motion :math:`g \cdot \Delta q` has its least
+value at rest, or where the sum of its terms changes sign.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import Triple, compiled
+from iiwa_dnn.schemes.collisions import rate_along
+from iiwa_dnn.schemes.distances import difference, dot, point_of
+from iiwa_dnn.schemes.scene import (
+    Contact,
+    PairConstants,
+    contact_of,
+    pair_of,
+    place_ends,
+    scene_views,
+)
+from iiwa_dnn.schemes.step import StepViews
+
+LONGEST = 1e6
+"""Periods after which a motion counts as endless."""
+
+GROWTH = 1.1
+"""Factor between the numbers of periods that are tried."""
+
+SLACK = 1e-9
+"""Relative excess of a limit that is rounding."""
+
+CLOSER = 1e-9
+"""Distance by which a pair that is too near may come nearer through rounding [m]."""
+
+
+class Motion(NamedTuple):
+    """A motion to rest, or to a wanted velocity that is taken off.
+
+    Attributes:
+        first: Velocities at its start [rad/s], (n,).
+        bend: b of the cubic [rad/s], (n,); zero for straight lines in time.
+        periods: M; 0 if there is none.
+        cubic: Whether the velocities are cubic in time.
+    """
+
+    first: Vector
+    bend: Vector
+    periods: float
+    cubic: bool
+
+
+@compiled
+def bend_of(x: float, before: float, periods: float) -> float:
+    """Compute b of the cubic through x now and x before, which ends after so many periods."""
+    u = 1.0 / periods
+    return (x * (1.0 - 3.0 * u * u - 2.0 * u * u * u) - before) / (u * (1.0 + u) * (1.0 + u))
+
+
+@compiled
+def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float:
+    """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
+    if periods < 1.5:
+        return 0.0
+    u = 1.0 / periods
+    if not cubic:
+        return x * (1.0 - u)
+    left = (1.0 - u) * (1.0 - u)
+    return left * (x * (1.0 + 2.0 * u) + bend_of(x, before, periods) * u)
+
+
+@compiled
+def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float:
+    """Compute the least number of periods in which velocities can go to zero together.
+
+    Args:
+        x: Velocities of now [rad/s], (n,).
+        before: Velocities of the period before [rad/s], (n,).
+        limits: Constants of the acceleration and jerk limits, (5 n,).
+        dt: Control period [s].
+
+    Returns:
+        M, 0 at rest; inf if no number is enough.
+    """
+    n = x.size
+    cubic = has_jerk(limits)
+    periods = 0.0
+    for i in range(n):
+        accel = limits[3 * n + i]
+        jerk = limits[4 * n + i]
+        periods = max(periods, math.ceil(abs(x[i]) / (accel * dt) * (1.0 - SLACK)))
+        if cubic and (x[i] != 0.0 or before[i] != 0.0):
+            periods = max(periods, 1.0, math.ceil(1.5 * abs(x[i]) / (accel * dt) - 2.0))
+            if jerk < np.inf:
+                periods = max(periods, math.ceil(math.sqrt(3.0 * abs(x[i]) / jerk) / dt - 2.0))
+    if not cubic:
+        return periods
+    k = 0
+    while k < n:
+        if periods > LONGEST:
+            return np.inf
+        if within_rates(x[k], before[k], periods, limits[3 * n + k] * dt, limits[4 * n + k] * dt * dt):
+            k += 1
+        else:
+            periods = math.ceil(GROWTH * periods)
+            k = 0
+    return periods
+
+
+@compiled
+def has_jerk(limits: Vector) -> bool:
+    """Test whether the jerk of a joint is limited, by the constants (5 n,) of the limits."""
+    for i in range(4 * limits.size // 5, limits.size):
+        if limits[i] < np.inf:
+            return True
+    return False
+
+
+@compiled
+def within_rates(x: float, before: float, periods: float, accel: float, jerk: float) -> bool:
+    """Test whether a cubic keeps its limits per period of acceleration and jerk [rad/s]."""
+    if periods < 0.5:
+        return True
+    b = bend_of(x, before, periods)
+    u = 1.0 / periods
+    most = jerk * (1.0 + SLACK)
+    if abs(6.0 * x + 4.0 * b) * u * u > most:
+        return False
+    if abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)) * u * u > most:
+        return False
+    most = accel * (1.0 + SLACK)
+    if abs(next_velocity(x, before, periods, True) - x) > most:
+        return False
+    steepest = 12.0 * x + 6.0 * b
+    at = (6.0 * x + 4.0 * b) / steepest if steepest != 0.0 else 0.0
+    if not u <= at < 1.0:
+        return True
+    return abs(-6.0 * x * at * (1.0 - at) + b * (1.0 - at) * (1.0 - 3.0 * at)) * u <= most
+
+
+@compiled
+def sums(motion: Motion, count: float) -> tuple[float, float]:
+    """Sum the factors of the first velocities and of b over the first `count` periods."""
+    M = motion.periods
+    first = 0.5 * count * (count - 1.0)
+    if not motion.cubic:
+        return count - first / M, 0.0
+    second = first * (2.0 * count - 1.0) / 3.0
+    third = first * first
+    of_first = count - 3.0 * second / (M * M) + 2.0 * third / (M * M * M)
+    of_bend = first / M - 2.0 * second / (M * M) + third / (M * M * M)
+    return of_first, of_bend
+
+
+@compiled
+def extremes(motion: Motion, x: float, b: float, dt: float) -> tuple[float, float]:
+    """Compute the least and the largest way along a motion, of x (1 - u)^2 (1 + 2u) + b u (1 - u)^2.
+
+    At its start the way is zero; dt is the control period [s].
+    """
+    M = motion.periods
+    of_first, of_bend = sums(motion, M)
+    way = dt * (x * of_first + b * of_bend)
+    least = min(0.0, way)
+    largest = max(0.0, way)
+    turn = 2.0 * x + b
+    if motion.cubic and x * turn < 0.0:
+        count = min(math.ceil(-x / turn * M), M)
+        of_first, of_bend = sums(motion, count)
+        way = dt * (x * of_first + b * of_bend)
+        least = min(least, way)
+        largest = max(largest, way)
+    return least, largest
+
+
+@compiled
+def motion_to_rest(dq: Vector, last: Vector, limits: Vector, dt: float) -> Motion:
+    """Compute the shortest motion to rest from a command dq (n,) after the last one (n,) [rad/s].
+
+    The limits are those of `least_periods`, dt is the control period [s].
+    """
+    periods = least_periods(dq, last, limits, dt)
+    cubic = has_jerk(limits)
+    bend = np.zeros(dq.size)
+    if not periods < np.inf:
+        return Motion(dq, bend, -1.0, cubic)
+    if cubic and periods > 0.0:
+        for i in range(dq.size):
+            bend[i] = bend_of(dq[i], last[i], periods)
+    return Motion(dq, bend, periods, cubic)
+
+
+@compiled
+def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> bool:
+    """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
+    n = q.size
+    for i in range(n):
+        x = motion.first[i]
+        b = motion.bend[i]
+        least, largest = extremes(motion, x, b, dt)
+        # A joint that is outside already may come back.
+        if q[i] + largest > max(limits[n + i], q[i]) or q[i] + least < min(limits[i], q[i]):
+            return False
+        steepest = 6.0 * x + 3.0 * b
+        u = b / steepest if steepest != 0.0 else 0.0
+        if 0.0 < u < 1.0:
+            peak = (1.0 - u) * (1.0 - u) * (x * (1.0 + 2.0 * u) + b * u)
+            if abs(peak) > limits[2 * n + i] * (1.0 + SLACK):
+                return False
+    return True
+
+
+class Swept(NamedTuple):
+    """Bounds on the motion of a pair's second body as seen from the first.
+
+    Attributes:
+        way: Way of a point [m].
+        second_order: Bound on what the ways of points lack to be linear in the joints' [m].
+        turning: Angle by which the body turns [rad].
+        turning_change: Bound on the product of two joints' angles in it [rad^2].
+    """
+
+    way: float
+    second_order: float
+    turning: float
+    turning_change: float
+
+
+@compiled
+def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> Swept:
+    """Bound the motion of pair k by the travel of the joints (n,) [rad].
+
+    The bounds are those of `iiwa_dnn.schemes.motion_bounds`, from `moves` and `radii` (pairs, n).
+    """
+    n = travel.size
+    way = 0.0
+    second_order = 0.0
+    turning = 0.0
+    change = 0.0
+    for step in range(2 * n):  # from the first body up to the common base, then down
+        j = n - 1 - step if step < n else step - n
+        if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
+            continue
+        if radii[k, j] < 0.0:
+            way += travel[j]
+            second_order += 2.0 * travel[j] * turning
+        else:
+            moved = travel[j] * radii[k, j]
+            way += moved
+            second_order += moved * (2.0 * turning + travel[j])
+            change += travel[j] * turning
+            turning += travel[j]
+    return Swept(way, second_order, turning, change)
+
+
+@compiled
+def keeps_distances(motion: Motion, step: StepViews, constants: Vector) -> bool:
+    """Test whether all pairs of a scene keep their distance on a motion to rest.
+
+    A pair that is too near, or that a moving obstacle comes too near while the arm brakes, must not
+    come nearer by the arm's own motion. `constants` (k,) are `Scene.constants`.
+    """
+    n = motion.first.size
+    dt = 1.0 / step.rate
+    scene = scene_views(constants, n)
+    ends = place_ends(scene, step.placements)
+    of_first, of_bend = sums(motion, motion.periods)
+    travel = np.empty(n)
+    for i in range(n):
+        travel[i] = dt * (abs(motion.first[i]) * of_first + abs(motion.bend[i]) * of_bend)
+    for k in range(len(scene.pairs)):
+        pair = pair_of(scene.pairs, k)
+        contact = contact_of(pair, ends, scene.points)
+        bounds = swept(scene.moves, scene.radii, k, travel)
+        left = contact.distance - pair.obstacle_speed * dt * motion.periods
+        if left - bounds.way >= scene.damper.least:
+            continue
+        change = least_change(motion, step, scene.moves, k, pair, contact, ends, bounds)
+        if left + change < min(scene.damper.least, left - CLOSER):
+            return False
+    return True
+
+
+@compiled
+def _least_rise(
+    motion: Motion, step: StepViews, moves: Matrix, k: int, point: Triple, normal: Triple
+) -> float:
+    """Compute the least way along a normal of a point of pair k's second body, to first order."""
+    x = 0.0
+    b = 0.0
+    for j in range(motion.first.size):
+        if moves[k, j] != 0.0:
+            rate = moves[k, j] * rate_along(step.jacobian, j, point, normal)
+            x += rate * motion.first[j]
+            b += rate * motion.bend[j]
+    least, _ = extremes(motion, x, b, 1.0 / step.rate)
+    return least
+
+
+@compiled
+def least_change(
+    motion: Motion,
+    step: StepViews,
+    moves: Matrix,
+    k: int,
+    pair: PairConstants,
+    contact: Contact,
+    ends: Matrix,
+    bounds: Swept,
+) -> float:
+    """Bound the change of pair k's distance on a motion to rest from below [m].
+
+    `moves` (pairs, n) are the scene's, `ends` (2 s, 3) the ends of its shapes in the world.
+    """
+    normal = contact.normal
+    shape = int(pair.second)
+    change = np.inf
+    for end in (point_of(ends, 2 * shape), point_of(ends, 2 * shape + 1)):
+        height = dot(difference(end, contact.second), normal)
+        change = min(change, height + _least_rise(motion, step, moves, k, end, normal))
+    change -= 0.5 * bounds.second_order
+    if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
+        turning = bounds.turning
+        turned = (turning * turning + bounds.turning_change) * (contact.core + bounds.way)
+        turned += 2.0 * turning * bounds.way + bounds.second_order
+        rise = _least_rise(motion, step, moves, k, contact.second, normal)
+        change = max(change, rise - 0.5 * turned)
+    return change
