@@ -8,10 +8,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 
 from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
+from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 from iiwa_dnn.qp.layout import Sizes, compiled
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -53,6 +55,11 @@ class RowViews(NamedTuple):
     decision: Vector
     blocking: Vector
     targets: Matrix
+
+
+_V = VECTOR
+ROW_VIEWS = types.BaseTuple.from_types((_V, _V, _V, _V, _V, _V, _V, _V, MATRIX), RowViews)
+"""numba's type of `RowViews`, for a `Signature`."""
 
 
 @compiled

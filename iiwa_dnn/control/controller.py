@@ -216,8 +216,7 @@ class Controller:
             layout.targets(row)[:] = self.targets(t - state.delay, target)
             begin = max(begin, WRITE)
         program = step.program
-        if program.moving:
-            program.move(t)
+        program.move(t)
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
@@ -227,7 +226,7 @@ class Controller:
             clock = (t, state.delay)
             if step.run(
                 row, step.arrays, joints, state.past, state.following, network, clock, begin
-            ) and self._is_stoppable(step, row):
+            ) and self._is_stoppable(step):
                 return Command(row, layout)
             return self._yield(step, row, network)
         state.past[Q] = joints
@@ -277,7 +276,7 @@ class Controller:
         layout.view(row, "placement")[:] = program.placement
         layout.view(row, "q")[:] = state.past[Q]
         self._send(step, row)
-        if solved and self._is_stoppable(step, row):
+        if solved and self._is_stoppable(step):
             return Command(row, layout)
         return self._yield(step, row, self._network_state(layout))
 
@@ -290,14 +289,12 @@ class Controller:
         warm = solver.warm_state(layout.sizes)
         return solver.cold_state(layout.sizes) if warm is None else warm
 
-    def _is_stoppable(self, step: ControlStep, row: Vector) -> bool:
+    def _is_stoppable(self, step: ControlStep) -> bool:
         """Test whether the arm can brake from a command without coming near to an obstacle."""
-        if not len(step.scenes):
+        if not step.yielding.stop:
             return True
         state = self._state
-        targets = step.layout.targets(row)
-        arrays = (step.arrays, state.past, state.following, targets)
-        return bool(guard_step(*arrays, step.yielding, step.scenes))
+        return bool(guard_step(step.arrays, state.past, state.following, step.yielding))
 
     def _yield(self, step: ControlStep, row: Vector, network: Vector) -> Command:
         """Answer a step without a solution as the policy says."""
@@ -322,7 +319,6 @@ class Controller:
             state.following,
             network,
             step.yielding,
-            step.scenes,
             int(action),
             state.yields,
         )

@@ -8,8 +8,8 @@ The **scaled program** keeps the direction of the task. With one more variable, 
     \min_{x,\,\sigma} \; -\sigma + w \, \tfrac12 (x - x_0)^T P (x - x_0) \quad \text{with} \quad
     A x = \sigma \hat b, \quad 0 \le \sigma \le \beta, \quad G x \le h, \quad lb \le x \le ub,
 
-and the scaling factor is :math:`s = \sigma / \beta`. Further passes start from the last one's point,
-:math:`x_0`, which takes off what the cost has held back (docs/robustness.md).
+and the scaling factor is :math:`s = \sigma / \beta`. Further passes start from the point of
+the last one, :math:`x_0`, which takes off what the cost has held back (docs/robustness.md).
 
 The **softened program** moves the violation of the task into the cost,
 
@@ -36,12 +36,21 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
+from numpy.typing import NDArray
 
-from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.base import ANSWER, TOLERANCE, enter_answer
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.dense import cholesky_factor, extreme_eigenvalues, factor_solve, row_dot
-from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, compiled, qp_views
 from iiwa_dnn.qp.residuals import within
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.program import StepProgram
+
+BUDGET = 60
+"""Linear systems after which a relaxed program counts as one without a solution."""
 
 PENALTY = 1e-5
 """w, for a cost whose largest entry is one."""
@@ -80,23 +89,73 @@ class Yielding(NamedTuple):
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
+        elastic: 1 for each inequality row that is followed as far as the joints can, (m,).
         limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (5 dof,);
             empty where there are none.
         settings: Constants with which the network settles, ``[tol, budget, long step]``, (3,).
+        scenes: Beginning and end, among the constants of all parts, of those of each scene that
+            braking keeps away from, (scenes, 2); none without acceleration limits.
         dt: Control period [s].
+        answer: Address of the function that settles the network, `ANSWER`.
+        factor: Address of `largest_factor`.
+        violation: Address of `least_violation`.
+        approach: Address of `yielding.approach`; 0 without acceleration limits.
+        stop: Address of `stopping.stopping_time`; 0 without scenes.
     """
 
     weights: Vector
+    elastic: Vector
     limits: Vector
     settings: Vector
+    scenes: NDArray[np.int64]
     dt: float
+    answer: int
+    factor: int = 0
+    violation: int = 0
+    approach: int = 0
+    stop: int = 0
+
+
+_PAIRS = types.Array(types.int64, 2, "C")
+YIELDING = types.BaseTuple.from_types(
+    (VECTOR, VECTOR, VECTOR, VECTOR, _PAIRS, types.float64, *5 * [types.int64]), Yielding
+)
+"""numba's type of `Yielding`, for a `Signature`."""
+
+FACTOR = Signature(types.float64, QP_VIEWS, YIELDING, VECTOR)
+VIOLATION = Signature(types.boolean, QP_VIEWS, YIELDING, VECTOR, VECTOR)
+"""Types of `largest_factor` and `least_violation`, which are compiled once for all who ask."""
+
+enter_factor = FACTOR.enter
+enter_violation = VIOLATION.enter
+
+
+def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
+    """Prepare for a scheme that is laid out for a robot, a tolerance and a control period [s]."""
+    limits: Vector = np.zeros(0)
+    scenes: list[tuple[int, int]] = []
+    if program.rate_limits is not None and not program.accelerates:
+        limits = program.rate_limits.constants(program.robot)
+        scenes = program.constants_of(CollisionAvoidance)
+    return Yielding(
+        program.row_weights,
+        program.elastic,
+        limits,
+        np.array([tol, BUDGET, ImplicitEuler().long_step]),
+        np.array(scenes, dtype=np.int64).reshape(-1, 2),
+        dt,
+        ANSWER.address(settle),
+        FACTOR.address(largest_factor),
+        VIOLATION.address(least_violation),
+    )
 
 
 @compiled
-def settled(qp: QPViews, settings: Vector, state: Vector, point: Vector) -> bool:
+def settled(qp: QPViews, yielding: Yielding, state: Vector, point: Vector) -> bool:
     """Settle the network on a program from a state (size,); test whether it has a solution."""
-    _, _, primal, dual, gap = settle(qp, 0, settings, state, point)
-    return within(primal, dual, gap, settings[0])
+    settings = yielding.settings
+    _, _, primal, dual, gap = enter_answer(yielding.answer, qp, 0, settings, state, point)
+    return within(primal, dual, gap, settings[TOLERANCE])
 
 
 @compiled
@@ -106,13 +165,14 @@ def largest_factor(qp: QPViews, yielding: Yielding, point: Vector) -> float:
     Args:
         qp: The step's program, of n variables, m inequality and p equality rows.
         yielding: Which rows are the task's, and how the network settles.
-        point: The scaled program's solution, (2 (n + 1) + m + p,), overwritten.
+        point: The scaled program's solution, (size,) = (2 n + 2 + m + p,), overwritten.
 
     Returns:
         The factor; NaN where not even 0 is feasible.
     """
     data = program_data(qp.q.size + 1, qp.h.size, qp.b.size)
-    return _largest_factor(qp, yielding, data, point)
+    factor: float = _largest_factor(qp, yielding, data, point)
+    return factor
 
 
 @compiled
@@ -134,13 +194,13 @@ def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector
     scaled = qp_views(data, size, m, p)
     longest = _write_scaled(qp, yielding.weights, scaled)
     state = np.zeros(3 * size + m + p)
-    if not settled(scaled, yielding.settings, state, point):
+    if not settled(scaled, yielding, state, point):
         return np.nan
     for _ in range(MAX_PASSES):
         before = point[n]
         for i in range(n):
             scaled.q[i] = -row_dot(scaled.P, i, point[:n])
-        if not settled(scaled, yielding.settings, state, point):
+        if not settled(scaled, yielding, state, point):
             return np.nan
         if abs(point[n] - before) <= 0.1 * REACHED:
             break
@@ -157,12 +217,7 @@ def _write_scaled(qp: QPViews, weights: Vector, scaled: QPViews) -> float:
             longest = max(longest, abs(qp.b[j]))
     if longest == 0.0:
         longest = 1.0
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, abs(qp.q[i]))
-        for k in range(n):
-            largest = max(largest, abs(qp.P[i, k]))
-    weight = PENALTY / largest if largest > 0.0 else 0.0
+    weight = PENALTY / _largest_entry(qp)
     for i in range(n):
         scaled.q[i] = weight * qp.q[i]
         scaled.lb[i] = qp.lb[i]
@@ -171,10 +226,7 @@ def _write_scaled(qp: QPViews, weights: Vector, scaled: QPViews) -> float:
             scaled.P[i, k] = weight * qp.P[i, k]
     scaled.q[n] = -1.0
     scaled.ub[n] = longest
-    for j in range(qp.h.size):
-        scaled.h[j] = qp.h[j]
-        for i in range(n):
-            scaled.G[j, i] = qp.G[j, i]
+    _copy_rows(qp, scaled)
     for j in range(qp.b.size):
         for i in range(n):
             scaled.A[j, i] = qp.A[j, i]
@@ -183,6 +235,26 @@ def _write_scaled(qp: QPViews, weights: Vector, scaled: QPViews) -> float:
         else:
             scaled.b[j] = qp.b[j]
     return longest
+
+
+@compiled
+def _largest_entry(qp: QPViews) -> float:
+    """Compute the largest entry of a program's cost; 1 if there is none."""
+    largest = 0.0
+    for i in range(qp.q.size):
+        largest = max(largest, abs(qp.q[i]))
+        for k in range(qp.q.size):
+            largest = max(largest, abs(qp.P[i, k]))
+    return largest if largest > 0.0 else 1.0
+
+
+@compiled
+def _copy_rows(qp: QPViews, other: QPViews) -> None:
+    """Copy the inequality rows into a program that may have more variables."""
+    for j in range(qp.h.size):
+        other.h[j] = qp.h[j]
+        for i in range(qp.q.size):
+            other.G[j, i] = qp.G[j, i]
 
 
 @compiled
@@ -240,7 +312,7 @@ def _least_violation(
     soft = qp_views(data, n, m, held)
     damping = _write_softened(qp, yielding, q, soft)
     state = np.zeros(3 * n + m + held)
-    if not settled(soft, yielding.settings, state, point):
+    if not settled(soft, yielding, state, point):
         return False
     # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
     exact = point[:n].copy()
@@ -289,15 +361,23 @@ def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -
             soft.P[i, k] += BLEND * qp.P[i, k]
         soft.P[i, i] += damping
         soft.q[i] = wish * qp.q[i] + damping * drift * qp.q[i] - pull[i]
+    _copy_rows(qp, soft)
     for j in range(qp.h.size):
-        lowest = 0.0
-        for i in range(n):
-            entry = qp.G[j, i]
-            soft.G[j, i] = entry
-            if entry != 0.0:
-                lowest += entry * (soft.lb[i] if entry > 0.0 else soft.ub[i])
-        soft.h[j] = max(qp.h[j], RETREAT * lowest if lowest < 0.0 else lowest)
+        if yielding.elastic[j] > 0.0:
+            lowest = _lowest(soft, j)
+            soft.h[j] = max(qp.h[j], RETREAT * lowest if lowest < 0.0 else lowest)
     return damping
+
+
+@compiled
+def _lowest(qp: QPViews, j: int) -> float:
+    """Compute the least value that the bounds let inequality row j have."""
+    lowest = 0.0
+    for i in range(qp.q.size):
+        entry = qp.G[j, i]
+        if entry != 0.0:
+            lowest += entry * (qp.lb[i] if entry > 0.0 else qp.ub[i])
+    return lowest
 
 
 @compiled
@@ -392,30 +472,29 @@ def on_rows(qp: QPViews, x: Vector) -> bool:
 @compiled
 def inside(qp: QPViews, x: Vector) -> bool:
     """Test whether x (n,) is within the bounds and inequality rows of a program."""
+    outside = 0
     for i in range(x.size):
-        if x[i] < qp.lb[i] or x[i] > qp.ub[i]:
-            return False
+        outside += x[i] < qp.lb[i] or x[i] > qp.ub[i]
     for j in range(qp.h.size):
-        if row_dot(qp.G, j, x) > qp.h[j]:
-            return False
-    return True
+        outside += row_dot(qp.G, j, x) > qp.h[j]
+    return outside == 0
 
 
 @compiled
-def nearest_within(qp: QPViews, x: Vector, settings: Vector) -> bool:
+def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> None:
     """Move x (n,) to the nearest point within the bounds and inequality rows of a program.
 
-    Returns:
-        False if the network finds none; x then stays.
+    If the rows contradict the bounds, it is the nearest one within the bounds.
     """
-    if inside(qp, x):
-        return True
-    return _nearest_within(qp, x, settings, program_data(x.size, qp.h.size, 0))
+    if inside(qp, x) or _nearest_within(qp, x, yielding, program_data(x.size, qp.h.size, 0)):
+        return
+    for i in range(x.size):
+        x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
 
 
 @compiled
-def _nearest_within(qp: QPViews, x: Vector, settings: Vector, data: Vector) -> bool:
-    """Move x (n,) as `nearest_within` does, in the room for the program, (size,)."""
+def _nearest_within(qp: QPViews, x: Vector, yielding: Yielding, data: Vector) -> bool:
+    """Move x (n,) within bounds and rows, in the room for the program, (size,), if they allow."""
     n = x.size
     m = qp.h.size
     nearest = qp_views(data, n, m, 0)
@@ -429,7 +508,7 @@ def _nearest_within(qp: QPViews, x: Vector, settings: Vector, data: Vector) -> b
         for i in range(n):
             nearest.G[j, i] = qp.G[j, i]
     point = np.empty(2 * n + m)
-    if not settled(nearest, settings, np.zeros(3 * n + m), point):
+    if not settled(nearest, yielding, np.zeros(3 * n + m), point):
         return False
     for i in range(n):
         x[i] = point[i]

@@ -13,7 +13,6 @@ import numpy as np
 from numba import typeof, types
 from numba.core.dispatcher import Dispatcher
 
-from iiwa_dnn.control import yielding
 from iiwa_dnn.control.command import (
     ADVANCED,
     NOT_FINITE,
@@ -23,10 +22,10 @@ from iiwa_dnn.control.command import (
     RowLayout,
     row_views,
 )
-from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.control.relaxed import make_yielding
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
+from iiwa_dnn.control.yielding import with_limits
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
-from iiwa_dnn.networks.integrators.implicit import ImplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
@@ -34,11 +33,7 @@ from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
-
-LONG_STEP = ImplicitEuler().long_step
-"""Length of the long step in which relaxed programs settle [rho]."""
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program counts as one without a solution."""
@@ -60,8 +55,6 @@ class ControlStep:
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
         yielding: What relaxed programs need beside a step's own.
-        scenes: Beginning and end of the constants of each scene that braking keeps away from,
-            (scenes, 2); none without acceleration limits.
     """
 
     def __init__(
@@ -91,14 +84,7 @@ class ControlStep:
             self.begin = ANSWER
         self.arrays = program.arrays(dt)
         self.run = self._entry()
-        limits = np.zeros(0)
-        scenes = []
-        if program.rate_limits is not None and not program.accelerates:
-            limits = program.rate_limits.constants(program.robot)
-            scenes = program.constants_of(CollisionAvoidance)
-        settings = np.array([solver.tol, yielding.BUDGET, LONG_STEP])
-        self.yielding = Yielding(program.row_weights, limits, settings, dt)
-        self.scenes = np.array(scenes, dtype=np.int64).reshape(-1, 2)
+        self.yielding = with_limits(make_yielding(program, solver.tol, dt))
 
     @property
     def yields(self) -> bool:
@@ -198,15 +184,7 @@ def control_step(
         past[Q, i] = q[i]
         views.q[i] = q[i]
     if begin == SAMPLE:
-        period = 1.0 / arrays.rate
-        for k in range(network + 1, table.shape[0]):
-            own = constants[table[k, 4] : table[k, 5]]
-            target = views.targets[k - network - 1]
-            _sample(table[k, 1], own, t - delay, target)
-            if table[k, 2] != 0:
-                then = np.empty(target.size)
-                _sample(table[k, 1], own, t - delay + period, then)
-                set_mean_twist(target, then, period)
+        _sample_all(arrays, network + 1, t - delay, views.targets)
     if begin <= WRITE:
         assemble(step_views(arrays, past, views.targets, t), arrays, qp)
     own = constants[table[network, 4] : table[network, 5]]
@@ -239,6 +217,21 @@ def control_step(
         following[WANTED, i] = past[WANTED, i]
     following[REST, 0] = 0.0
     return True
+
+
+@compiled
+def _sample_all(arrays: ProgramArrays, first: int, t: float, targets: Matrix) -> None:
+    """Write the targets (k, 18) of all paths at time t [s]; their entries begin with the first."""
+    table = arrays.table
+    period = 1.0 / arrays.rate
+    for k in range(first, table.shape[0]):
+        own = arrays.constants[table[k, 4] : table[k, 5]]
+        target = targets[k - first]
+        _sample(table[k, 1], own, t, target)
+        if table[k, 2] != 0:
+            then = np.empty(target.size)
+            _sample(table[k, 1], own, t + period, then)
+            set_mean_twist(target, then, period)
 
 
 @compiled

@@ -26,20 +26,15 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 
+from iiwa_dnn.control.relaxed import YIELDING, Yielding
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
 from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.schemes.collisions import rate_along
 from iiwa_dnn.schemes.distances import difference, dot, point_of
-from iiwa_dnn.schemes.scene import (
-    Contact,
-    PairConstants,
-    contact_of,
-    pair_of,
-    place_ends,
-    scene_views,
-)
-from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.scene import contact_of, pair_of, place_ends, scene_views
 
 LONGEST = 1e6
 """Periods after which a motion counts as endless."""
@@ -52,6 +47,43 @@ SLACK = 1e-9
 
 CLOSER = 1e-9
 """Distance by which a pair that is too near may come nearer through rounding [m]."""
+
+
+class Instant(NamedTuple):
+    """What is known at a step, beside its program.
+
+    Attributes:
+        q: Joint positions [rad], (dof,).
+        last: Last command [rad/s], (dof,).
+        before: Command before it [rad/s], (dof,).
+        wanted: Velocity that was wanted at the last step [rad/s], (dof,).
+        rest: Periods until the braking motion in hand rests; 0 if there is none.
+        following: `ControllerState.following`, (5, dof), overwritten.
+        jacobian: `Kinematics.jacobian`, (dof, 6).
+        placements: `Kinematics.placements`, (frames, 12).
+        constants: Constants of all parts, (k,).
+    """
+
+    q: Vector
+    last: Vector
+    before: Vector
+    wanted: Vector
+    rest: float
+    following: Matrix
+    jacobian: Matrix
+    placements: Matrix
+    constants: Vector
+
+
+_V = VECTOR
+_M = MATRIX
+INSTANT = types.BaseTuple.from_types((_V, _V, _V, _V, types.float64, _M, _M, _M, _V), Instant)
+"""numba's type of `Instant`, for a `Signature`."""
+
+STOP_TIME = Signature(types.float64, INSTANT, YIELDING, VECTOR)
+"""Types of `stopping_time`."""
+
+enter_stopping_time = STOP_TIME.enter
 
 
 class Motion(NamedTuple):
@@ -119,7 +151,9 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float
     while k < n:
         if periods > LONGEST:
             return np.inf
-        if within_rates(x[k], before[k], periods, limits[3 * n + k] * dt, limits[4 * n + k] * dt * dt):
+        if within_rates(
+            x[k], before[k], periods, limits[3 * n + k] * dt, limits[4 * n + k] * dt * dt
+        ):
             k += 1
         else:
             periods = math.ceil(GROWTH * periods)
@@ -130,10 +164,10 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float
 @compiled
 def has_jerk(limits: Vector) -> bool:
     """Test whether the jerk of a joint is limited, by the constants (5 n,) of the limits."""
+    count = 0
     for i in range(4 * limits.size // 5, limits.size):
-        if limits[i] < np.inf:
-            return True
-    return False
+        count += limits[i] < np.inf
+    return count > 0
 
 
 @compiled
@@ -174,7 +208,7 @@ def sums(motion: Motion, count: float) -> tuple[float, float]:
 
 @compiled
 def extremes(motion: Motion, x: float, b: float, dt: float) -> tuple[float, float]:
-    """Compute the least and the largest way along a motion, of x (1 - u)^2 (1 + 2u) + b u (1 - u)^2.
+    """Compute the least and the largest way along a motion, of its cubic with x and b.
 
     At its start the way is zero; dt is the control period [s].
     """
@@ -274,20 +308,26 @@ def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> Swept:
 
 
 @compiled
-def keeps_distances(motion: Motion, step: StepViews, constants: Vector) -> bool:
+def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: float) -> bool:
     """Test whether all pairs of a scene keep their distance on a motion to rest.
 
     A pair that is too near, or that a moving obstacle comes too near while the arm brakes, must not
-    come nearer by the arm's own motion. `constants` (k,) are `Scene.constants`.
+    come nearer by the arm's own motion.
+
+    Args:
+        motion: The motion.
+        instant: Where it begins.
+        constants: `Scene.constants`, (k,).
+        dt: Control period [s].
     """
     n = motion.first.size
-    dt = 1.0 / step.rate
     scene = scene_views(constants, n)
-    ends = place_ends(scene, step.placements)
+    ends = place_ends(scene, instant.placements)
     of_first, of_bend = sums(motion, motion.periods)
     travel = np.empty(n)
     for i in range(n):
         travel[i] = dt * (abs(motion.first[i]) * of_first + abs(motion.bend[i]) * of_bend)
+    rates = np.empty(n)
     for k in range(len(scene.pairs)):
         pair = pair_of(scene.pairs, k)
         contact = contact_of(pair, ends, scene.points)
@@ -295,54 +335,67 @@ def keeps_distances(motion: Motion, step: StepViews, constants: Vector) -> bool:
         left = contact.distance - pair.obstacle_speed * dt * motion.periods
         if left - bounds.way >= scene.damper.least:
             continue
-        change = least_change(motion, step, scene.moves, k, pair, contact, ends, bounds)
+        normal = contact.normal
+        change = np.inf
+        at = 2 * int(pair.second)
+        for end in (point_of(ends, at), point_of(ends, at + 1)):
+            _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
+            height = dot(difference(end, contact.second), normal)
+            change = min(change, height + _least_rise(motion, rates, dt))
+        change -= 0.5 * bounds.second_order
+        if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
+            _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)
+            rise = _least_rise(motion, rates, dt)
+            change = max(change, rise - 0.5 * _seen_second_order(bounds, contact.core))
         if left + change < min(scene.damper.least, left - CLOSER):
             return False
     return True
 
 
 @compiled
-def _least_rise(
-    motion: Motion, step: StepViews, moves: Matrix, k: int, point: Triple, normal: Triple
-) -> float:
-    """Compute the least way along a normal of a point of pair k's second body, to first order."""
+def _write_rates(
+    jacobian: Matrix, moves: Matrix, k: int, point: Triple, normal: Triple, rates: Vector
+) -> None:
+    """Write at which rate each joint (n,) moves a point of pair k's second body along a normal."""
+    for j in range(rates.size):
+        rates[j] = 0.0
+        if moves[k, j] != 0.0:
+            rates[j] = moves[k, j] * rate_along(jacobian, j, point, normal)
+
+
+@compiled
+def _least_rise(motion: Motion, rates: Vector, dt: float) -> float:
+    """Compute the least way of a point on a motion to rest, by its rates (n,) for each joint."""
     x = 0.0
     b = 0.0
-    for j in range(motion.first.size):
-        if moves[k, j] != 0.0:
-            rate = moves[k, j] * rate_along(step.jacobian, j, point, normal)
-            x += rate * motion.first[j]
-            b += rate * motion.bend[j]
-    least, _ = extremes(motion, x, b, 1.0 / step.rate)
+    for j in range(rates.size):
+        x += rates[j] * motion.first[j]
+        b += rates[j] * motion.bend[j]
+    least, _ = extremes(motion, x, b, dt)
     return least
 
 
 @compiled
-def least_change(
-    motion: Motion,
-    step: StepViews,
-    moves: Matrix,
-    k: int,
-    pair: PairConstants,
-    contact: Contact,
-    ends: Matrix,
-    bounds: Swept,
-) -> float:
-    """Bound the change of pair k's distance on a motion to rest from below [m].
+def _seen_second_order(bounds: Swept, core: float) -> float:
+    """Bound `Swept.second_order` of a point as a link sees it that turns, `core` [m] away."""
+    turning = bounds.turning
+    turned = (turning * turning + bounds.turning_change) * (core + bounds.way)
+    return turned + 2.0 * turning * bounds.way + bounds.second_order
 
-    `moves` (pairs, n) are the scene's, `ends` (2 s, 3) the ends of its shapes in the world.
+
+@compiled
+def stopping_time(instant: Instant, yielding: Yielding, dq: Vector) -> float:
+    """Compute the periods of the motion to rest from a command dq (dof,) [rad/s].
+
+    It is -1 if the motion breaks a limit, or brings a pair too near.
     """
-    normal = contact.normal
-    shape = int(pair.second)
-    change = np.inf
-    for end in (point_of(ends, 2 * shape), point_of(ends, 2 * shape + 1)):
-        height = dot(difference(end, contact.second), normal)
-        change = min(change, height + _least_rise(motion, step, moves, k, end, normal))
-    change -= 0.5 * bounds.second_order
-    if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
-        turning = bounds.turning
-        turned = (turning * turning + bounds.turning_change) * (contact.core + bounds.way)
-        turned += 2.0 * turning * bounds.way + bounds.second_order
-        rise = _least_rise(motion, step, moves, k, contact.second, normal)
-        change = max(change, rise - 0.5 * turned)
-    return change
+    dt = yielding.dt
+    motion = motion_to_rest(dq, instant.last, yielding.limits, dt)
+    if motion.periods < 0.0 or not keeps_joint_limits(motion, instant.q, yielding.limits, dt):
+        return -1.0
+    scenes = yielding.scenes
+    for k in range(len(scenes)):
+        scene = instant.constants[scenes[k, 0] : scenes[k, 1]]
+        if not keeps_distances(motion, instant, scene, dt):
+            return -1.0
+    return motion.periods

@@ -5,24 +5,31 @@ goes on a straight line towards the velocity that the softened program asks for.
 are avoided too, a command is given only if it is stoppable (`iiwa_dnn.control.stopping`); if not,
 one nearer to the braking motion in hand is, and in the end that motion itself.
 
-Every way through `decide` ends after `ATTEMPTS` times `BUDGET` linear systems.
+Every way through `yield_step` ends after `ATTEMPTS` times `relaxed.BUDGET` linear systems.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numba import types
 
-from iiwa_dnn.control.command import NOT_SETTLED, PLACEMENT, SOLVED, RowViews, row_views
+from iiwa_dnn.control.command import (
+    NOT_SETTLED,
+    PLACEMENT,
+    ROW_VIEWS,
+    SOLVED,
+    RowViews,
+    row_views,
+)
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import (
     REACHED,
+    YIELDING,
     Yielding,
+    enter_factor,
+    enter_violation,
     held_rows,
     inside,
-    largest_factor,
-    least_violation,
     nearest_within,
     note_blocking,
     on_rows,
@@ -30,32 +37,34 @@ from iiwa_dnn.control.relaxed import (
 )
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.control.stopping import (
+    INSTANT,
+    STOP_TIME,
+    Instant,
+    enter_stopping_time,
     has_jerk,
-    keeps_distances,
-    keeps_joint_limits,
     least_periods,
-    motion_to_rest,
     next_velocity,
+    stopping_time,
 )
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, compiled, qp_views
 from iiwa_dnn.qp.residuals import point_residuals
-from iiwa_dnn.schemes.program import ProgramArrays, step_views
-from iiwa_dnn.schemes.step import StepViews
-
-BUDGET = 60
-"""Linear systems of one program."""
+from iiwa_dnn.schemes.program import ProgramArrays
 
 ATTEMPTS = 13
-"""Programs at most: the step's own, five passes of the scaled one, then three times the step's own
-from its last state and from a cold start, and the softened one or that of the nearest command."""
+"""Programs of `relaxed.BUDGET` linear systems at most: the step's own, five passes of the scaled
+one, then three times the step's own from its last state and from a cold start, and the softened one
+or that of the nearest command."""
 
 NONE = int(Action.NONE)
 FALLBACK = int(Action.FALLBACK)
 SLOW = int(Action.SLOW)
 RELAX = int(Action.RELAX)
 STOP = int(Action.STOP)
+NOTHING = -1
+"""No action: another way has to be tried."""
 
 CREEP = 0.1
 """Share of a period by which a slowed clock always advances: an arm that rests in a singular or
@@ -82,69 +91,75 @@ TOWARDS = (1.0, 0.5, 0.25, 0.125)
 """Shares of the way from the braking motion in hand to the wanted command that are tried."""
 
 
-class Instant(NamedTuple):
-    """What is known at a step, beside its program.
+APPROACH = Signature(
+    types.int64, ROW_VIEWS, QP_VIEWS, INSTANT, YIELDING, VECTOR, types.int64, types.boolean
+)
+"""Types of `approach`, which is compiled only where it is needed."""
 
-    Attributes:
-        step: Kinematics, last commands and targets.
-        before: Velocity that was wanted at the last step [rad/s], (dof,).
-        rest: Periods until the braking motion in hand rests; 0 where there is none.
-        following: `ControllerState.following`, (5, dof), overwritten.
-        constants: Constants of all parts, (k,).
-        scenes: Beginning and end in them of those of each scene, (scenes, 2).
-    """
-
-    step: StepViews
-    before: Vector
-    rest: float
-    following: Matrix
-    constants: Vector
-    scenes: NDArray[np.int64]
+enter_approach = APPROACH.enter
 
 
 @compiled
-def decide(
+def _yield_at_once(
     views: RowViews,
     qp: QPViews,
-    instant: Instant,
+    q: Vector,
     yielding: Yielding,
     state: Vector,
     action: int,
     yields: bool,
 ) -> int:
-    """Answer a step for which the network has no answer, or whose task still yields.
+    """Answer a step without acceleration limits; arguments and result as those of `yield_step`."""
+    taken = NOTHING
+    if action == SLOW and _is_path(views.targets):
+        taken = _slow(views, qp, yielding, state, yields)
+        if taken == NOTHING:
+            taken = _relax(views, qp, q, yielding, state, CREEP, yields)
+    elif action != STOP:
+        taken = _relax(views, qp, q, yielding, state, 1.0, yields)
+    if taken == NOTHING:
+        _stop(views, qp)
+        taken = STOP
+    return taken
 
-    Args:
-        views: The step's row; answer and decision are written into it.
-        qp: The program, in the row; its b is replaced by what is attained.
-        instant: What else is known.
-        yielding: Weights, limits and settings of the relaxed programs.
-        state: The network's state, (size,), advanced where its answer is taken.
-        action: Action that the policy asks for: `SLOW`, `RELAX` or `STOP`.
-        yields: Whether the task yielded at the last step, so that the network was not asked.
 
-    Returns:
-        The action that was taken.
-    """
+@compiled
+def _clear_blocking(views: RowViews) -> None:
+    """Note that nothing stands in the way."""
     for k in range(views.blocking.size):
         views.blocking[k] = 0.0
-    finite = True
-    for value in views.program:
-        finite = finite and value == value
-    for value in qp.b:
-        finite = finite and abs(value) < np.inf
-    if action == STOP or not finite:
-        if finite and views.decision[2] == NOT_SETTLED:
-            n = qp.q.size
-            point = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
-            largest_factor(qp, yielding, point)
-            note_blocking(point, n, qp.h.size, 1, views.blocking)
-        return _stop(views, qp, instant, yielding)
-    if yielding.limits.size > 0:
-        return _approach(views, qp, instant, yielding, state, action, yields)
-    if action == SLOW and _is_path(instant.step.targets):
-        return _slow(views, qp, instant, yielding, state, yields)
-    return _relax(views, qp, instant, yielding, state, 1.0, yields)
+
+
+@compiled
+def _note_crossed(views: RowViews, qp: QPViews) -> bool:
+    """Note the bounds that contradict each other; return whether there are any."""
+    crossed = False
+    for i in range(qp.q.size):
+        if qp.lb[i] > qp.ub[i]:
+            if not crossed:
+                _clear_blocking(views)
+            crossed = True
+            views.blocking[i] = 1.0
+    return crossed
+
+
+@compiled
+def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding) -> None:
+    """Note what stands in the way of the task as it is."""
+    point = np.empty(2 * qp.q.size + 2 + qp.h.size + qp.b.size)
+    enter_factor(yielding.factor, qp, yielding, point)
+    note_blocking(point, qp.q.size, qp.h.size, 1, views.blocking)
+
+
+@compiled
+def _is_finite(views: RowViews, qp: QPViews) -> bool:
+    """Test whether a program has no NaN, and only finite task velocities."""
+    wrong = 0
+    for k in range(views.program.size):
+        wrong += views.program[k] != views.program[k]
+    for j in range(qp.b.size):
+        wrong += not abs(qp.b[j]) < np.inf
+    return wrong == 0
 
 
 @compiled
@@ -161,11 +176,11 @@ def _is_path(targets: Matrix) -> bool:
 def _answered(views: RowViews, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
     """Let the network answer a program from its last state or, if need be, from a cold start."""
     tried = state.copy()
-    solved = settled(qp, yielding.settings, tried, views.point)
+    solved = settled(qp, yielding, tried, views.point)
     if not solved:
         for i in range(tried.size):
             tried[i] = 0.0
-        solved = settled(qp, yielding.settings, tried, views.point)
+        solved = settled(qp, yielding, tried, views.point)
     if solved:
         for i in range(tried.size):
             state[i] = tried[i]
@@ -184,26 +199,17 @@ def _judge(views: RowViews, qp: QPViews, fraction: float, status: int) -> None:
 
 
 @compiled
-def _slow(
-    views: RowViews,
-    qp: QPViews,
-    instant: Instant,
-    yielding: Yielding,
-    state: Vector,
-    yields: bool,
-) -> int:
-    """Go along the path, slower; arguments and result as those of `decide`."""
+def _slow(views: RowViews, qp: QPViews, yielding: Yielding, state: Vector, yields: bool) -> int:
+    """Go along the path, slower; return the action, or `NOTHING` where that has no sense."""
     n = qp.q.size
     m = qp.h.size
     point = np.empty(2 * n + 2 + m + qp.b.size)
-    factor = largest_factor(qp, yielding, point)
+    factor = enter_factor(yielding.factor, qp, yielding, point)
     if factor >= FEASIBLE and _answered(views, qp, yielding, state):
         return NONE if yields else FALLBACK
-    if not factor >= 0.0:
-        return _relax(views, qp, instant, yielding, state, CREEP, yields)
     share = _brake(qp, point)
-    if share * factor < STUCK:
-        return _relax(views, qp, instant, yielding, state, CREEP, yields)
+    if not share * factor >= STUCK:
+        return NOTHING
     note_blocking(point, n, m, 1, views.blocking)
     asked = qp.b.copy()
     for less in LESS:
@@ -217,7 +223,7 @@ def _slow(
             return SLOW
     for j in range(qp.b.size):
         qp.b[j] = asked[j]
-    return _relax(views, qp, instant, yielding, state, CREEP, yields)
+    return NOTHING
 
 
 @compiled
@@ -246,23 +252,27 @@ def _brake(qp: QPViews, point: Vector) -> float:
 def _relax(
     views: RowViews,
     qp: QPViews,
-    instant: Instant,
+    q: Vector,
     yielding: Yielding,
     state: Vector,
     fraction: float,
     yields: bool,
 ) -> int:
-    """Violate the task least; the clock advances by a fraction of the period; as `decide`."""
+    """Violate the task least; the clock advances by a fraction of the period.
+
+    Returns:
+        The action, or `NOTHING` if the limits contradict each other.
+    """
     n = qp.q.size
     m = qp.h.size
     point = np.empty(2 * n + m + held_rows(yielding.weights))
-    found = least_violation(qp, yielding, instant.step.q, point)
+    found = enter_violation(yielding.violation, qp, yielding, q, point)
     may_hold = found and fraction == 1.0 and _has_solution(qp, yielding, point)
     if may_hold and _answered(views, qp, yielding, state):
         return NONE if yields else FALLBACK
     note_blocking(point, n, m, 0, views.blocking)
     if not found:
-        return _stop(views, qp, instant, yielding)
+        return NOTHING
     _take(views, qp, point, fraction)
     return RELAX if fraction == 1.0 else SLOW
 
@@ -277,7 +287,7 @@ def _has_solution(qp: QPViews, yielding: Yielding, point: Vector) -> bool:
     if _attained(qp, yielding.weights, point) < NEARLY:
         return False
     scaled = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
-    return largest_factor(qp, yielding, scaled) >= FEASIBLE
+    return enter_factor(yielding.factor, qp, yielding, scaled) >= FEASIBLE
 
 
 @compiled
@@ -300,24 +310,19 @@ def _take(views: RowViews, qp: QPViews, x: Vector, fraction: float) -> None:
 
 
 @compiled
-def _stop(views: RowViews, qp: QPViews, instant: Instant, yielding: Yielding) -> int:
-    """Stop at once or, with acceleration limits, brake; the residuals of what failed stay."""
+def _stop(views: RowViews, qp: QPViews) -> None:
+    """Take no velocity as the answer; the residuals of what failed stay."""
     for k in range(views.point.size):
         views.point[k] = 0.0
-    if yielding.limits.size > 0:
-        braked = views.point[: instant.step.q.size]
-        rest = _braking_command(qp, instant, yielding, braked)
-        _follow(instant, braked, rest)
     if views.decision[2] < NOT_SETTLED:
         _judge(views, qp, 0.0, NOT_SETTLED)
     views.decision[1] = 0.0
-    return STOP
 
 
 @compiled
 def _follow(instant: Instant, wanted: Vector, rest: float) -> None:
     """Note for the next step which velocity is wanted (dof,) and how long braking takes then."""
-    for i in range(instant.step.q.size):
+    for i in range(instant.q.size):
         instant.following[WANTED, i] = wanted[i]
     instant.following[REST, 0] = rest
 
@@ -330,38 +335,21 @@ def _braking_command(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vect
         Periods that are left afterwards; 0 if the motion was not in hand.
     """
     limits = yielding.limits
-    step = instant.step
     periods = instant.rest
     if periods == 0.0:
-        periods = least_periods(step.last, step.before, limits, yielding.dt)
+        periods = least_periods(instant.last, instant.before, limits, yielding.dt)
     cubic = has_jerk(limits)
     for i in range(dq.size):
         dq[i] = 0.0
         if periods < np.inf:
-            dq[i] = next_velocity(step.last[i], step.before[i], periods, cubic)
+            dq[i] = next_velocity(instant.last[i], instant.before[i], periods, cubic)
         if instant.rest == 0.0:
             dq[i] = min(max(dq[i], qp.lb[i]), qp.ub[i])
     return max(instant.rest - 1.0, 0.0)
 
 
 @compiled
-def stoppable(instant: Instant, yielding: Yielding, dq: Vector) -> float:
-    """Compute the periods of the motion to rest from a command dq (dof,); -1 if it is unsafe."""
-    step = instant.step
-    motion = motion_to_rest(dq, step.last, yielding.limits, yielding.dt)
-    if motion.periods < 0.0:
-        return -1.0
-    if not keeps_joint_limits(motion, step.q, yielding.limits, yielding.dt):
-        return -1.0
-    for k in range(len(instant.scenes)):
-        scene = instant.constants[instant.scenes[k, 0] : instant.scenes[k, 1]]
-        if not keeps_distances(motion, step, scene):
-            return -1.0
-    return motion.periods
-
-
-@compiled
-def _approach(
+def approach(
     views: RowViews,
     qp: QPViews,
     instant: Instant,
@@ -370,57 +358,72 @@ def _approach(
     action: int,
     yields: bool,
 ) -> int:
-    """Go towards the wanted velocity within acceleration limits; as `decide`."""
+    """Go towards the wanted velocity within acceleration limits, or brake.
+
+    The arguments are those of `yield_step`, and its views; so is the result.
+    """
     n = qp.q.size
-    m = qp.h.size
-    dof = instant.step.q.size
-    wanted = np.empty(2 * n + m + held_rows(yielding.weights))
-    found = least_violation(qp, yielding, instant.step.q, wanted)
-    note_blocking(wanted, n, m, 0, views.blocking)
-    if not found:
-        for i in range(n):
-            wanted[i] = 0.0
-    may_hold = found and _has_solution(qp, yielding, wanted)
-    if may_hold and _answered(views, qp, yielding, state):
-        rest = 0.0
-        if len(instant.scenes) > 0:
-            rest = stoppable(instant, yielding, views.point[:dof])
-        if rest >= 0.0:
-            _follow(instant, wanted, rest)
-            for k in range(views.blocking.size):
-                views.blocking[k] = 0.0
-            return NONE if yields else FALLBACK
-    x = wanted[:n].copy()
+    dof = instant.q.size
+    if action == STOP:
+        _stop(views, qp)
+        braked = views.point[:dof]
+        _follow(instant, braked, _braking_command(qp, instant, yielding, braked))
+        return STOP
+    wanted = np.zeros(2 * n + qp.h.size + held_rows(yielding.weights))
+    found = enter_violation(yielding.violation, qp, yielding, instant.q, wanted)
+    note_blocking(wanted, n, qp.h.size, 0, views.blocking)
+    if found and _fits(views, qp, instant, yielding, state, wanted):
+        _clear_blocking(views)
+        return NONE if yields else FALLBACK
+    x = wanted[:n].copy() if found else np.zeros(n)
     _step_towards(qp, instant, yielding, x[:dof])
-    if not nearest_within(qp, x, yielding.settings):
-        for i in range(n):
-            x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
+    nearest_within(qp, x, yielding)
     rest = 0.0
-    if len(instant.scenes) > 0:
+    if yielding.stop != 0:
         rest = _keep_stoppable(qp, instant, yielding, x[:dof])
     _follow(instant, wanted, rest)
     for i in range(dof):
         missing = wanted[i] - x[i]
         if abs(missing) > REACHED:
-            views.blocking[i] = 1.0 if missing > 0.0 else -1.0
+            views.blocking[i] = math.copysign(1.0, missing)
     fraction = 1.0 if action == RELAX else max(_attained(qp, yielding.weights, x), CREEP)
     _take(views, qp, x, fraction)
     return action
 
 
 @compiled
+def _fits(
+    views: RowViews,
+    qp: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+    wanted: Vector,
+) -> bool:
+    """Let the network answer a program that the wanted velocity (n,) shows to have a solution."""
+    if not _has_solution(qp, yielding, wanted) or not _answered(views, qp, yielding, state):
+        return False
+    rest = 0.0
+    if yielding.stop != 0:
+        rest = enter_stopping_time(yielding.stop, instant, yielding, views.point[: instant.q.size])
+    if rest < 0.0:
+        return False
+    _follow(instant, wanted, rest)
+    return True
+
+
+@compiled
 def _step_towards(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> None:
     """Replace the wanted velocity dq (dof,) by the next command on the straight line to it."""
     dof = dq.size
-    step = instant.step
     limits = yielding.limits
     now = np.empty(dof)
     before = np.empty(dof)
     for i in range(dof):
         most = limits[3 * dof + i] * yielding.dt
-        change = min(max(dq[i] - instant.before[i], -most), most)
-        now[i] = step.last[i] - (dq[i] - change)
-        before[i] = step.before[i] - (dq[i] - 2.0 * change)
+        change = min(max(dq[i] - instant.wanted[i], -most), most)
+        now[i] = instant.last[i] - (dq[i] - change)
+        before[i] = instant.before[i] - (dq[i] - 2.0 * change)
     periods = least_periods(now, before, limits, yielding.dt)
     cubic = has_jerk(limits)
     for i in range(dof):
@@ -438,7 +441,7 @@ def _keep_stoppable(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vecto
     for share in TOWARDS:
         for i in range(dq.size):
             dq[i] = braking[i] + share * (wanted[i] - braking[i])
-        rest = stoppable(instant, yielding, dq)
+        rest = enter_stopping_time(yielding.stop, instant, yielding, dq)
         if rest >= 0.0:
             return rest
     for i in range(dq.size):
@@ -458,6 +461,15 @@ def _attained(qp: QPViews, weights: Vector, x: Vector) -> float:
     return min(given / asked, 1.0) if asked > 0.0 else 1.0
 
 
+def with_limits(yielding: Yielding) -> Yielding:
+    """Return `yielding` with what acceleration limits need, compiled if it has any."""
+    if yielding.limits.size:
+        yielding = yielding._replace(approach=APPROACH.address(approach))
+    if len(yielding.scenes):
+        yielding = yielding._replace(stop=STOP_TIME.address(stopping_time))
+    return yielding
+
+
 @compiled
 def yield_step(
     row: Vector,
@@ -466,11 +478,10 @@ def yield_step(
     following: Matrix,
     state: Vector,
     yielding: Yielding,
-    scenes: NDArray[np.int64],
     action: int,
     yields: bool,
 ) -> int:
-    """Answer a step whose program is in its row by `decide`, and note the command.
+    """Answer a step for which the network has no answer, or whose task still yields.
 
     Args:
         row: The row, (width,), with program and targets.
@@ -479,8 +490,6 @@ def yield_step(
         following: `ControllerState.following`, (5, dof), overwritten.
         state: The network's state, (size,), advanced.
         yielding: Weights, limits and settings of the relaxed programs.
-        scenes: Beginning and end of the constants of each scene that braking keeps away from,
-            (scenes, 2).
         action: Action that the policy asks for.
         yields: Whether the task yielded at the last step.
 
@@ -491,11 +500,21 @@ def yield_step(
     dof = table[0, 3]
     views = row_views(row, table[0, 0], table[0, 1], table[0, 2], dof)
     qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
-    instant = instant_of(arrays, past, following, views.targets, scenes)
     for i in range(dof):
         following[WANTED, i] = past[WANTED, i]
     following[REST, 0] = 0.0
-    taken = decide(views, qp, instant, yielding, state, action, yields)
+    _clear_blocking(views)
+    if not _is_finite(views, qp) or _note_crossed(views, qp):
+        action = STOP
+    elif action == STOP and views.decision[2] == NOT_SETTLED:
+        _name_blocking(views, qp, yielding)
+    if yielding.approach != 0:
+        instant = instant_of(arrays, past, following)
+        taken = enter_approach(
+            yielding.approach, views, qp, instant, yielding, state, action, yields
+        )
+    else:
+        taken = _yield_at_once(views, qp, past[Q], yielding, state, action, yields)
     views.decision[0] = taken
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
@@ -508,16 +527,25 @@ def yield_step(
 
 
 @compiled
-def instant_of(
-    arrays: ProgramArrays,
-    past: Matrix,
-    following: Matrix,
-    targets: Matrix,
-    scenes: NDArray[np.int64],
-) -> Instant:
-    """Bring together what is known at a step; arguments as those of `yield_step`."""
-    step = step_views(arrays, past, targets, 0.0)
-    return Instant(step, past[WANTED], past[REST, 0], following, arrays.constants, scenes)
+def instant_of(arrays: ProgramArrays, past: Matrix, following: Matrix) -> Instant:
+    """Bring together what is known at a step.
+
+    Args:
+        arrays: Arrays of the loop.
+        past: `ControllerState.past`, (5, dof).
+        following: `ControllerState.following`, (5, dof).
+    """
+    return Instant(
+        past[Q],
+        past[LAST],
+        past[BEFORE],
+        past[WANTED],
+        past[REST, 0],
+        following,
+        arrays.jacobian,
+        arrays.placements,
+        arrays.constants,
+    )
 
 
 @compiled
@@ -525,15 +553,13 @@ def guard_step(
     arrays: ProgramArrays,
     past: Matrix,
     following: Matrix,
-    targets: Matrix,
     yielding: Yielding,
-    scenes: NDArray[np.int64],
 ) -> bool:
     """Test whether the command that `following` holds is stoppable, and note its way to rest.
 
-    The arguments are those of `yield_step`, `targets` (k, 18) the row's.
+    The arguments are those of `yield_step`.
     """
-    instant = instant_of(arrays, past, following, targets, scenes)
-    rest = stoppable(instant, yielding, following[LAST])
+    instant = instant_of(arrays, past, following)
+    rest = enter_stopping_time(yielding.stop, instant, yielding, following[LAST])
     following[REST, 0] = max(rest, 0.0)
     return rest >= 0.0

@@ -46,6 +46,7 @@ from iiwa_dnn.schemes.scene import (
 )
 from iiwa_dnn.schemes.step import StepViews
 
+
 @compiled
 def collision_rows(
     step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
@@ -114,7 +115,7 @@ def rate_along(jacobian: Matrix, j: int, point: Triple, normal: Triple) -> float
     wx = jacobian[j, 3]
     wy = jacobian[j, 4]
     wz = jacobian[j, 5]
-    value = normal[0] * (jacobian[j, 0] + wy * z - wz * y)
+    value: float = normal[0] * (jacobian[j, 0] + wy * z - wz * y)
     value += normal[1] * (jacobian[j, 1] + wz * x - wx * z)
     value += normal[2] * (jacobian[j, 2] + wx * y - wy * x)
     return value
@@ -185,6 +186,7 @@ class CollisionAvoidance(Limit):
     gain: float = 20.0
     nearest: int = 24
     moves: bool = field(default=False, init=False, repr=False)
+    elastic: bool = field(default=True, init=False, repr=False)
 
     def __post_init__(self) -> None:
         one = isinstance(self.obstacles, Obstacle) or not isinstance(self.obstacles, Iterable)

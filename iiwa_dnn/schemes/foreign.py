@@ -50,6 +50,11 @@ class ForeignProgram(StepProgram):
         return np.ones(self.sizes[2])
 
     @property
+    def elastic(self) -> Vector:
+        """1 for each inequality row of an elastic limit, (m,): none is."""
+        return np.zeros(self.sizes[1])
+
+    @property
     def priorities(self) -> Any:
         """Level of each equality row, (p,): none."""
         return np.zeros(self.sizes[2], dtype=np.int64)

@@ -159,10 +159,13 @@ class Limit(Part):
 
     Attributes:
         moves: Whether constants of the kernel change along a run, by `move`.
+        elastic: Whether a row that asks for more than all joints together can give is followed as
+            far as they can; otherwise the arm stops.
     """
 
     _plain = ("inequalities", "bounds")
     moves: bool = False
+    elastic: bool = False
 
     def move(self, robot: Robot, constants: Vector, t: float) -> None:
         """Bring the constants of the kernel, (k,), to a time [s]."""

@@ -251,6 +251,15 @@ class StepProgram:
         return np.repeat([task.row_weight for task in self.tasks], counts)
 
     @property
+    def elastic(self) -> Vector:
+        """1 for each inequality row of an elastic limit, else 0, (m,)."""
+        found = np.zeros(self.sizes[1])
+        for block in self.blocks:
+            if isinstance(block.part, Limit) and block.part.elastic:
+                found[block.first : block.first + block.rows] = 1.0
+        return found
+
+    @property
     def priorities(self) -> NDArray[np.int64]:
         """Level of each equality row, (p,); 0 for one that has to hold."""
         counts = [task.row_count(self.robot) for task in self.tasks]

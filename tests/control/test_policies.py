@@ -15,9 +15,16 @@ from iiwa_dnn import Controller, Target
 from iiwa_dnn.control import policies
 from iiwa_dnn.control.command import RowLayout, row_views
 from iiwa_dnn.control.policies import Action, Resolution
-from iiwa_dnn.control.relaxed import DAMPING, DRIFT, NEAR, Yielding, largest_factor, least_violation
-from iiwa_dnn.control.relaxed import note_blocking
-from iiwa_dnn.control.yielding import Instant, decide
+from iiwa_dnn.control.relaxed import (
+    DAMPING,
+    DRIFT,
+    NEAR,
+    Yielding,
+    largest_factor,
+    least_violation,
+    note_blocking,
+)
+from iiwa_dnn.control.yielding import yield_step
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
@@ -25,8 +32,9 @@ from iiwa_dnn.qp.layout import qp_views
 from iiwa_dnn.results.metrics import ACTIONS
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.program import ProgramArrays
 
+NONE = np.zeros((0, 2), np.int64)
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 
@@ -39,9 +47,11 @@ class Found(NamedTuple):
     rows: np.ndarray
 
 
-def yielding(qp: QP, weights: np.ndarray | None = None) -> Yielding:
+def yielding(qp: QP, weights: np.ndarray | None = None, elastic: bool = False) -> Yielding:
     rows = np.ones(qp.sizes[2]) if weights is None else weights
-    return Yielding(rows, np.zeros(0), np.array([1e-9, 60.0, 1e8]), 1e-3)
+    return Yielding(
+        rows, np.ones(qp.sizes[1]) * elastic, np.zeros(0), np.array([1e-9, 60.0, 1e8]), NONE, 1e-3
+    )
 
 
 def blocking(qp: QP, point: np.ndarray, extra: int) -> tuple[np.ndarray, np.ndarray]:
@@ -67,7 +77,11 @@ def softened(qp: QP, weights: np.ndarray | None = None) -> Found | None:
 
 
 def resolve(
-    qp: QP, policy: policies.Policy, weights: np.ndarray | None = None, moves: bool = True
+    qp: QP,
+    policy: policies.Policy,
+    weights: np.ndarray | None = None,
+    moves: bool = True,
+    elastic: bool = False,
 ) -> Resolution:
     """The decision about a program, as the controller takes it; `moves`: the reference does."""
     n, m, p = qp.sizes
@@ -77,18 +91,14 @@ def resolve(
     views.program[:] = qp.data
     views.targets[0, 12] = moves
     views.decision[2] = 2.0  # the network was asked, and did not settle
-    zeros = np.zeros(n)
-    none = np.zeros((1, 12))
-    step = StepViews(
-        0.0, 1e3, zeros, zeros, zeros, np.zeros((n, 6)), none, np.zeros((1, n)), np.eye(n),
-        views.targets,
-    )  # fmt: skip
-    scenes = np.zeros((0, 2), np.int64)
-    instant = Instant(step, zeros, 0.0, np.zeros((5, n)), np.zeros(0), scenes)
+    table = np.array([[n, m, p, n, 0, 0, 0, 0]])
+    none = np.zeros((n, 6))
+    arrays = ProgramArrays(table, np.zeros(0), none, np.zeros((1, 12)), none, np.eye(n), 1e3)
+    past, following = np.zeros((2, 5, n))
     action = {"slow": Action.SLOW, "relax": Action.RELAX}.get(policy, Action.STOP)
     state = np.zeros(3 * n + m + p)
-    program = qp_views(views.program, n, m, p)
-    taken = decide(views, program, instant, yielding(qp, weights), state, int(action), False)
+    relaxing = yielding(qp, weights, elastic)
+    taken = yield_step(row, arrays, past, following, state, relaxing, int(action), False)
     status = tuple(Status)[int(views.decision[2])]
     figures = views.figures.tolist()
     solution = Solution(views.point, qp.sizes, status, 0, 0.0, *figures[2:])
@@ -403,13 +413,14 @@ def test_slow_does_not_rest_in_a_singular_pose() -> None:
     np.testing.assert_array_equal(answer.qp.b, qp.A @ answer.solution.x)
 
 
-def test_a_row_that_asks_for_more_than_the_joints_can_give_is_followed_as_far_as_they_can() -> None:
+def test_an_elastic_row_that_asks_for_too_much_is_followed_as_far_as_the_joints_can() -> None:
     qp = QP(
         np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[-3.0], A=[[1.0, 2.0]], b=[0.5],
         lb=[-1.0, -1.0], ub=[1.0, 1.0],
     )  # fmt: skip
     for policy in ("slow", "relax"):
-        answer = resolve(qp, policy)
+        assert resolve(qp, policy).action is Action.STOP
+        answer = resolve(qp, policy, elastic=True)
         assert answer.action in (Action.SLOW, Action.RELAX)
         assert qp.G @ answer.solution.x <= -0.9 * 2.0 + 1e-9
         assert answer.rows.tolist() == [1]
