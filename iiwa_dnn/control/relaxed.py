@@ -204,7 +204,8 @@ def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector
             return np.nan
         if abs(point[n] - before) <= 0.1 * REACHED:
             break
-    return min(max(point[n] / longest, 0.0), 1.0)
+    factor: float = point[n] / longest
+    return min(max(factor, 0.0), 1.0)
 
 
 @compiled
@@ -298,7 +299,8 @@ def least_violation(qp: QPViews, yielding: Yielding, q: Vector, point: Vector) -
         Whether there is a solution.
     """
     data = program_data(qp.q.size, qp.h.size, held_rows(yielding.weights))
-    return _least_violation(qp, yielding, q, data, point)
+    found: bool = _least_violation(qp, yielding, q, data, point)
+    return found
 
 
 @compiled

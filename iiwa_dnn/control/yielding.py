@@ -51,6 +51,7 @@ from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, compiled, qp_views
 from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
 ATTEMPTS = 13
@@ -145,10 +146,16 @@ def _note_crossed(views: RowViews, qp: QPViews) -> bool:
 
 @compiled
 def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding) -> None:
-    """Note what stands in the way of the task as it is."""
-    point = np.empty(2 * qp.q.size + 2 + qp.h.size + qp.b.size)
-    enter_factor(yielding.factor, qp, yielding, point)
-    note_blocking(point, qp.q.size, qp.h.size, 1, views.blocking)
+    """Note what stands in the way of the task as it is, or which limits contradict each other."""
+    n = qp.q.size
+    m = qp.h.size
+    point = np.empty(2 * n + 2 + m + qp.b.size)
+    factor: float = enter_factor(yielding.factor, qp, yielding, point)
+    note_blocking(point, n, m, 1, views.blocking)
+    if not factor >= 0.0:
+        limits = np.empty(2 * n + m + held_rows(yielding.weights))
+        if not enter_violation(yielding.violation, qp, yielding, views.q, limits):
+            note_blocking(limits, n, m, 0, views.blocking)
 
 
 @compiled
@@ -287,7 +294,8 @@ def _has_solution(qp: QPViews, yielding: Yielding, point: Vector) -> bool:
     if _attained(qp, yielding.weights, point) < NEARLY:
         return False
     scaled = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
-    return enter_factor(yielding.factor, qp, yielding, scaled) >= FEASIBLE
+    factor: float = enter_factor(yielding.factor, qp, yielding, scaled)
+    return factor >= FEASIBLE
 
 
 @compiled
@@ -360,7 +368,17 @@ def approach(
 ) -> int:
     """Go towards the wanted velocity within acceleration limits, or brake.
 
-    The arguments are those of `yield_step`, and its views; so is the result.
+    Args:
+        views: The step's row.
+        qp: The program in it.
+        instant: What else is known.
+        yielding: Weights, limits and settings of the relaxed programs.
+        state: The network's state, (size,), advanced where its answer is taken.
+        action: Action that the policy asks for: `SLOW`, `RELAX` or `STOP`.
+        yields: Whether the task yielded at the last step.
+
+    Returns:
+        The action that was taken.
     """
     n = qp.q.size
     dof = instant.q.size
@@ -369,26 +387,41 @@ def approach(
         braked = views.point[:dof]
         _follow(instant, braked, _braking_command(qp, instant, yielding, braked))
         return STOP
-    wanted = np.zeros(2 * n + qp.h.size + held_rows(yielding.weights))
+    held = held_rows(yielding.weights)
+    wanted = np.empty(2 * n + qp.h.size + held)
     found = enter_violation(yielding.violation, qp, yielding, instant.q, wanted)
     note_blocking(wanted, n, qp.h.size, 0, views.blocking)
     if found and _fits(views, qp, instant, yielding, state, wanted):
         _clear_blocking(views)
         return NONE if yields else FALLBACK
-    x = wanted[:n].copy() if found else np.zeros(n)
-    _step_towards(qp, instant, yielding, x[:dof])
+    if not found:
+        for i in range(n):
+            wanted[i] = 0.0
+    x = wanted[:n].copy()
+    if held == 0:
+        _step_towards(qp, instant, yielding, x[:dof])
+    else:  # joints that follow others have to go with them
+        _step_straight(qp, instant, yielding, x[:dof])
     nearest_within(qp, x, yielding)
     rest = 0.0
     if yielding.stop != 0:
-        rest = _keep_stoppable(qp, instant, yielding, x[:dof])
+        rest = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
+        if rest < 0.0:
+            rest = _slow_down(qp, instant, yielding, wanted, x)
     _follow(instant, wanted, rest)
-    for i in range(dof):
-        missing = wanted[i] - x[i]
-        if abs(missing) > REACHED:
-            views.blocking[i] = math.copysign(1.0, missing)
+    _note_missing(views, wanted, x[:dof])
     fraction = 1.0 if action == RELAX else max(_attained(qp, yielding.weights, x), CREEP)
     _take(views, qp, x, fraction)
     return action
+
+
+@compiled
+def _note_missing(views: RowViews, wanted: Vector, dq: Vector) -> None:
+    """Note the joints whose command dq (dof,) is short of the wanted velocity, (dof,) or more."""
+    for i in range(dq.size):
+        missing = wanted[i] - dq[i]
+        if abs(missing) > REACHED:
+            views.blocking[i] = math.copysign(1.0, missing)
 
 
 @compiled
@@ -405,7 +438,8 @@ def _fits(
         return False
     rest = 0.0
     if yielding.stop != 0:
-        rest = enter_stopping_time(yielding.stop, instant, yielding, views.point[: instant.q.size])
+        dq = views.point[: instant.q.size]
+        rest = enter_stopping_time(yielding.stop, instant, yielding, dq)
     if rest < 0.0:
         return False
     _follow(instant, wanted, rest)
@@ -414,18 +448,34 @@ def _fits(
 
 @compiled
 def _step_towards(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> None:
-    """Replace the wanted velocity dq (dof,) by the next command on the straight line to it."""
+    """Replace the wanted velocity dq (dof,) by the next command of joints that hurry to it.
+
+    Each joint goes as quickly as its limits allow, without passing a velocity that goes on changing
+    as it has done since the last step.
+    """
     dof = dq.size
     limits = yielding.limits
+    for i in range(dof):
+        aim = dq[i]
+        most = limits[3 * dof + i] * yielding.dt
+        change = min(max(aim - instant.wanted[i], -most), most)
+        behind = instant.last[i] - (aim - change)
+        rate = limits[4 * dof + i]
+        dq[i] = aim + braking(behind, qp.lb[i] - aim, qp.ub[i] - aim, rate, yielding.dt)
+        dq[i] = min(max(dq[i], qp.lb[i]), qp.ub[i])
+
+
+@compiled
+def _step_straight(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> None:
+    """Replace the wanted velocity dq (dof,) by the next command on the straight line to it."""
+    dof = dq.size
     now = np.empty(dof)
     before = np.empty(dof)
     for i in range(dof):
-        most = limits[3 * dof + i] * yielding.dt
-        change = min(max(dq[i] - instant.wanted[i], -most), most)
-        now[i] = instant.last[i] - (dq[i] - change)
-        before[i] = instant.before[i] - (dq[i] - 2.0 * change)
-    periods = least_periods(now, before, limits, yielding.dt)
-    cubic = has_jerk(limits)
+        now[i] = instant.last[i] - dq[i]
+        before[i] = instant.before[i] - dq[i]
+    periods = least_periods(now, before, yielding.limits, yielding.dt)
+    cubic = has_jerk(yielding.limits)
     for i in range(dof):
         if periods < np.inf:
             dq[i] += next_velocity(now[i], before[i], periods, cubic)
@@ -433,19 +483,28 @@ def _step_towards(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector)
 
 
 @compiled
-def _keep_stoppable(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> float:
-    """Replace a command dq (dof,) by a stoppable one; return the periods that braking takes."""
-    braking = np.empty(dq.size)
-    left = _braking_command(qp, instant, yielding, braking)
-    wanted = dq.copy()
+def _slow_down(
+    qp: QPViews, instant: Instant, yielding: Yielding, wanted: Vector, x: Vector
+) -> float:
+    """Write a stoppable command into x (n,), on the way from the braking motion to the wanted one.
+
+    Returns:
+        Periods until it rests.
+    """
+    dof = instant.q.size
+    straight = wanted[: x.size].copy()
+    _step_straight(qp, instant, yielding, straight[:dof])
+    nearest_within(qp, straight, yielding)
+    braking_command = np.empty(dof)
+    left = _braking_command(qp, instant, yielding, braking_command)
     for share in TOWARDS:
-        for i in range(dq.size):
-            dq[i] = braking[i] + share * (wanted[i] - braking[i])
-        rest = enter_stopping_time(yielding.stop, instant, yielding, dq)
+        for i in range(dof):
+            x[i] = braking_command[i] + share * (straight[i] - braking_command[i])
+        rest: float = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
         if rest >= 0.0:
             return rest
-    for i in range(dq.size):
-        dq[i] = braking[i]
+    for i in range(dof):
+        x[i] = braking_command[i]
     return left
 
 
@@ -510,7 +569,7 @@ def yield_step(
         _name_blocking(views, qp, yielding)
     if yielding.approach != 0:
         instant = instant_of(arrays, past, following)
-        taken = enter_approach(
+        taken: int = enter_approach(
             yielding.approach, views, qp, instant, yielding, state, action, yields
         )
     else:
@@ -557,9 +616,13 @@ def guard_step(
 ) -> bool:
     """Test whether the command that `following` holds is stoppable, and note its way to rest.
 
-    The arguments are those of `yield_step`.
+    Args:
+        arrays: Arrays of the loop.
+        past: `ControllerState.past`, (5, dof).
+        following: `ControllerState.following`, (5, dof).
+        yielding: Limits and scenes.
     """
     instant = instant_of(arrays, past, following)
-    rest = enter_stopping_time(yielding.stop, instant, yielding, following[LAST])
+    rest: float = enter_stopping_time(yielding.stop, instant, yielding, following[LAST])
     following[REST, 0] = max(rest, 0.0)
     return rest >= 0.0

@@ -71,7 +71,7 @@ class Recorder:
         self._outcomes.append(outcome)
         if outcome.ends:
             self.last_step = k
-            self.diverged = outcome.resolution is None
+            self.diverged = outcome.action is not Action.STOP
         if outcome.action is not Action.NONE or self._series:
             self._count_fallbacks(k, outcome.action)
 

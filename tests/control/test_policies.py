@@ -18,7 +18,9 @@ from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.control.relaxed import (
     DAMPING,
     DRIFT,
+    FACTOR,
     NEAR,
+    VIOLATION,
     Yielding,
     largest_factor,
     least_violation,
@@ -26,6 +28,8 @@ from iiwa_dnn.control.relaxed import (
 )
 from iiwa_dnn.control.yielding import yield_step
 from iiwa_dnn.errors import NoSolutionError
+from iiwa_dnn.networks.integrators.base import ANSWER
+from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.qp.layout import qp_views
@@ -34,7 +38,6 @@ from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.schemes.program import ProgramArrays
 
-NONE = np.zeros((0, 2), np.int64)
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.1, 0.1, 0.1])
 
 
@@ -48,9 +51,16 @@ class Found(NamedTuple):
 
 
 def yielding(qp: QP, weights: np.ndarray | None = None, elastic: bool = False) -> Yielding:
-    rows = np.ones(qp.sizes[2]) if weights is None else weights
     return Yielding(
-        rows, np.ones(qp.sizes[1]) * elastic, np.zeros(0), np.array([1e-9, 60.0, 1e8]), NONE, 1e-3
+        np.ones(qp.sizes[2]) if weights is None else weights.copy(),
+        np.full(qp.sizes[1], float(elastic)),
+        np.zeros(0),
+        np.array([1e-9, 60.0, 1e8]),
+        np.zeros((0, 2), np.int64),
+        1e-3,
+        ANSWER.address(settle),
+        FACTOR.address(largest_factor),
+        VIOLATION.address(least_violation),
     )
 
 

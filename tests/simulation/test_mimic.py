@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from iiwa_dnn import Circle, Configuration, DoubleIndicator, InvalidInputError, load_robot, simulate
+from iiwa_dnn import (
+    AccelerationLimits,
+    Circle,
+    Configuration,
+    Controller,
+    DoubleIndicator,
+    InvalidInputError,
+    Target,
+    load_robot,
+    simulate,
+)
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 
@@ -48,6 +59,28 @@ def test_the_coupling_holds_over_a_run_and_pinocchios_own_mimic_is_where_the_tip
     for k in (0, 700, 2000):
         pin.framesForwardKinematics(other, data, np.delete(record.q[k], 3))
         np.testing.assert_allclose(data.oMf[tip].translation, record.position[k], rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+@pytest.mark.parametrize("limited", [False, True])
+def test_a_task_that_yields_does_not_pull_the_linkage_apart(
+    file: Path, policy: Any, limited: bool
+) -> None:
+    # With `relax`, or acceleration limits, it was commanded apart by up to 0.45 rad.
+    robot = load_robot(file)
+    limits = (AccelerationLimits(10.0),) if limited else ()
+    start = Configuration(robot, robot.start_posture())
+    scheme = DoubleIndicator(orientation="none", extra_limits=limits)
+    controller = Controller(robot, scheme, policy=policy)
+    q = start.q
+    apart = []
+    for k in range(1500):
+        side = 0.5 if k % 500 < 250 else -0.3
+        target = Target(start.position + [0.1, side, side], start.rotation)
+        command = controller.step(q, 1e-3 * k, target)
+        q = q + 1e-3 * command.dq
+        apart.append(abs(q[3] + 0.5 * q[1] - 0.1))
+    assert max(apart) < 1e-6
 
 
 def test_a_follower_of_a_locked_joint_is_refused(file: Path) -> None:

@@ -1,0 +1,159 @@
+"""A command is given only if the arm can still stop from it, clear of all that is near."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from iiwa_dnn import (
+    AccelerationLimits,
+    CollisionAvoidance,
+    Configuration,
+    Controller,
+    DoubleIndicator,
+    HalfSpace,
+    JerkLimits,
+    Limit,
+    Sphere,
+    Target,
+    load_robot,
+)
+from iiwa_dnn.control.stopping import (
+    Motion,
+    bend_of,
+    extremes,
+    has_jerk,
+    least_periods,
+    next_velocity,
+    sums,
+)
+from judge_limits import breaches
+
+ROBOT = load_robot("iiwa7")
+ACCELERATION = (AccelerationLimits(),)
+JERK = (AccelerationLimits(), JerkLimits(500.0))
+
+
+def way_to_rest(x: np.ndarray, before: np.ndarray, limits: np.ndarray, dt: float) -> np.ndarray:
+    """Velocities from before x to rest, each from the two before it, as a controller has them."""
+    periods = least_periods(x, before, limits, dt)
+    assert np.isfinite(periods)
+    cubic = has_jerk(limits)
+    path = [before, x]
+    while periods > 0:
+        pairs = zip(path[-1], path[-2], strict=True)
+        path.append(np.array([next_velocity(a, b, periods, cubic) for a, b in pairs]))
+        periods -= 1
+    return np.array(path)
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 500.0])
+@pytest.mark.parametrize("dt", [1e-3, 1e-2])
+def test_a_motion_to_rest_keeps_acceleration_and_jerk(jerk: float, dt: float) -> None:
+    random = np.random.default_rng(3)
+    limits = np.concatenate([np.full(9, 3.0), np.full(3, 10.0), np.full(3, jerk)])
+    for _ in range(200):
+        x = random.uniform(-2.0, 2.0, 3)
+        before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, jerk * dt) * dt
+        path = way_to_rest(x, before, limits, dt)
+        assert not path[-1].any()
+        rates = np.diff(path, axis=0) / dt
+        assert (np.abs(rates) <= 10.0 * (1.0 + 1e-8)).all()
+        if jerk < np.inf:
+            rested = np.vstack([rates, np.zeros((2, 3))])
+            assert (np.abs(np.diff(rested, axis=0)) / dt <= jerk * (1.0 + 1e-8)).all()
+
+
+@pytest.mark.parametrize("cubic", [False, True])
+def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> None:
+    random = np.random.default_rng(4)
+    for _ in range(300):
+        M = float(random.integers(1, 40))
+        x, before = random.standard_normal(2)
+        b = bend_of(x, before, M) if cubic else 0.0
+        motion = Motion(np.array([x]), np.array([b]), M, cubic)
+        u = np.arange(M) / M
+        velocities = x * (1 - u)
+        if cubic:
+            velocities = (1 - u) ** 2 * (x * (1 + 2 * u) + b * u)
+        ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
+        least, largest = extremes(motion, x, b, 1e-3)
+        assert least == pytest.approx(ways.min(), abs=1e-12)
+        assert largest == pytest.approx(ways.max(), abs=1e-12)
+        of_first, of_bend = sums(motion, M)
+        assert 1e-3 * (x * of_first + b * of_bend) == pytest.approx(ways[-1], abs=1e-12)
+
+
+def pressed(
+    limits: tuple[Limit, ...], obstacle: HalfSpace | Sphere, steps: int, dt: float
+) -> tuple[np.ndarray, float, float]:
+    """Press the arm against an obstacle, then ask it back; joint positions and least distances."""
+    start = Configuration(ROBOT, ROBOT.start_posture())
+    avoidance = CollisionAvoidance([obstacle], distance=0.02, self_collision=False)
+    scene = avoidance.scene(ROBOT)
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
+    controller = Controller(ROBOT, scheme, dt=dt)
+    q = start.q
+    path = [q]
+    for k in range(steps):
+        ahead = 2.0 if k < steps // 3 else 0.0
+        target = Target(start.position + [ahead, 0.0, 0.0], start.rotation)
+        q = q + dt * controller.step(q, k * dt, target).dq
+        path.append(q)
+    found = np.array(path)
+    half = 0.5 * (found[1:] + found[:-1])
+    distances = [scene.nearest(each, np.zeros(len(each)))[0].min() for each in (found, half)]
+    left = np.linalg.norm(Configuration(ROBOT, q).position - start.position)
+    return found, min(distances), left
+
+
+@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+@pytest.mark.parametrize("kind", ["wall", "ball"])
+def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
+    limits: tuple[Limit, ...], kind: str
+) -> None:
+    # The wall was entered by 30 mm, and the arm stayed there for good.
+    tip = Configuration(ROBOT, ROBOT.start_posture()).position
+    wall = HalfSpace([-1, 0, 0], float(-tip[0] - 0.35))
+    obstacle = wall if kind == "wall" else Sphere(tip + [0.4, 0.05, 0.0], 0.15)
+    path, least, left = pressed(limits, obstacle, 2400, 4e-3)
+    assert least >= 0.02 - 1e-9
+    assert least < 0.03  # it was near
+    assert left < 1e-3
+    jerk = 500.0 if len(limits) == 2 else np.inf
+    robot = (ROBOT.q_lower, ROBOT.q_upper, ROBOT.dq_max, ROBOT.ddq_max)
+    assert breaches(path, 4e-3, *robot, jerk) == []
+
+
+def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
+    # With acceleration limits an arm 10 um above the distance never moved again.
+    start = Configuration(ROBOT, ROBOT.start_posture())
+    bare = CollisionAvoidance([Sphere(start.position + [0.3, 0.0, 0.0], 0.1)], distance=0.02,
+                              self_collision=False)  # fmt: skip
+    near = float(bare.scene(ROBOT).nearest(start.q[None], np.zeros(1))[0][0])
+    avoidance = CollisionAvoidance(bare.obstacles, distance=near - 1e-5, self_collision=False)
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
+    controller = Controller(ROBOT, scheme)
+    q = start.q
+    for k in range(1500):
+        target = Target(start.position + [-0.1, 0.0, 0.0], start.rotation)
+        q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
+    assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+
+
+def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
+    # Upright, no joint moves the arm away from above: the row was weakened to 0 dq <= 0.
+    upright = np.zeros(7)
+    conf = Configuration(ROBOT, upright)
+    falling = Sphere(conf.position + [0.0, 0.0, 0.4], 0.1, velocity=[0.0, 0.0, -0.1])
+    avoidance = CollisionAvoidance([falling], distance=0.02, self_collision=False)
+    scene = avoidance.scene(ROBOT)
+    controller = Controller(ROBOT, DoubleIndicator(orientation="none", extra_limits=(avoidance,)))
+    q = upright
+    for k in range(4000):
+        command = controller.step(q, 1e-3 * k, Target(conf.position, conf.rotation))
+        q = q + 1e-3 * command.dq
+        if scene.nearest(q[None], np.array([1e-3 * (k + 1)]))[0][0] < 0.02:
+            break
+    assert k < 3999
+    assert not command.ok
