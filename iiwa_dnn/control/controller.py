@@ -94,6 +94,7 @@ class Controller:
         self._lock = threading.Lock()
         self._state = ControllerState(0)
         self._derived: tuple[ControlStep, Cascade] | None
+        self._anchored: Scheme | None = None
         self.mode = mode
         self.policy = policy
         self.dt = dt
@@ -383,7 +384,8 @@ class Controller:
             references = by_frame(self.reference, self.robot.tip)
             step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
             derived = (step, Cascade(program.priorities, program.sizes, self.solver))
-            self._derived = derived
+            if self._anchored is self.scheme:  # else the next step gives the scheme its home
+                self._derived = derived
         return derived
 
     @property
@@ -423,6 +425,7 @@ class Controller:
             scheme = anchored(start)
             if scheme is not self.scheme:
                 self.scheme = scheme
+        self._anchored = self.scheme
         state.past[Q] = start.q
         state.begun = True
 

@@ -45,9 +45,6 @@ GROWTH = 1.1
 SLACK = 1e-9
 """Relative excess of a limit that is rounding."""
 
-CLOSER = 1e-9
-"""Distance by which a pair that is too near may come nearer through rounding [m]."""
-
 
 class Instant(NamedTuple):
     """What is known at a step, beside its program.
@@ -347,7 +344,7 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
             _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)
             rise = _least_rise(motion, rates, dt)
             change = max(change, rise - 0.5 * _seen_second_order(bounds, contact.core))
-        if left + change < min(scene.damper.least, left - CLOSER):
+        if left + change < min(scene.damper.least, left):
             return False
     return True
 

@@ -231,3 +231,13 @@ def test_a_slowed_moving_target_does_not_jump() -> None:
     assert record.fraction is not None
     steps = np.linalg.norm(np.diff(record.position_desired, axis=0), axis=1)
     assert steps.max() <= 0.25 * 1e-3 * (1.0 + 1e-9)
+
+
+def test_a_look_at_the_targets_does_not_take_the_first_steps_home() -> None:
+    plain = Controller(paper_robot(), DoubleIndicator(), heart())
+    looked = Controller(paper_robot(), DoubleIndicator(), heart())
+    looked.targets(0.0)
+    for k in range(3):
+        expected = plain.step(PAPER_Q0, 1e-3 * k).dq
+        np.testing.assert_array_equal(looked.step(PAPER_Q0, 1e-3 * k).dq, expected)
+    assert looked.scheme.settings()["home"] is not None
