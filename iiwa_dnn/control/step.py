@@ -33,7 +33,13 @@ from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
+from iiwa_dnn.schemes.program import (
+    ProgramArrays,
+    StepProgram,
+    assemble,
+    borrowed_arrays,
+    step_views,
+)
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program counts as one without a solution."""
@@ -161,15 +167,7 @@ def control_step(
     """
     row = borrowed(row)
     past = borrowed(past)
-    arrays = ProgramArrays(
-        borrowed(arrays.table),
-        borrowed(arrays.constants),
-        borrowed(arrays.jacobian),
-        borrowed(arrays.placements),
-        borrowed(arrays.moves),
-        borrowed(arrays.inertia),
-        arrays.rate,
-    )
+    arrays = borrowed_arrays(arrays)
     table = arrays.table
     constants = arrays.constants
     n = table[0, 0]
@@ -184,7 +182,7 @@ def control_step(
         past[Q, i] = q[i]
         views.q[i] = q[i]
     if begin == SAMPLE:
-        _sample_all(arrays, network + 1, t - delay, views.targets)
+        sample_targets(arrays, t - delay, views.targets)
     if begin <= WRITE:
         assemble(step_views(arrays, past, views.targets, t), arrays, qp)
     own = constants[table[network, 4] : table[network, 5]]
@@ -220,23 +218,21 @@ def control_step(
 
 
 @compiled
-def _sample_all(arrays: ProgramArrays, first: int, t: float, targets: Matrix) -> None:
-    """Write the targets (k, 18) of all paths at time t [s]; their entries begin with the first."""
+def sample_targets(arrays: ProgramArrays, t: float, targets: Matrix) -> None:
+    """Write the targets (k, 18) of all paths at time t [s]; the constants begin with their base."""
     table = arrays.table
+    first = 2 + table[0, 4]
     period = 1.0 / arrays.rate
     for k in range(first, table.shape[0]):
         own = arrays.constants[table[k, 4] : table[k, 5]]
         target = targets[k - first]
-        _sample(table[k, 1], own, t, target)
+        move = own[target.size :]
+        for i in range(target.size):
+            target[i] = own[i]
+        _enter_path(table[k, 1], t, move, target)
         if table[k, 2] != 0:
             then = np.empty(target.size)
-            _sample(table[k, 1], own, t + period, then)
+            for i in range(target.size):
+                then[i] = own[i]
+            _enter_path(table[k, 1], t + period, move, then)
             set_mean_twist(target, then, period)
-
-
-@compiled
-def _sample(address: int, constants: Vector, t: float, target: Vector) -> None:
-    """Write the target (18,) of a path at time t [s]; the constants begin with its base."""
-    for i in range(target.size):
-        target[i] = constants[i]
-    _enter_path(address, t, constants[target.size :], target)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 from numba import config, types
 from numba.core import cgutils, event
@@ -70,8 +70,11 @@ class Signature:
         enter: ``enter(address, *arguments)`` calls the function from compiled code.
     """
 
+    _all: ClassVar[list[Signature]] = []
+
     def __init__(self, result: Any, *arguments: Any) -> None:
         """Take numba's types of the result (`types.void` for none) and of the arguments."""
+        Signature._all.append(self)
         self._result = result
         self._arguments = arguments
         self._addresses: dict[Callable[..., Any], int] = {}
@@ -89,6 +92,16 @@ class Signature:
             self._addresses[function] = id(function) if _INTERPRETED else self._compile(function)
         return self._addresses[function]
 
+    @classmethod
+    def entered_by(cls, enter: object) -> Signature | None:
+        """Return the signature whose `enter` this is; None if it is no signature's."""
+        return next((own for own in cls._all if own.enter is enter), None)
+
+    def function_at(self, address: int) -> Callable[..., Any]:
+        """Return the function whose `address` this is."""
+        functions = {place: function for function, place in self._addresses.items()}
+        return functions[address]
+
     def _compile(self, function: Any) -> int:
         if not isinstance(function, Dispatcher):
             raise TypeError(f"{function!r} is not compiled by numba")
@@ -102,8 +115,7 @@ class Signature:
 
     def _call(self, address: int, *arguments: Any) -> Any:
         """Call the interpreted function that stands at an address, without numba."""
-        functions = {place: function for function, place in self._addresses.items()}
-        return functions[address](*arguments)
+        return self.function_at(address)(*arguments)
 
 
 def _call_at_address(result: Any, expected: tuple[Any, ...]) -> Any:

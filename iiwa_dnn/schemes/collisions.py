@@ -62,7 +62,8 @@ def collision_rows(
     gradients = np.empty((pairs, dof))
     limits = np.empty(pairs)
     slacks = np.empty(pairs)
-    ends = place_ends(scene, step.placements)
+    ends = np.empty(scene.ends.shape)
+    place_ends(scene, step.placements, ends)
     for k in range(pairs):
         pair = pair_of(scene.pairs, k)
         contact = contact_of(pair, ends, scene.points)

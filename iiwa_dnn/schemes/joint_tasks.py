@@ -224,7 +224,9 @@ def center_of_mass_rows(
 ) -> None:
     """Write the rows of `CenterOfMassTask`."""
     links = constants[10:].reshape((constants.size - 10) // 5, 5)
-    total = np.sum(links[:, 1])
+    total = 0.0
+    for k in range(links.shape[0]):
+        total += links[k, 1]
     center = (0.0, 0.0, 0.0)
     jacobian = np.zeros((3, step.q.size))
     for k in range(links.shape[0]):

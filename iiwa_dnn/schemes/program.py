@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.checks import read_only
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.compiling import Signature
+from iiwa_dnn.qp.compiling import Signature, borrowed
 from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -447,6 +447,20 @@ def _kind(part: Part) -> tuple[int, Signature]:
 _enter_cost = COST.enter
 _enter_task = TASK.enter
 _enter_limit = LIMIT.enter
+
+
+@compiled
+def borrowed_arrays(arrays: ProgramArrays) -> ProgramArrays:
+    """Return the arrays of a program without counting who uses them."""
+    return ProgramArrays(
+        borrowed(arrays.table),
+        borrowed(arrays.constants),
+        borrowed(arrays.jacobian),
+        borrowed(arrays.placements),
+        borrowed(arrays.moves),
+        borrowed(arrays.inertia),
+        arrays.rate,
+    )
 
 
 @compiled

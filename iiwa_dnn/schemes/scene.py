@@ -356,9 +356,8 @@ class Contact(NamedTuple):
 
 
 @compiled
-def place_ends(scene: SceneViews, placements: Matrix) -> Matrix:
-    """Compute the ends of all shapes in the world [m], (2 s, 3), for placements (frames, 12)."""
-    ends = np.empty(scene.ends.shape)
+def place_ends(scene: SceneViews, placements: Matrix, ends: Matrix) -> None:
+    """Write the ends of all shapes in the world [m], (2 s, 3), for placements (frames, 12)."""
     for k in range(scene.ends.shape[0]):
         frame = int(scene.frames[k // 2])
         for i in range(3):
@@ -368,7 +367,6 @@ def place_ends(scene: SceneViews, placements: Matrix) -> Matrix:
                 for j in range(3):
                     value += placements[frame, 3 * j + i] * scene.ends[k, j]
             ends[k, i] = value
-    return ends
 
 
 @compiled
@@ -416,7 +414,8 @@ def pair_distances(constants: Vector, dof: int, placements: Matrix) -> Vector:
         placements: `Kinematics.placements`, (frames, 12).
     """
     scene = scene_views(constants, dof)
-    ends = place_ends(scene, placements)
+    ends = np.empty(scene.ends.shape)
+    place_ends(scene, placements, ends)
     distances = np.empty(len(scene.pairs))
     for k in range(distances.size):
         distances[k] = contact_of(pair_of(scene.pairs, k), ends, scene.points).distance
