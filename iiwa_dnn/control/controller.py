@@ -389,6 +389,21 @@ class Controller:
         return derived
 
     @property
+    def begun(self) -> bool:
+        """Test whether a first step was taken."""
+        return self._state.begun
+
+    @property
+    def positions(self) -> Vector:
+        """Joint positions of the last step [rad], (n,), a copy."""
+        return np.array(self._state.past[Q])
+
+    @property
+    def control_step(self) -> ControlStep:
+        """The control step, laid out for scheme, references and network."""
+        return self._laid_out()[0]
+
+    @property
     def program(self) -> StepProgram:
         """The scheme laid out for the robot."""
         return self._laid_out()[0].program

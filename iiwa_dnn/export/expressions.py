@@ -7,6 +7,7 @@ import builtins
 import math
 import operator
 from collections.abc import Callable
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -212,8 +213,10 @@ class Expressions:
             kinds = [DOUBLE] * len(items) if all(is_double) else kinds
         if all(kind == kinds[0] for kind in kinds):
             return Value(Tuple(kinds[0], len(items)), items=items)
-        tag = "_".join(["tuple", *(getattr(kind, "tag", "") or getattr(kind, "name", "array") for kind in kinds)])
-        return Value(Struct(tag, {f"item{i}": kind for i, kind in enumerate(kinds)}), items=items)
+        names = [getattr(kind, "tag", "") or getattr(kind, "name", "array") for kind in kinds]
+        runs = [(name, len(list(run))) for name, run in groupby(names)]
+        words = [name if count == 1 else f"{count}_{name}s" for name, count in runs]
+        return Value(Struct("_".join(["tuple", *words]), {f"item{i}": kind for i, kind in enumerate(kinds)}), items=items)
 
     def on_unaryop(self, node: ast.UnaryOp) -> Value:
         """Translate a sign or a negation."""
@@ -256,12 +259,10 @@ class Expressions:
         operands = f"({left.text}, {right.text})"
         if DOUBLE in (left.kind, right.kind):
             return Value(DOUBLE, f"{self.translator.helper(of_doubles)}{operands}")
-        known = None
         if left.known is not None and right.known is not None:
             known = Known(compute(left.known.value, right.known.value), left.known, right.known)
-            if left.is_literal and right.is_literal:
-                return integer(known)
-        return Value(INT, f"{self.translator.helper(name)}{operands}", known=known)
+            return integer(known)
+        return Value(INT, f"{self.translator.helper(name)}{operands}")
 
     def _power(self, node: ast.BinOp, base: Value) -> Value:
         exponent = self.known(node.right).value

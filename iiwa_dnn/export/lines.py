@@ -97,12 +97,15 @@ class Lines:
         """Test whether the lines declare variables, and do nothing else."""
         return all(line.declared and "(" not in line.text for line in self._lines)
 
-    def used(self) -> tuple[list[str], set[str]]:
-        """Return the lines without variables that nobody reads, and the names in them."""
+    def used(self, calls: str = "(") -> tuple[list[str], set[str]]:
+        """Return the lines without variables that nobody reads, and the names in them.
+
+        A variable whose value holds `calls` is kept: a function may do something else too.
+        """
         kept = []
         names: set[str] = set()
         for line in reversed(self._lines):
-            if line.declared and line.declared not in names and "(" not in line.text:
+            if line.declared and line.declared not in names and calls not in line.text:
                 continue
             # The same name further up is another variable's.
             names.discard(line.declared)
@@ -114,10 +117,11 @@ class Lines:
 
 def wrapped(text: str, indent: str = "") -> str:
     """Break a line of C where it is too long."""
+    start = indent or text[: len(text) - len(text.lstrip())]
     return textwrap.fill(
-        text,
+        text.lstrip(),
         WIDTH,
-        initial_indent=indent,
+        initial_indent=start,
         subsequent_indent=f"{indent}    ",
         break_long_words=False,
         break_on_hyphens=False,

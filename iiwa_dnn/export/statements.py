@@ -21,7 +21,7 @@ from iiwa_dnn.export.values import (
     Storage,
     Tuple,
     Value,
-    declaration,
+    integer,
     knowns,
     length,
 )
@@ -119,7 +119,7 @@ class Body(Expressions):
             return True
         value = self.value(node.value)
         if self.lines.only_declare and _is_known(value):
-            self.known_result = value
+            self.known_result = _literal(value)
         for known in knowns(value.kind):
             known.use()
         for kind in [value.kind, *getattr(value.kind, "fields", {}).values()]:
@@ -442,6 +442,13 @@ def _is_known(value: Value) -> bool:
     if value.items:
         return all(map(_is_known, value.items))
     return value.kind is INT and value.known is not None
+
+
+def _literal(value: Value) -> Value:
+    """Return a value that is made of known integers without its names."""
+    if value.known is not None:
+        return integer(value.known)
+    return Value(value.kind, items=[_literal(item) for item in value.items])
 
 
 def _plain(size: Known | str) -> Any:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -118,16 +119,15 @@ class Translator:
             element = INT if flat.dtype.kind == "i" else DOUBLE
             value = Value(Array(element, shape, Storage(), content), name)
             texts = [number(each) for each in flat.tolist()]
-            numbers = wrapped(", ".join(texts) or "0.0").replace("\n", "\n    ")
-            text = f"static const double {name}[{max(flat.size, 1)}] = {{\n    {numbers}\n}};"
+            numbers = wrapped(f"    {', '.join(texts) or '0.0'}")
+            text = f"static const double {name}[{max(flat.size, 1)}] = {{\n{numbers}\n}};"
             self._tables[name] = (value, text)
             made = self._tables[name]
         return made[0]
 
     def named_tuple(self, kind: Any, values: dict[str, Value]) -> Struct:
         """Return the struct of a named tuple with these values."""
-        tag = "".join(f"_{c.lower()}" if c.isupper() and not p.isupper() else c.lower()
-                      for p, c in zip("A" + kind.__name__, kind.__name__, strict=False)).strip("_")
+        tag = re.sub("(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", kind.__name__).lower()
         fields: dict[str, Any] = {}
         for name, value in values.items():
             own = value.kind
@@ -198,35 +198,40 @@ class Translator:
                 parameters.append(_parameter(own.arg, argument, body))
 
         body = translated(self, function, file, tree, bind)
-        name = self._name_of(function)
         known = [each for own in parameters for each in _known_of(own)]
         lines, names = body.lines.used()
         kinds = [own.kind for own in parameters]
         if body.known_result is not None:
-            return Made(name, known, kinds, body.result, body.known_result)
+            return Made("", known, kinds, body.result, body.known_result)
         idle = [f"    (void){own.name};" for own in parameters if own.name not in names and _shown(own)]
         shown = [text for own in parameters if _shown(own) for text in _declared(own)]
-        result = declaration(body.result, name) if body.result is not None else f"void {name}"
-        about = (inspect.getdoc(function) or "").splitlines()[:1]
-        comment = [f"/* {line} ({file}) */" for line in about] or [f"/* {file} */"]
-        head = wrapped(f"static {result}({', '.join(shown) or 'void'})")
-        self.functions.append("\n".join([*comment, head, "{", *idle, *lines, "}"]))
+        start = declaration(body.result, "") if body.result is not None else "void "
+        head = f"({', '.join(shown) or 'void'})"
+        rest = "\n".join(["{", *idle, *lines, "}"])
+        # For other sizes the text may come out the same.
+        name, is_new = self._name_of(function, start + re.sub("\0\\d+\0", "", head) + rest)
+        if is_new:
+            about = " ".join([*(inspect.getdoc(function) or "").splitlines()[:1], f"({file})"])
+            comment = wrapped(f"/* {about} */").replace("\n    ", "\n   ")
+            self.functions.append(f"{comment}\n{wrapped(f'static {start}{name}{head}')}\n{rest}")
         return Made(name, known, kinds, body.result, None)
 
-    def _name_of(self, function: Any) -> str:
-        """Return a name in C that no other function has; a private one begins with its module."""
+    def _name_of(self, function: Any, text: str) -> tuple[str, bool]:
+        """Return the name in C of a function with this text, and whether it is a new one."""
         module = function.__module__.split(".")[-1]
         own = function.__name__
-        name = f"{module}_{own.strip('_')}" if own.startswith("_") else own
-        if name in self._owners and not own.startswith("_"):
-            name = f"{module}_{own}"
-        start = name
+        start = f"{module}{own}" if own.startswith("_") else own
+        if start in self._owners and self._owners[start][0] is not function:
+            start = f"{module}_{own.strip('_')}"
+        name = start
         count = 1
         while name in self._owners:
+            if self._owners[name] == (function, text):
+                return name, False
             count += 1
             name = f"{start}_{count}"
-        self._owners[name] = function
-        return name
+        self._owners[name] = (function, text)
+        return name, True
 
 
 def _source(function: Any) -> tuple[str, ast.FunctionDef]:

@@ -1,0 +1,185 @@
+"""The folder of an exported controller: code, vectors of a run, a test, examples."""
+
+from __future__ import annotations
+
+import copy
+import json
+import os
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn import checks
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.export.code import Code, code_of
+from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.references import Lissajous, Reference
+from iiwa_dnn.robot import Configuration
+
+STEPS = 500
+"""Steps of the vectors."""
+
+
+class Vectors(NamedTuple):
+    """A run of a controller in closed loop with an arm that follows every command.
+
+    Attributes:
+        t: Times [s], (k,).
+        q: Joint positions [rad], (k, n).
+        targets: Targets of all frames, (k, 18 frames).
+        dq: Commands [rad/s], (k, n).
+        actions: Actions, (k,).
+    """
+
+    t: Vector
+    q: Matrix
+    targets: Matrix
+    dq: Matrix
+    actions: Vector
+
+    @property
+    def table(self) -> Matrix:
+        """All columns, (k, 2 n + 18 frames + 2)."""
+        return np.column_stack(list(self))
+
+
+def c99(
+    controller: Controller, folder: str | os.PathLike[str], q0: ArrayLike | None = None
+) -> Path:
+    """Write a controller as a folder of C99.
+
+    Args:
+        controller: The controller; it stays as it is.
+        folder: The folder; files of an earlier export are overwritten.
+        q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
+            the beginning of the vectors; None: where the controller is, or the start posture.
+
+    Returns:
+        The folder.
+
+    Raises:
+        InvalidInputError: A part of the controller is not compiled or cannot be translated; it is
+            named.
+        FileError: The folder cannot be written.
+    """
+    twin, start = _anchored(controller, q0)
+    code = code_of(twin)
+    vectors = run(twin, start.q, STEPS)
+    folder = prepare_folder(folder)
+    code = code._replace(values=code.values | _texts(twin, start, code, vectors))
+    for name in ("controller.h", "controller.c", "test_controller.c", "Makefile"):
+        write_text(folder / name, code.fill(name))
+    for name in ("example.c", "example_fri.cpp", "README.md"):
+        write_text(folder / name, code.fill(name))
+    write_csv(folder / "vectors.csv", _head(twin), vectors.table)
+    return folder
+
+
+def _anchored(controller: Controller, q0: ArrayLike | None) -> tuple[Controller, Configuration]:
+    """Return a copy of a controller at rest in its first posture, and that posture."""
+    twin = copy.copy(controller)
+    posture: ArrayLike = twin.robot.start_posture() if q0 is None else q0
+    if q0 is None and controller.begun:
+        posture = controller.positions
+    q = checks.finite_array("q0", posture, (twin.robot.dof,))
+    start = Configuration(twin.robot, q)
+    twin.reset()
+    twin.anchor(start)
+    return twin, start
+
+
+def run(controller: Controller, q0: Vector, steps: int) -> Vectors:
+    """Run a controller from joint positions q0 (n,) [rad] for a number of steps.
+
+    Without a reference its frames follow a small figure of eight.
+    """
+    twin = copy.copy(controller)
+    dt = twin.dt
+    if twin.reference is None:
+        start = Configuration(twin.robot, q0)
+        figure = Lissajous((0.01, 0.01, 0.0))
+        names = twin.program.target_frames
+        paths: dict[str, Reference] = {
+            name: figure.anchored(start.frame(name)) for name in names
+        }
+        twin.reference = paths
+    q = q0.copy()
+    rows = []
+    for k in range(steps):
+        targets = twin.targets(k * dt - twin.delay)
+        command = twin.step(q, k * dt)
+        rows.append((k * dt, q, targets.ravel(), command.dq, float(command.action)))
+        q = q + dt * command.dq
+    return Vectors(*(np.array(column) for column in zip(*rows, strict=True)))
+
+
+def _head(controller: Controller) -> list[str]:
+    dof = controller.robot.dof
+    numbers = 18 * len(controller.program.target_frames)
+    joints = [f"q{i + 1}" for i in range(dof)]
+    rates = [f"dq{i + 1}" for i in range(dof)]
+    return ["t", *joints, *(f"target{k + 1}" for k in range(numbers)), *rates, "action"]
+
+
+def _texts(
+    controller: Controller, start: Configuration, code: Code, vectors: Vectors
+) -> dict[str, str]:
+    """Return the texts of the templates that are about the run and the settings."""
+    robot = controller.robot
+    limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
+    settings = plain(settings_of(controller))
+    sample = "        controller_target(&c, k * CONTROLLER_DT, target);\n"
+    sample_of_fri = "        controller_target(&controller_, t_, target);\n"
+    has_reference = code.has_reference
+    texts: dict[str, Any] = {
+        "steps": len(vectors.t),
+        "velocity_limits": _numbers(limits),
+        "q0": _numbers(start.q),
+        "target": _numbers(vectors.targets[0]),
+        "sample": sample * has_reference,
+        "fri_sample": sample_of_fri * has_reference,
+        "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
+        "target_declaration": "",
+        "target_function": "",
+        "reference": json.dumps(settings["reference"]),
+        "settings": json.dumps(settings, indent=2),
+        "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
+        "verified": f"{len(vectors.t)} steps of Python's in closed loop, by `make test`",
+    }
+    if has_reference:
+        texts["target_declaration"] = code.fill("target.h", {"reference": texts["reference"]})
+        texts["target_function"] = code.fill("target.c")
+    return {name: str(value) for name, value in texts.items()}
+
+
+def _numbers(values: Vector) -> str:
+    return ", ".join(map(repr, values.tolist()))
+
+
+def settings_of(controller: Controller) -> dict[str, Any]:
+    """Return the settings of a controller, as values that JSON can hold."""
+    robot = controller.robot
+    reference: Any = controller.reference
+    solver = controller.solver
+    if isinstance(reference, Reference):
+        reference = reference.settings()
+    elif reference is not None:
+        reference = {name: path.settings() for name, path in reference.items()}
+    return {
+        "robot": robot.name,
+        "tip": robot.tip,
+        "locked": robot.locked,
+        "q_lower": robot.q_lower,
+        "q_upper": robot.q_upper,
+        "dq_max": robot.dq_max,
+        "dt": controller.dt,
+        "mode": controller.mode,
+        "policy": controller.policy,
+        "tolerance": solver.tol,
+        "network": solver.network.settings(),
+        "reference": reference,
+        "scheme": controller.scheme.settings(),
+    }

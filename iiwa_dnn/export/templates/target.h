@@ -1,0 +1,6 @@
+
+/* Write the targets (18 CONTROLLER_FRAMES) of the reference at time t [s].
+ *
+ * The reference: @reference@.
+ */
+void controller_target(struct controller *c, double t, double *target);
