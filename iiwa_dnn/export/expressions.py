@@ -208,9 +208,6 @@ class Expressions:
     def tuple_of(self, items: list[Value]) -> Value:
         """Join values to a tuple."""
         kinds = [item.kind for item in items]
-        if all(isinstance(kind, Scalar) for kind in kinds) and DOUBLE in kinds and BOOL not in kinds:
-            is_double = [item.kind is DOUBLE or item.is_literal for item in items]
-            kinds = [DOUBLE] * len(items) if all(is_double) else kinds
         if all(kind == kinds[0] for kind in kinds):
             return Value(Tuple(kinds[0], len(items)), items=items)
         names = [getattr(kind, "tag", "") or getattr(kind, "name", "array") for kind in kinds]

@@ -93,7 +93,7 @@ def kinematics_code(robot: Robot, frames: Iterable[int]) -> str:
         for i in range(3):
             text = _text(placed.position[i][0])
             code.lines.add(f"placements[{12 * index + 9 + i}] = {text};")
-    body = "\n".join(code.lines.used(calls="none")[0])
+    body = "\n".join(code.lines.used()[0])
     about = "/* Compute the joint Jacobian and the frames' placements (iiwa_dnn/robot/kinematics.py). */"
     head = "static void kinematics(const double *q, double *jacobian, double *placements)"
     return f"{about}\n{head}\n{{\n{body}\n}}"

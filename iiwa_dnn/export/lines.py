@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -45,12 +46,31 @@ class Variable:
         return Value(self.kind, self.name, known=self.known, pointer=self.pointer)
 
 
+# Functions whose call may be left out where nobody needs the result.
+_PURE = frozenset("sqrt fabs sin cos atan2 floor ceil double_min double_max int_min int_max".split())
+
+
 class _Line(NamedTuple):
-    """A line of C, and the name of the variable that it declares."""
+    """A line of C, and the name of the variable that it declares or writes."""
 
     depth: int
     text: str
     declared: str = ""
+    stored: str = ""
+
+    @property
+    def own(self) -> str:
+        """Name of the variable that the line declares or writes, and does not read for others."""
+        return self.declared or self.stored
+
+    def is_idle(self, read: Collection[str]) -> bool:
+        """Test whether the line only gives a variable its value that is not among those read."""
+        called = re.findall(r"(\w+)\(", self.text)
+        return bool(self.own) and self.own not in read and _PURE.issuperset(called)
+
+    def names(self) -> set[str]:
+        """Return the names that the line reads."""
+        return set(re.findall(r"[A-Za-z_]\w*", self.text)) - {self.own}
 
 
 class Lines:
@@ -64,9 +84,9 @@ class Lines:
     def __len__(self) -> int:
         return len(self._lines)
 
-    def add(self, text: str, declared: str = "") -> None:
-        """Add a line, and say which variable it declares."""
-        self._lines.append(_Line(self.depth, text, declared))
+    def add(self, text: str, declared: str = "", stored: str = "") -> None:
+        """Add a line, and say which variable it declares, or writes."""
+        self._lines.append(_Line(self.depth, text, declared, stored))
 
     def declare(self, variable: Variable, text: str) -> None:
         """Declare a variable with a value."""
@@ -97,22 +117,24 @@ class Lines:
         """Test whether the lines declare variables, and do nothing else."""
         return all(line.declared and "(" not in line.text for line in self._lines)
 
-    def used(self, calls: str = "(") -> tuple[list[str], set[str]]:
-        """Return the lines without variables that nobody reads, and the names in them.
-
-        A variable whose value holds `calls` is kept: a function may do something else too.
-        """
-        kept = []
-        names: set[str] = set()
-        for line in reversed(self._lines):
-            if line.declared and line.declared not in names and calls not in line.text:
-                continue
+    def used(self) -> tuple[list[str], set[str]]:
+        """Return the lines without variables that nobody reads, and the names in them."""
+        lines = self._lines
+        while True:
+            before = len(lines)
+            read = set().union(*(line.names() for line in lines))
+            kept = [line for line in lines if not line.is_idle(read)]
             # The same name further up is another variable's.
-            names.discard(line.declared)
-            names |= set(re.findall(r"[A-Za-z_]\w*", line.text)) - {line.declared}
-            indent = "    " * line.depth
-            kept.append(wrapped(line.text, indent))
-        return kept[::-1], names
+            later: set[str] = set()
+            lines = []
+            for line in reversed(kept):
+                if line.declared and not line.is_idle(later) or not line.declared:
+                    later.discard(line.declared)
+                    later |= line.names() | ({line.stored} - {""})
+                    lines.append(line)
+            lines.reverse()
+            if len(lines) == before:
+                return [wrapped(line.text, "    " * line.depth) for line in lines], read
 
 
 def wrapped(text: str, indent: str = "") -> str:

@@ -24,6 +24,7 @@ from iiwa_dnn.export.values import (
     integer,
     knowns,
     length,
+    skeleton,
 )
 from iiwa_dnn.qp.compiling import Signature
 
@@ -127,7 +128,7 @@ class Body(Expressions):
                 raise self.refusal(node, "an array of the function itself cannot be returned")
         if self.result is None:
             self.result = value.kind
-        if isinstance(self.result, Scalar) != isinstance(value.kind, Scalar):
+        if skeleton(self.result) != skeleton(value.kind) and self.result is not DOUBLE:
             raise self.refusal(node, "returns of different types")
         self.lines.add(f"return {self.written(value).text};")
         return True
@@ -317,9 +318,10 @@ class Body(Expressions):
 
     def _allocated(self, target: ast.Name, source: ast.expr) -> bool:
         """Translate the assignment of a new array, or of a copy."""
-        if not isinstance(source, ast.Call):
+        if not isinstance(source, ast.Call) or _is_method(source, "reshape"):
             return False
-        if isinstance(source.func, ast.Attribute) and source.func.attr == "copy":
+        if _is_method(source, "copy"):
+            assert isinstance(source.func, ast.Attribute)
             original = self.value(source.func.value)
             if not isinstance(original.kind, Array):
                 raise self.refusal(source)
@@ -404,7 +406,7 @@ class Body(Expressions):
             raise self.refusal(target, "a value of another type before")
         elif kind is INT and value.kind is DOUBLE:
             raise self.refusal(target, "an integer before: write it as a float")
-        self.lines.add(f"{own.name} = {value.text};")
+        self.lines.add(f"{own.name} = {value.text};", stored=own.name)
 
     def do_augassign(self, node: ast.AugAssign) -> None:
         """Translate ``+=`` and the like."""
@@ -422,7 +424,7 @@ class Body(Expressions):
             raise _Wide(node.target.id)
         if not isinstance(own, Variable) or own.kind is INT and value.kind is DOUBLE:
             raise self.refusal(node)
-        self.lines.add(f"{own.name} {sign} {value.text};")
+        self.lines.add(f"{own.name} {sign} {value.text};", stored=own.name)
 
     def _write(self, target: ast.Subscript, sign: str, value: Value) -> None:
         element = self.value(target)
@@ -431,6 +433,10 @@ class Body(Expressions):
             raise self.refusal(target)
         owner.kind.storage.write()
         self.lines.add(f"{element.text} {sign} {value.text};")
+
+
+def _is_method(call: ast.Call, name: str) -> bool:
+    return isinstance(call.func, ast.Attribute) and call.func.attr == name
 
 
 def _is_store(node: ast.AST) -> bool:

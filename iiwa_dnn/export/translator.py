@@ -203,8 +203,9 @@ class Translator:
         kinds = [own.kind for own in parameters]
         if body.known_result is not None:
             return Made("", known, kinds, body.result, body.known_result)
-        idle = [f"    (void){own.name};" for own in parameters if own.name not in names and _shown(own)]
         shown = [text for own in parameters if _shown(own) for text in _declared(own)]
+        given = [re.findall("\\w+", text)[-1] for text in shown]
+        idle = [f"    (void){own};" for own in given if own not in names]
         start = declaration(body.result, "") if body.result is not None else "void "
         head = f"({', '.join(shown) or 'void'})"
         rest = "\n".join(["{", *idle, *lines, "}"])
