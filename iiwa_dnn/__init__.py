@@ -4,6 +4,7 @@ from importlib.metadata import version
 from typing import Any
 from warnings import warn
 
+from iiwa_dnn import export as export
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import (

@@ -23,6 +23,7 @@ ORDER = (
     "control",
     "results",
     "simulation",
+    "export",
     "studies",
     "app",
     "__init__",

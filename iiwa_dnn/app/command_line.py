@@ -116,12 +116,14 @@ def _words_of_file(kind: type[Any], path: Path) -> list[str]:
     """Return the command line that is equivalent to a settings file."""
     values = read_toml(path)
     command = values.pop("command", kind.command)
-    if command != kind.command:
+    is_own = command == kind.command
+    if not is_own and command not in getattr(kind, "also_reads", ()):
         raise FileError(path, f"holds settings of {command!r}, not of {kind.command!r}")
     # Only a person on the command line may ask for these.
     never = ("settings", "overwrite")
     defaults = {field.name: field.default for field in fields(kind) if field.name not in never}
-    words = [f"--out={path.parent}"]
+    # Another command's folder holds another command's files.
+    words = [f"--out={path.parent}"] if is_own else []
     for key, value in values.items():
         name = key.replace("-", "_")
         if name not in defaults:

@@ -41,6 +41,8 @@ class RunOptions:
     """Options of every command that leaves a folder."""
 
     command: ClassVar[str]
+    also_reads: ClassVar[tuple[str, ...]] = ()
+    """Other commands whose settings files the command takes."""
     settings: _Path = None  # TOML file of options; those given here come first
     out: Path = Path("runs")  # folder of the results
     overwrite: bool = False  # write over a folder that holds another run or other files
@@ -120,6 +122,18 @@ class PhysicsOptions(TrackOptions):
     push_for: float = 0.2  # duration of the push [s]
     pictures: bool = True  # draw pictures of the arm
     video: bool = True  # make a video
+
+
+@dataclass(frozen=True)
+class ExportOptions(TrackOptions):
+    """Write the controller of a run as C99: one file without dependencies, and its tests.
+
+    It takes the settings file of a run; options that do not shape a controller have no effect.
+    """
+
+    command: ClassVar[str] = "export"
+    also_reads: ClassVar[tuple[str, ...]] = ("track",)
+    out: Path = Path("controller")  # folder of the C files
 
 
 @dataclass(frozen=True)
@@ -229,6 +243,7 @@ _KINDS: tuple[Any, ...] = (
     NoiseOptions,
     AtlasOptions,
     PhysicsOptions,
+    ExportOptions,
     ViewOptions,
     SolveOptions,
     WarmUpOptions,

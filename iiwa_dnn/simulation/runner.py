@@ -128,6 +128,11 @@ class Simulation:
         self._controller.warn_if_far(start, 0.0, stacklevel=4)
         self._settings = self._stated(length)
 
+    @property
+    def controller(self) -> Controller:
+        """The controller of the run."""
+        return self._controller
+
     def _check_combination(self, scheme: Scheme) -> None:
         """Raise InvalidInputError if the arguments do not go together."""
         controller = self._controller

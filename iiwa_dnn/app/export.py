@@ -1,0 +1,30 @@
+"""``export``: the controller of a run as C99."""
+
+from typing import Any
+
+from iiwa_dnn.app.command_line import print_lines
+from iiwa_dnn.app.folders import claim_folder, save_settings
+from iiwa_dnn.app.options import ExportOptions
+from iiwa_dnn.app.track import arm, simulation
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.export import c99
+
+_OUTSIDE = ("filter_window", "integral_gain", "motion")
+"""Options that change what is around a controller in a run."""
+
+
+def run(options: ExportOptions) -> int:
+    """Write the folder and print what is in it; return 0."""
+    for name in _OUTSIDE:
+        value: Any = getattr(options, name)
+        if value != getattr(ExportOptions, name):
+            flag = f"--{name.replace('_', '-')}"
+            raise InvalidInputError(flag, "is no part of a controller and is not exported", value)
+    robot, q0 = arm(options)
+    controller = simulation(options, robot, q0).controller
+    folder = claim_folder(options)
+    c99(controller, folder, q0)
+    save_settings(options, folder)
+    lines = sum(1 for _ in (folder / "controller.c").open(encoding="utf-8"))
+    print_lines(options, f"written to {folder}: {lines} lines of C; to test them: make -C {folder}")
+    return 0
