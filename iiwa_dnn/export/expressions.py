@@ -213,7 +213,10 @@ class Expressions:
         names = [getattr(kind, "tag", "") or getattr(kind, "name", "array") for kind in kinds]
         runs = [(name, len(list(run))) for name, run in groupby(names)]
         words = [name if count == 1 else f"{count}_{name}s" for name, count in runs]
-        return Value(Struct("_".join(["tuple", *words]), {f"item{i}": kind for i, kind in enumerate(kinds)}), items=items)
+        return Value(
+            Struct("_".join(["tuple", *words]), {f"item{i}": kind for i, kind in enumerate(kinds)}),
+            items=items,
+        )
 
     def on_unaryop(self, node: ast.UnaryOp) -> Value:
         """Translate a sign or a negation."""

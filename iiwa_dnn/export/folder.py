@@ -102,9 +102,7 @@ def run(controller: Controller, q0: Vector, steps: int) -> Vectors:
         start = Configuration(twin.robot, q0)
         figure = Lissajous((0.01, 0.01, 0.0))
         names = twin.program.target_frames
-        paths: dict[str, Reference] = {
-            name: figure.anchored(start.frame(name)) for name in names
-        }
+        paths: dict[str, Reference] = {name: figure.anchored(start.frame(name)) for name in names}
         twin.reference = paths
     q = q0.copy()
     rows = []

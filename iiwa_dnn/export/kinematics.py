@@ -46,13 +46,18 @@ class _Code:
     def variables(self, name: str, matrix: Rows) -> Rows:
         """Keep the entries of a matrix in variables, but for those that are one already."""
         return [
-            [self._kept(f"{name}{axis}{k if len(row) > 1 else ''}", row[k]) for k in range(len(row))]
+            [
+                self._kept(f"{name}{axis}{k if len(row) > 1 else ''}", row[k])
+                for k in range(len(row))
+            ]
             for axis, row in zip("xyz", matrix, strict=True)
         ]
 
     def _kept(self, name: str, entry: Sum) -> Sum:
         factors = [*entry, ()]
-        if len(entry) < 2 and (not factors[0] or factors[0][1:] == () and abs(entry[factors[0]]) == 1.0):
+        if len(entry) < 2 and (
+            not factors[0] or factors[0][1:] == () and abs(entry[factors[0]]) == 1.0
+        ):
             return entry
         self.variable(name, _text(entry))
         return {(name,): 1.0}
@@ -76,9 +81,7 @@ def kinematics_code(robot: Robot, frames: Iterable[int]) -> str:
         fixed = model.jointPlacements[j]
         parent = poses[model.parents[j]]
         base = _moved(parent, fixed.rotation, fixed.translation)
-        base = _Pose(
-            code.variables(f"B{j}", base.rotation), code.variables(f"p{j}", base.position)
-        )
+        base = _Pose(code.variables(f"B{j}", base.rotation), code.variables(f"p{j}", base.position))
         poses.append(_joint(code, robot, j, base))
     for index in sorted(set(frames)):
         frame = model.frames[index]
@@ -138,7 +141,10 @@ def _turn(code: _Code, j: int, at: int, axis: Vector) -> Rows:
     along = np.outer(axis, axis)
     rest = np.eye(3) - along
     return [
-        [_sum({(): along[i, k], (f"c{j}",): rest[i, k], (f"s{j}",): across[i, k]}) for k in range(3)]
+        [
+            _sum({(): along[i, k], (f"c{j}",): rest[i, k], (f"s{j}",): across[i, k]})
+            for k in range(3)
+        ]
         for i in range(3)
     ]
 

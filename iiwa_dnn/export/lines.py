@@ -47,7 +47,9 @@ class Variable:
 
 
 # Functions whose call may be left out where nobody needs the result.
-_PURE = frozenset("sqrt fabs sin cos atan2 floor ceil double_min double_max int_min int_max".split())
+_PURE = frozenset(
+    "sqrt fabs sin cos atan2 floor ceil double_min double_max int_min int_max".split()
+)
 
 
 class _Line(NamedTuple):

@@ -152,7 +152,11 @@ class Translator:
                 self.define(kind.element)
             fields = [declaration(kind.element, f"at[{kind.length}]")]
         else:
-            shown = {name: own for name, own in kind.fields.items() if not getattr(own, "in_table", False)}
+            shown = {
+                name: own
+                for name, own in kind.fields.items()
+                if not getattr(own, "in_table", False)
+            }
             for own in shown.values():
                 if isinstance(own, Struct | Tuple):
                     self.define(own)
@@ -169,7 +173,9 @@ class Translator:
         key = (id(plain), ",".join(map(_form, arguments)))
         known = [each for argument in arguments for each in _known(argument)]
         for made in self._made.get(key, []):
-            if all(not old.used or same(old, new) for old, new in zip(made.known, known, strict=True)):
+            if all(
+                not old.used or same(old, new) for old, new in zip(made.known, known, strict=True)
+            ):
                 break
         else:
             if plain in self._open:

@@ -255,7 +255,9 @@ def renewed(kind: Any, name: str) -> Any:
     """
     if isinstance(kind, Array):
         lengths = [
-            Known(own.value) if isinstance(own, Known) else f"{name}_{'rows' if not i else 'columns'}"
+            Known(own.value)
+            if isinstance(own, Known)
+            else f"{name}_{'rows' if not i else 'columns'}"
             for i, own in enumerate(kind.shape)
         ]
         content = None if kind.content is None else Known(kind.content.value)

@@ -7,7 +7,9 @@
 
 #define STEPS @steps@
 #define COLUMNS (1 + 2 * CONTROLLER_DOF + 18 * CONTROLLER_FRAMES + 1)
-#define ROUNDS 200
+#ifndef ROUNDS
+#define ROUNDS 200 /* of which the time is the mean */
+#endif
 
 static double rows[STEPS][COLUMNS];
 static const double velocity_limits[CONTROLLER_DOF] = {@velocity_limits@};

@@ -1,0 +1,146 @@
+"""Controllers of every kind that is exported, each with the posture where it begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+import iiwa_dnn
+from benchmarks.collisions import BALLS, DISTANCE, RADII
+from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task
+from iiwa_dnn.checks import Array
+from iiwa_dnn.studies.runs import paper_robot
+
+Made = tuple[Controller, Array]
+
+DT = 1e-3  # [s]
+
+
+def drawing(
+    scheme: Scheme | None = None,
+    path: Reference | None = None,
+    robot: Robot | None = None,
+    mode: str = "converged",
+    dt: float = DT,
+) -> Made:
+    """Return a controller that draws a path, by default the heart with the paper's arm."""
+    arm = paper_robot() if robot is None else robot
+    q0 = arm.start_posture()
+    start = iiwa_dnn.Configuration(arm, q0)
+    reference = (iiwa_dnn.Heart() if path is None else path).anchored(start)
+    scheme = DoubleIndicator() if scheme is None else scheme
+    return Controller(arm, scheme, reference, dt=dt, mode=mode), q0
+
+
+def with_parts(tasks: tuple[Task, ...] = (), limits: tuple[Limit, ...] = ()) -> Scheme:
+    """Return the paper's scheme with further tasks and limits."""
+    base = DoubleIndicator()
+    return Scheme(base.costs, [*base.tasks, *tasks], [*base.limits, *limits])
+
+
+def among_balls() -> Made:
+    """Return the heart among balls, 21 pairs."""
+    balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
+    avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
+    return drawing(with_parts(limits=(avoidance,)))
+
+
+def among_boxes() -> Made:
+    """Return the heart beside a box, above a floor, without collisions of the arm with itself."""
+    box = iiwa_dnn.Box((0.75, 0.0, 0.2), (0.1, 0.1, 0.1))
+    floor = iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3)
+    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([box, floor]),)))
+
+
+def two_arms() -> Made:
+    """Return two arms, each with its heart."""
+    robot = iiwa_dnn.load_robot("iiwa7_dual")
+    q0 = robot.start_posture()
+    start = iiwa_dnn.Configuration(robot, q0)
+    tips = [name for name in robot.frame_names if name.endswith("flange")]
+    base = DoubleIndicator()
+    tasks = [replace(task, frame=name) for name in tips for task in base.tasks]
+    paths = {name: iiwa_dnn.Heart().anchored(start.frame(name)) for name in tips}
+    return Controller(robot, Scheme(base.costs, tasks, base.limits), paths, dt=DT), q0
+
+
+def softly() -> Made:
+    """Return the heart with soft tasks of elbow, posture and centre of mass."""
+    return drawing(
+        with_parts(
+            (
+                iiwa_dnn.ElbowAngleTask(angle=0.3, weight=0.1),
+                iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.1}, weight=0.05),
+                iiwa_dnn.CenterOfMassTask(weight=0.01),
+            )
+        )
+    )
+
+
+def along_axis() -> Made:
+    """Return a position, the direction of the tool and a coupling of two joints."""
+    tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.AxisTask()]
+    coupling = iiwa_dnn.JointCouplingTask({"iiwa7_joint_1": 1.0, "iiwa7_joint_3": 1.0}, weight=0.01)
+    base = DoubleIndicator()
+    return drawing(Scheme(base.costs, [*tasks, coupling], base.limits))
+
+
+def at_limits() -> Made:
+    """Return the heart with two joints so slow that their velocity limits are active."""
+    robot = paper_robot()
+    velocity = robot.dq_max.copy()
+    velocity[[0, 2]] = 0.105, 0.004
+    return drawing(robot=robot.with_limits(velocity=velocity))
+
+
+def with_rates() -> Made:
+    """Return a line with limits of acceleration and jerk."""
+    limits = (iiwa_dnn.AccelerationLimits(10.0), iiwa_dnn.JerkLimits(500.0))
+    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
+
+
+def with_accelerations() -> Made:
+    """Return a line with limits of acceleration."""
+    limits = (iiwa_dnn.AccelerationLimits(10.0),)
+    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Line((0.0, -0.1, 0.0)))
+
+
+def through_points() -> Made:
+    """Return a path through poses."""
+    points = [[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.02, 0.03, 0.0], [0.0, 0.0, 0.01]]
+    turns = [
+        [1.0, 0.0, 0.0, 0.0],
+        [1.0, 0.02, 0.0, 0.0],
+        [1.0, 0.0, 0.03, 0.0],
+        [1.0, 0.0, 0.0, 0.0],
+    ]
+    path = iiwa_dnn.Waypoints([0.0, 0.5, 1.0, 1.5], points, "clamped", turns)
+    return drawing(path=path)
+
+
+def arm(name: str) -> Callable[[], Made]:
+    """Return the function that makes another arm's heart."""
+    return lambda: drawing(robot=iiwa_dnn.load_robot(name))
+
+
+SETTINGS: dict[str, Callable[[], Made]] = {
+    "heart": drawing,
+    "velocity limits active": at_limits,
+    "acceleration and jerk": with_rates,
+    "acceleration": with_accelerations,
+    "collisions, 21 pairs": among_balls,
+    "collisions with itself, a box, a floor": among_boxes,
+    "two arms": two_arms,
+    "soft tasks": softly,
+    "axis and coupling": along_axis,
+    "block form": lambda: drawing(DoubleIndicator(orientation="block")),
+    "next target, cone": lambda: drawing(DoubleIndicator(tracking="next"), iiwa_dnn.Cone()),
+    "continuous": lambda: drawing(mode="continuous", dt=1e-4),
+    "poses": through_points,
+    "panda": arm("panda"),
+    "ur5": arm("ur5"),
+    "xarm7": arm("xarm7"),
+}
+"""Functions that make each controller, by its name."""

@@ -1,0 +1,308 @@
+"""Exported controllers: C's commands are Python's, and the code keeps the promises of its page."""
+
+from __future__ import annotations
+
+import re
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from benchmarks.export_settings import SETTINGS, drawing, with_parts
+from helpers_export import WARNINGS, needs, run
+from iiwa_dnn import Controller, DoubleIndicator
+from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
+from iiwa_dnn.export import ExportedController, c99, load
+from iiwa_dnn.export.folder import run as run_controller
+
+pytestmark = needs("gcc")
+
+QUICK = (*WARNINGS, "-O0")
+"""Flags with which compiling takes a tenth of a second."""
+
+
+@pytest.fixture(scope="module")
+def heart(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    controller, q0 = drawing()
+    return c99(controller, tmp_path_factory.mktemp("heart"), q0)
+
+
+def loaded(folder: Path) -> ExportedController:
+    return load(folder, QUICK, "gcc")
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_commands_are_pythons_in_closed_loop(name: str, tmp_path: Path) -> None:
+    controller, q0 = SETTINGS[name]()
+    exported = loaded(c99(controller, tmp_path, q0))
+    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
+    dt = controller.dt
+    ours = q0.copy()
+    theirs = q0.copy()
+    active = 0
+    reaches_limits = name in ("velocity limits active", "collisions, 21 pairs")
+    for k in range(3000 if reaches_limits else 1000):
+        targets = controller.targets(k * dt)
+        command = controller.step(ours, k * dt)
+        dq, action = exported.step(theirs, targets)
+        assert action == command.action
+        difference = np.abs(dq - command.dq) / controller.robot.dq_max
+        assert difference.max() < 1e-9
+        solution = command.solution
+        active += bool((np.abs(solution.z_box) > 1e-9).any() or (solution.z > 1e-9).any())
+        if exported.has_reference:
+            np.testing.assert_allclose(exported.target(k * dt), targets.ravel(), rtol=0, atol=1e-11)
+        ours = ours + dt * command.dq
+        theirs = theirs + dt * dq
+    assert exported.has_reference
+    assert np.abs(ours - q0).max() > 1e-4
+    if reaches_limits:
+        assert active > 50
+
+
+def test_the_folder_passes_its_own_test_with_the_code_free_of_undefined_behaviour(
+    heart: Path, tmp_path: Path
+) -> None:
+    sources = [heart / "test_controller.c", heart / "controller.c"]
+    program = tmp_path / "test_controller"
+    sanitizers = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-DROUNDS=2")
+    run("gcc", *WARNINGS, "-O1", *sanitizers, "-o", program, *sources, "-lm")
+    said = run(program, heart / "vectors.csv")
+    assert re.match(r"500 steps: largest difference of a command \S+ of the .*, 0 actions", said)
+
+
+def test_the_folders_test_can_fail(heart: Path, tmp_path: Path) -> None:
+    lines = (heart / "vectors.csv").read_text(encoding="utf-8").splitlines()
+    cells = lines[-1].split(",")
+    cells[-2] = repr(float(cells[-2]) + 1e-6)
+    (tmp_path / "vectors.csv").write_text("\n".join([*lines[:-1], ",".join(cells), ""]))
+    program = tmp_path / "test_controller"
+    sources = [heart / "test_controller.c", heart / "controller.c"]
+    run("gcc", *WARNINGS, "-O0", "-DROUNDS=1", "-o", program, *sources, "-lm")
+    with pytest.raises(AssertionError, match="largest difference of a command 3.2e-07"):
+        run(program, tmp_path / "vectors.csv")
+
+
+def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path) -> None:
+    for name in ("controller.c", "controller.h", "example.c", "Makefile", "vectors.csv"):
+        (tmp_path / name).write_bytes((heart / name).read_bytes())
+    run("make", "example", "CFLAGS=-O0", cwd=tmp_path)
+    controller, q0 = drawing()
+    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
+    vectors = run_controller(controller, q0, 1001)
+    shown = [float(value) for value in re.findall(r"= (\S+) rad", run(tmp_path / "example"))]
+    np.testing.assert_allclose(shown, vectors.q[-1], rtol=0, atol=1e-6)
+
+
+@needs("clang")
+def test_clang_has_no_warning_either(heart: Path) -> None:
+    for name in ("controller.c", "test_controller.c", "example.c"):
+        run("clang", *WARNINGS, "-fsyntax-only", heart / name)
+
+
+def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
+    text = (heart / "controller.c").read_text(encoding="utf-8")
+    code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
+    assert set(re.findall(r"#include (\S+)", code)) == {
+        '"controller.h"', "<math.h>", "<stdbool.h>", "<stddef.h>",
+    }  # fmt: skip
+    assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
+    outside = re.sub(r"\{(?:[^{}]|\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})*\}", "{}", code)
+    variables = [line for line in outside.splitlines() if line.startswith("static") and "=" in line]
+    assert variables
+    assert all(line.startswith("static const") for line in variables)
+
+
+def test_names_and_first_lines_of_docstrings_are_carried_over(heart: Path) -> None:
+    text = (heart / "controller.c").read_text(encoding="utf-8")
+    for words in (
+        "static bool control_step(",
+        "static double field(",
+        "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
+        "(iiwa_dnn/schemes/limits.py)",
+    ):
+        assert words in text
+
+
+def test_size_and_stated_memory(heart: Path, tmp_path: Path) -> None:
+    run("gcc", "-std=c99", "-Os", "-c", "-o", tmp_path / "controller.o", heart / "controller.c")
+    columns = run("size", tmp_path / "controller.o").splitlines()[1].split()
+    text, data, bss = map(int, columns[:3])
+    assert text <= 24_000
+    assert data == bss == 0
+    assert loaded(heart).size <= 16_000
+
+
+def test_two_controllers_in_two_threads(heart: Path) -> None:
+    library = loaded(heart)
+    controllers = [ExportedController(library._library, (heart / "controller.h").read_text())]
+    controllers.append(library)
+    controller, q0 = drawing()
+    vectors = run_controller(controller, q0, 400)
+    shifts = (0.0, 0.01)
+
+    def commands(number: int) -> list[np.ndarray]:
+        controllers[number].reset()
+        return [
+            controllers[number].step(q + shifts[number], target).dq
+            for q, target in zip(vectors.q, vectors.targets, strict=True)
+        ]
+
+    alone = [commands(0), commands(1)]
+    with ThreadPoolExecutor(2) as threads:
+        together = list(threads.map(commands, (0, 1)))
+    np.testing.assert_array_equal(alone, together)
+    assert np.abs(np.array(alone[0]) - alone[1]).max() > 1e-3
+
+
+def test_inputs_that_are_no_numbers_change_nothing(heart: Path) -> None:
+    first = loaded(heart)
+    second = loaded(heart)
+    controller, q0 = drawing()
+    target = controller.targets(0.0).ravel()
+    for k in range(20):
+        q = q0 + 1e-4 * k
+        assert first.step(q, target).action == 0
+        if k == 10:
+            bad = np.full(7, np.nan)
+            dq = np.ones(7)
+            pointers = [array.ctypes.data for array in (bad, target, dq)]
+            assert second._library.controller_step(second._memory, *map(_address, pointers)) == -1
+            assert (dq == 0.0).all()
+        np.testing.assert_array_equal(second.step(q, target).dq, first.step(q, target).dq)
+        first.reset()
+        second.reset()
+
+
+def _address(number: int):
+    import ctypes
+
+    return ctypes.c_void_p(number)
+
+
+@needs("aarch64-linux-gnu-gcc", "qemu-aarch64")
+def test_an_arm_processor_computes_the_same(heart: Path, tmp_path: Path) -> None:
+    program = tmp_path / "test_controller"
+    sources = [heart / "test_controller.c", heart / "controller.c"]
+    flags = (*WARNINGS, "-O2", "-static", "-DROUNDS=1")
+    run("aarch64-linux-gnu-gcc", *flags, "-o", program, *sources, "-lm")
+    assert "0 actions differ" in run("qemu-aarch64", program, heart / "vectors.csv")
+
+
+@needs("arm-none-eabi-gcc")
+def test_a_microcontroller_has_room_for_it(heart: Path, tmp_path: Path) -> None:
+    target = ("-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb")
+    object_file = tmp_path / "controller.o"
+    run(
+        "arm-none-eabi-gcc",
+        *WARNINGS,
+        *target,
+        "-Os",
+        "-c",
+        "-o",
+        object_file,
+        heart / "controller.c",
+    )
+    text, data, bss = map(int, run("arm-none-eabi-size", object_file).splitlines()[1].split()[:3])
+    assert text <= 24_000
+    assert data == bss == 0
+
+
+def _accelerates() -> Controller:
+    tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.OrientationTask()]
+    scheme = iiwa_dnn.Scheme(
+        [iiwa_dnn.KineticEnergy()], tasks, [iiwa_dnn.JointLimits()], level="acceleration"
+    )
+    return drawing(scheme)[0]
+
+
+def _with_priorities() -> Controller:
+    return drawing(with_parts((iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.0}, priority=1),)))[0]
+
+
+def _with_own_part() -> Controller:
+    base = DoubleIndicator()
+    costs = [*base.costs, iiwa_dnn.Manipulability()]
+    return drawing(iiwa_dnn.Scheme(costs, base.tasks, base.limits))[0]
+
+
+def _among_moving() -> Controller:
+    ball = iiwa_dnn.Sphere((1.0, 1.0, 1.0), 0.1, velocity=(0.1, 0.0, 0.0))
+    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball]),)))[0]
+
+
+def _with_other_network() -> Controller:
+    controller, _ = drawing()
+    controller.solver = iiwa_dnn.DNNSolver(iiwa_dnn.PrimalDualNetwork())
+    return controller
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (_accelerates, "acceleration level"),
+        (_with_priorities, "priorities"),
+        (_with_own_part, "Manipulability is written with numpy"),
+        (_among_moving, "obstacles that move"),
+        (lambda: drawing(DoubleIndicator(kinetic="inertia"))[0], "inertia matrix"),
+        (_with_other_network, "solver: has no compiled answer"),
+    ],
+)
+def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match=words):
+        c99(make(), tmp_path / "none")
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_path: Path) -> None:
+    controller, q0 = drawing(path=iiwa_dnn.Tilting())
+    folder = c99(controller, tmp_path, q0)
+    exported = loaded(folder)
+    assert not exported.has_reference
+    assert "controller_target" not in (folder / "README.md").read_text(encoding="utf-8")
+    run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
+
+
+def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
+    controller, q0 = drawing()
+    twin, _ = drawing()
+    for k in range(5):
+        controller.step(q0, k * controller.dt)
+        twin.step(q0, k * controller.dt)
+    c99(controller, tmp_path)
+    np.testing.assert_array_equal(controller.last, twin.last)
+    np.testing.assert_array_equal(controller.step(q0, 0.0).dq, twin.step(q0, 0.0).dq)
+
+
+def test_without_a_reference_the_vectors_follow_a_figure(tmp_path: Path) -> None:
+    controller, q0 = drawing()
+    controller.reference = None
+    folder = c99(controller, tmp_path, q0)
+    rows = np.loadtxt(folder / "vectors.csv", delimiter=",", skiprows=1)
+    exported = loaded(folder)
+    worst = 0.0
+    for row in rows:
+        dq, action = exported.step(row[1:8], row[8:26])
+        assert action == row[-1]
+        worst = max(worst, np.abs(dq - row[26:33]).max())
+    assert worst < 1e-9
+    assert np.ptp(rows[:, 8]) > 1e-3
+
+
+def test_errors_of_loading(heart: Path, tmp_path: Path) -> None:
+    with pytest.raises(FileError, match=r"controller\.h"):
+        load(tmp_path)
+    with pytest.raises(MissingDependencyError, match="no-such-compiler"):
+        load(heart, compiler="no-such-compiler")
+    for name in ("controller.h", "controller.c"):
+        (tmp_path / name).write_bytes((heart / name).read_bytes())
+    (tmp_path / "controller.c").write_text("int broken(", encoding="utf-8")
+    with pytest.raises(FileError, match="does not compile"):
+        load(tmp_path)
+    exported = loaded(heart)
+    with pytest.raises(InvalidInputError, match="q"):
+        exported.step([1.0], np.zeros(18))
+    with pytest.raises(InvalidInputError, match="target"):
+        exported.step(np.zeros(7), [np.nan] * 18)
