@@ -14,7 +14,7 @@ import pytest
 
 from iiwa_dnn.checks import Array
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import DOUBLE, Known, Storage, Value
+from iiwa_dnn.export.values import DOUBLE, Value
 from iiwa_dnn.export.values import Array as Pointer
 
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
@@ -48,14 +48,11 @@ def translated(function: Callable[..., None], *shapes: tuple[int, ...]) -> str:
     """Translate a function of arrays of doubles; the whole text, with ``entry`` to call it."""
     translator = Translator()
     arguments = [
-        Value(Pointer(DOUBLE, tuple(map(Known, shape)), Storage()), f"a{i}")
+        Value(Pointer(DOUBLE, shape), f"a{i}")
         for i, shape in enumerate(shapes)
     ]
-
-    def refuse(problem: str) -> Exception:
-        return AssertionError(problem)
-
-    made = translator.function(function, arguments, refuse)
+    made = translator.function(function, arguments)
+    assert made is not None
     names = [argument.text for argument in arguments]
     head = ", ".join(f"double *{name}" for name in names)
     call = f"void entry({head});\nvoid entry({head})\n{{\n    {made.name}({', '.join(names)});\n}}"

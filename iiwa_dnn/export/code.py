@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.resources import files
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep, control_st
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import DOUBLE, INT, Array, Known, Storage, Tuple, Value
+from iiwa_dnn.export.values import DOUBLE, Array, Tuple, Value, integer
 from iiwa_dnn.networks.integrators.base import BUDGET
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.step import TARGET_SIZE
@@ -72,14 +72,14 @@ def code_of(controller: Controller) -> Code:
         _array("following", 4, dof),
         _array("state", state),
         clock,
-        Value(INT, str(WRITE), known=Known(WRITE)),
+        integer(WRITE),
     ]
-    translator.function(control_step, arguments, _refuse)
+    translator.function(control_step, arguments)
     has_reference = step.begin == SAMPLE
     frames = len(program.target_frames)
     if has_reference:
         targets = _array("targets", frames, TARGET_SIZE)
-        translator.function(sample_targets, [arrays, Value(DOUBLE, "t"), targets], _refuse)
+        translator.function(sample_targets, [arrays, Value(DOUBLE, "t"), targets])
     columns = step.layout.columns
     sizes = {
         "width": step.layout.width,
@@ -139,29 +139,22 @@ def check(controller: Controller, step: ControlStep) -> None:
 def _arrays(translator: Translator, step: ControlStep) -> Value:
     """Return the arrays of a program, of which those that do not change are tables."""
     own = step.arrays
-    dof = len(own.jacobian)
-    table = own.table
-    shape = tuple(Known(size) for size in table.shape)
-    values = {
-        "table": Value(Array(INT, shape, Storage(), Known(table.ravel())), "table"),
-        "constants": translator.table("constants", own.constants),
-        "jacobian": _array("jacobian", dof, 6),
-        "placements": _array("placements", *own.placements.shape),
-        "moves": translator.table("moves", own.moves),
-        "inertia": _array("inertia", dof, dof),
-        "rate": Value(DOUBLE, "rate"),
-    }
+    values = [
+        translator.table("table", own.table),
+        translator.table("constants", own.constants),
+        _array("jacobian", *own.jacobian.shape),
+        _array("placements", *own.placements.shape),
+        translator.table("moves", own.moves),
+        _array("inertia", *own.inertia.shape),
+        Value(DOUBLE, "rate"),
+    ]
     return Value(translator.named_tuple(ProgramArrays, values), "arrays", pointer=True)
 
 
 def _array(name: str, *shape: int) -> Value:
-    return Value(Array(DOUBLE, tuple(Known(size) for size in shape), Storage()), name)
+    return Value(Array(DOUBLE, shape), name)
 
 
 def _actions() -> str:
     lines = [f"#define CONTROLLER_{action.name} {action.value}" for action in Action]
     return "\n".join(lines[: Action.EULER])
-
-
-def _refuse(problem: str) -> NoReturn:
-    raise InvalidInputError("controller", problem)

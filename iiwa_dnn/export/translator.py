@@ -12,33 +12,25 @@ import ast
 import inspect
 import re
 import textwrap
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.export.lines import Variable, identifier, wrapped
-from iiwa_dnn.export.statements import Body, translated
+from iiwa_dnn.export.expressions import WideError
+from iiwa_dnn.export.lines import identifier, wrapped
+from iiwa_dnn.export.statements import Body
 from iiwa_dnn.export.values import (
     DOUBLE,
     INT,
     Array,
-    Known,
     Scalar,
     Storage,
     Struct,
-    Tuple,
     Value,
-    declaration,
-    knowns,
     number,
     qualified,
-    renewed,
-    same,
-    skeleton,
 )
 
 _HELPERS = {
@@ -65,180 +57,143 @@ class Made:
 
     Attributes:
         name: Its name in C.
-        known: What is known of its arguments; the code depends on those that were used.
-        parameters: Its parameters, whose arrays are written into or not.
+        parameters: Types of its parameters, whose arrays are written into or not.
         result: Type of its result; None for none.
         constant: Its result, if that is known.
     """
 
     name: str
-    known: list[Known]
     parameters: list[Any]
     result: Any
     constant: Value | None
 
 
 class Translator:
-    """A translation of functions that call each other into one text of C.
-
-    Attributes:
-        functions: Texts of the functions, those that are called before those that call.
-    """
+    """A translation of functions that call each other into one text of C."""
 
     def __init__(self) -> None:
         """Begin with nothing."""
         Storage.all.clear()
-        self.functions: list[str] = []
-        self._structs: dict[str, tuple[Any, str]] = {}
-        self._tables: dict[str, tuple[Value, str]] = {}
-        self._helpers: set[str] = set()
+        self._structs: dict[str, str] = {}
+        self._tables: dict[str, str] = {}
+        self._helpers: dict[str, str] = {}
+        self._functions: dict[str, str] = {}
         self._fields: dict[tuple[str, str], Storage] = {}
-        self._made: dict[tuple[int, str], list[Made]] = {}
-        self._owners: dict[str, Any] = {}
-        self._open: list[Any] = []
+        self._made: dict[Any, Made | None] = {}
+        self._bodies: dict[tuple[Any, str], str] = {}
 
     def text(self) -> str:
         """Return structs, tables and functions as one text."""
-        helpers = [f"static {_HELPERS[name]}" for name in _HELPERS if name in self._helpers]
-        structs = [text for _, text in self._structs.values()]
-        tables = [text for _, text in self._tables.values()]
-        return qualified("\n\n".join([*structs, *tables, *helpers, *self.functions]))
+        kinds = (self._structs, self._tables, self._helpers, self._functions)
+        return qualified("\n\n".join(text for kind in kinds for text in kind.values()))
 
-    def helper(self, name: str) -> str:
-        """Return the name of one of C's own small functions, which becomes a part of the text."""
-        self._helpers.add(name)
-        return name
+    def helper(self, name: str, *arguments: str) -> str:
+        """Call one of C's own small functions, which becomes a part of the text."""
+        self._helpers[name] = f"static {_HELPERS[name]}"
+        return f"{name}({', '.join(arguments)})"
 
     def table(self, name: str, values: Any) -> Value:
-        """Return a table of numbers that are known, (k,)."""
-        made = self._tables.get(name)
-        flat = np.ravel(values)
-        if made is None:
-            content = Known(flat)
-            shape = tuple(Known(size) for size in np.shape(values))
-            element = INT if flat.dtype.kind == "i" else DOUBLE
-            value = Value(Array(element, shape, Storage(), content), name)
-            texts = [number(each) for each in flat.tolist()]
-            numbers = wrapped(f"    {', '.join(texts) or '0.0'}")
-            text = f"static const double {name}[{max(flat.size, 1)}] = {{\n{numbers}\n}};"
-            self._tables[name] = (value, text)
-            made = self._tables[name]
-        return made[0]
+        """Return a table of numbers that are known, of any shape."""
+        flat = np.ravel(values).tolist()
+        kind = Array(INT if values.dtype.kind == "i" else DOUBLE, values.shape, content=tuple(flat))
+        if not kind.is_table:
+            numbers = wrapped(", ".join(map(number, flat)) or "0.0", "    ").replace("\n        ", "\n    ")
+            head = f"static const double {name}[{max(len(flat), 1)}]"
+            self._tables[name] = f"{head} = {{\n{numbers}\n}};"
+        return Value(kind, name)
 
-    def named_tuple(self, kind: Any, values: dict[str, Value]) -> Struct:
+    def named_tuple(self, kind: Any, values: list[Value]) -> Struct:
         """Return the struct of a named tuple with these values."""
         tag = re.sub("(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", kind.__name__).lower()
-        fields: dict[str, Any] = {}
-        for name, value in values.items():
+        fields = []
+        for name, value in zip(kind._fields, values, strict=True):
             own = value.kind
-            if isinstance(own, Array) and not own.in_table:
+            if isinstance(own, Array):
                 storage = self._fields.setdefault((tag, name), Storage())
-                storage.passes_to(own.storage)
-                own = Array(own.element, own.shape, storage, own.content)
-            elif own is INT:
-                own = DOUBLE if kind.__annotations__.get(name) in (float, "float") else INT
-            fields[name] = own
-        struct = Struct(tag, fields)
-        about = (inspect.getdoc(kind) or "").splitlines()[:1]
-        self.define(struct, *about)
+                storage.pass_to(own.storage)
+                own = replace(own, storage=storage)
+            fields.append((name, own))
+        struct = Struct(tag, tuple(fields))
+        self.define(struct, (inspect.getdoc(kind) or "").partition("\n")[0])
         return struct
 
     def define(self, kind: Any, about: str = "") -> None:
-        """Write the struct of a type, once."""
+        """Write the struct of a type, once, after those of its fields."""
         if kind.tag in self._structs:
             return
-        if isinstance(kind, Tuple):
-            if not isinstance(kind.element, Scalar):
-                self.define(kind.element)
-            fields = [declaration(kind.element, f"at[{kind.length}]")]
-        else:
-            shown = {
-                name: own
-                for name, own in kind.fields.items()
-                if not getattr(own, "in_table", False)
-            }
-            for own in shown.values():
-                if isinstance(own, Struct | Tuple):
-                    self.define(own)
-            fields = [declaration(own, name) for name, own in shown.items()]
-        lines = "".join(f"    {field};\n" for field in fields)
+        for _, own in kind.members:
+            if not isinstance(own, Array | Scalar):
+                self.define(own)
+        fields = [f"    {Value(own, name).declared()};\n" for name, own in kind.members]
         comment = f"/* {about} */\n" if about else ""
-        self._structs[kind.tag] = (kind, f"{comment}struct {kind.tag} {{\n{lines}}};")
+        self._structs[kind.tag] = f"{comment}struct {kind.tag} {{\n{''.join(fields)}}};"
 
-    def function(
-        self, function: Any, arguments: list[Value], refusal: Callable[[str], Exception]
-    ) -> Made:
-        """Return a function for arguments of certain types, translated if it is not yet."""
+    def function(self, function: Any, arguments: list[Value]) -> Made | None:
+        """Return a function for arguments of certain types; None while it is being translated."""
         plain = getattr(function, "py_func", function)
-        key = (id(plain), ",".join(map(_form, arguments)))
-        known = [each for argument in arguments for each in _known(argument)]
-        for made in self._made.get(key, []):
-            if all(
-                not old.used or same(old, new) for old, new in zip(made.known, known, strict=True)
-            ):
-                break
-        else:
-            if plain in self._open:
-                raise refusal(f"{plain.__name__} calls itself")
-            self._open.append(plain)
-            made = self._translate(plain, arguments, len(self._made.get(key, [])))
-            self._open.pop()
-            self._made.setdefault(key, []).append(made)
-        for old, new in zip(made.known, known, strict=True):
-            if old.used:
-                new.use()
-        for parameter, argument in zip(made.parameters, arguments, strict=True):
+        kinds = [(own.kind, own.known if own.kind is INT else None) for own in arguments]
+        key = (plain, *kinds)
+        if key not in self._made:
+            self._made[key] = None
+            self._made[key] = self._translated(plain, arguments)
+        made = self._made[key]
+        for parameter, argument in zip(made.parameters if made else (), arguments, strict=False):
             if isinstance(parameter, Array):
-                parameter.storage.passes_to(argument.kind.storage)
+                parameter.storage.pass_to(argument.kind.storage)
         return made
 
-    def _translate(self, function: Any, arguments: list[Value], earlier: int) -> Made:
+    def _translated(self, function: Any, arguments: list[Value]) -> Made:
         file, tree = _source(function)
-        if len(tree.args.args) != len(arguments):
-            raise InvalidInputError(function.__name__, f"{file}: takes other arguments")
-        parameters: list[Variable] = []
-
-        def bind(body: Body) -> None:
-            parameters.clear()
-            for own, argument in zip(tree.args.args, arguments, strict=True):
-                parameters.append(_parameter(own.arg, argument, body))
-
-        body = translated(self, function, file, tree, bind)
-        known = [each for own in parameters for each in _known_of(own)]
-        lines, names = body.lines.used()
+        names = [argument.arg for argument in tree.args.args]
+        parameters = [_parameter(*each) for each in zip(names, arguments, strict=True)]
+        body = self._body(function, file, tree, dict(zip(names, parameters, strict=True)))
         kinds = [own.kind for own in parameters]
-        if body.known_result is not None:
-            return Made("", known, kinds, body.result, body.known_result)
-        shown = [text for own in parameters if _shown(own) for text in _declared(own)]
-        given = [re.findall("\\w+", text)[-1] for text in shown]
-        idle = [f"    (void){own};" for own in given if own not in names]
-        start = declaration(body.result, "") if body.result is not None else "void "
-        head = f"({', '.join(shown) or 'void'})"
+        name = ""
+        if body.known_result is None:
+            name = self._write(function, file, body, parameters)
+        return Made(name, kinds, body.result, body.known_result)
+
+    def _body(
+        self, function: Any, file: str, tree: ast.FunctionDef, names: dict[str, Value]
+    ) -> Body:
+        """Translate a body, anew for each variable that turns out to be used outside its block."""
+        wide: frozenset[str] = frozenset()
+        while True:
+            body = Body(self, function, file, tree, wide)
+            body.names.update(names)
+            try:
+                body.block(tree.body)
+            except WideError as error:
+                wide |= {str(error)}
+            else:
+                return body
+
+    def _write(self, function: Any, file: str, body: Body, parameters: list[Value]) -> str:
+        """Write a function, unless its text is there already; return its name."""
+        lines, read = body.lines.used()
+        given = [each for own in parameters for each in _declared(own)]
+        idle = [f"    (void){own.text};" for own in given if own.text not in read]
+        result = Value(body.result, "").declared() if body.result is not None else "void "
+        head = f"({', '.join(own.declared() for own in given) or 'void'})"
         rest = "\n".join(["{", *idle, *lines, "}"])
         # For other sizes the text may come out the same.
-        name, is_new = self._name_of(function, start + re.sub("\0\\d+\0", "", head) + rest)
-        if is_new:
-            about = " ".join([*(inspect.getdoc(function) or "").splitlines()[:1], f"({file})"])
-            comment = wrapped(f"/* {about} */").replace("\n    ", "\n   ")
-            self.functions.append(f"{comment}\n{wrapped(f'static {start}{name}{head}')}\n{rest}")
-        return Made(name, known, kinds, body.result, None)
+        key = (function, result + re.sub("\0\\d+\0", "", head + rest))
+        if key not in self._bodies:
+            name = self._free_name(function)
+            about = f"{(inspect.getdoc(function) or '').partition(chr(10))[0]} ({file})"
+            comment = wrapped(f"/* {about.strip()} */").replace("\n    ", "\n   ")
+            text = f"{comment}\n{wrapped(f'static {result}{name}{head}')}\n{rest}"
+            self._functions[name] = text
+            self._bodies[key] = name
+        return self._bodies[key]
 
-    def _name_of(self, function: Any, text: str) -> tuple[str, bool]:
-        """Return the name in C of a function with this text, and whether it is a new one."""
+    def _free_name(self, function: Any) -> str:
+        """Return a name in C that no other function has; a private one begins with its module."""
         module = function.__module__.split(".")[-1]
         own = function.__name__
-        start = f"{module}{own}" if own.startswith("_") else own
-        if start in self._owners and self._owners[start][0] is not function:
-            start = f"{module}_{own.strip('_')}"
-        name = start
-        count = 1
-        while name in self._owners:
-            if self._owners[name] == (function, text):
-                return name, False
-            count += 1
-            name = f"{start}_{count}"
-        self._owners[name] = (function, text)
-        return name, True
+        names = [f"{module}{own}" if own.startswith("_") else own, f"{module}_{own.strip('_')}"]
+        names += [f"{names[-1]}_{count}" for count in range(2, len(self._functions) + 3)]
+        return next(name for name in names if name not in self._functions)
 
 
 def _source(function: Any) -> tuple[str, ast.FunctionDef]:
@@ -247,49 +202,32 @@ def _source(function: Any) -> tuple[str, ast.FunctionDef]:
     tree = ast.parse(textwrap.dedent("".join(lines))).body[0]
     assert isinstance(tree, ast.FunctionDef)
     ast.increment_lineno(tree, first - 1)
-    path = Path(inspect.getfile(function))
-    parts = path.parts
-    package = function.__module__.split(".")[0]
-    start = len(parts) - 1 - parts[::-1].index(package) if package in parts else -1
-    return "/".join(parts[start:]), tree
+    path = Path(inspect.getfile(function)).as_posix()
+    folder = function.__module__.partition(".")[0]
+    return re.sub(f"^.*/(?={folder}/)", "", path), tree
 
 
-def _form(argument: Value) -> str:
-    return skeleton(argument.kind) + ("=" if argument.kind is INT and argument.known else "")
+def _parameter(name: str, argument: Value) -> Value:
+    """Return the parameter of a function for an argument.
+
+    A length that is not known becomes a further parameter, by the name of the array.
+    """
+    kind = argument.kind
+    own = identifier(name)
+    if isinstance(kind, Array) and not kind.is_table:
+        shape = [
+            size if isinstance(size, int) else f"{own}_{'columns' if axis else 'rows'}"
+            for axis, size in enumerate(kind.shape)
+        ]
+        kind = replace(kind, shape=tuple(shape), storage=Storage())
+    known = argument.known if kind is INT else None
+    return Value(kind, own, known=known, pointer=isinstance(kind, Struct))
 
 
-def _known(argument: Value) -> list[Known]:
-    """List what is known of an argument."""
-    own = [argument.known] if argument.kind is INT and argument.known is not None else []
-    return [*own, *knowns(argument.kind)]
-
-
-def _known_of(parameter: Variable) -> list[Known]:
-    own = [parameter.known] if parameter.known is not None else []
-    return [*own, *knowns(parameter.kind)]
-
-
-def _parameter(name: str, argument: Value, body: Body) -> Variable:
-    """Return the parameter of a function for an argument, and make it known to the body."""
-    kind = renewed(argument.kind, identifier(name))
-    known = Known(argument.known.value) if argument.kind is INT and argument.known else None
-    pointer = isinstance(kind, Struct) and kind.holds_arrays
-    variable = Variable(identifier(name), kind, known, pointer)
-    body.names[name] = variable
-    if getattr(kind, "in_table", False):
-        body.names[name] = Value(kind, identifier(name))
-    body._stored.add(name)
-    return variable
-
-
-def _shown(parameter: Variable) -> bool:
-    return not getattr(parameter.kind, "in_table", False)
-
-
-def _declared(parameter: Variable) -> list[str]:
-    """Return the declarations in C of a parameter."""
+def _declared(parameter: Value) -> list[Value]:
+    """Return a parameter as those of C."""
     kind = parameter.kind
-    further = []
-    if isinstance(kind, Array):
-        further = [f"int {length}" for length in kind.shape if isinstance(length, str)]
-    return [declaration(kind, parameter.name, parameter.pointer), *further]
+    if not isinstance(kind, Array):
+        return [parameter]
+    lengths = [Value(INT, size) for size in kind.shape if isinstance(size, str)]
+    return [] if kind.is_table else [parameter, *lengths]

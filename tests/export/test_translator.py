@@ -97,7 +97,9 @@ def arrays(x: np.ndarray, rows: np.ndarray, out: np.ndarray) -> None:
     flat = np.empty(4)
     for i in range(flat.size):
         flat[i] = TABLE[i % TABLE.size]
-    before = x.copy()
+    before = np.empty(x.size)
+    for i in range(x.size):
+        before[i] = x[i]
     x[0] = 100.0
     out[2] = before[0] + work[1, 2] + work[0, 0] + len(rows)
     for k in range(rows.shape[0]):
