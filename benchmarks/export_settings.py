@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 import iiwa_dnn
 from benchmarks.collisions import BALLS, DISTANCE, RADII
 from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task

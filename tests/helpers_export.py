@@ -47,10 +47,7 @@ def compiled_text(text: str, folder: Path) -> ctypes.CDLL:
 def translated(function: Callable[..., None], *shapes: tuple[int, ...]) -> str:
     """Translate a function of arrays of doubles; the whole text, with ``entry`` to call it."""
     translator = Translator()
-    arguments = [
-        Value(Pointer(DOUBLE, shape), f"a{i}")
-        for i, shape in enumerate(shapes)
-    ]
+    arguments = [Value(Pointer(DOUBLE, shape), f"a{i}") for i, shape in enumerate(shapes)]
     made = translator.function(function, arguments)
     assert made is not None
     names = [argument.text for argument in arguments]

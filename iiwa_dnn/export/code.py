@@ -7,8 +7,6 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
@@ -41,7 +39,8 @@ class Code(NamedTuple):
 
     def fill(self, template: str, more: Mapping[str, object] | None = None) -> str:
         """Return a template with the values, and more of them, in its places."""
-        text = files(__package__).joinpath("templates", template).read_text(encoding="utf-8")
+        folder = files("iiwa_dnn.export") / "templates"
+        text = (folder / template).read_text(encoding="utf-8")
         for name, value in {**self.values, **(more or {})}.items():
             text = text.replace(f"@{name}@", str(value))
         return text

@@ -8,6 +8,7 @@ import inspect
 import math
 import operator
 from collections.abc import Callable
+from dataclasses import replace
 from functools import reduce
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -267,12 +268,30 @@ class Expressions:
         self.require(isinstance(owner.kind, Tuple), node)
         at = self.scalar(index)
         if owner.items and at.known is not None:
-            return owner.items[at.known]
+            item: Value = owner.items[at.known]
+            return item
         return Value(owner.kind.element, f"{self.temporary(owner).text}.at[{at.text}]")
 
     def _element(self, owner: Value, parts: list[ast.expr]) -> Value:
         """Translate an element, or the beginning of a part of an array."""
         array = owner.kind
+        offset, shape = self._offset(array, parts)
+        content = None
+        if array.content is not None and offset.known is not None:
+            content = array.content[offset.known :]
+        if shape:
+            kind = Array(array.element, shape, array.storage, content)
+            if offset.text == "0":
+                return Value(kind, owner.text, owner.level)
+            return Value(kind, f"{owner.at(12)} + {offset.at(13)}", 12)
+        known = content[0] if content else None
+        if not array.is_table:
+            return Value(array.element, f"{owner.at(ATOM)}[{offset.text}]", known=known)
+        self.require(content, parts[0], "a table is read at an index that is not known")
+        return integer(int(known or 0))
+
+    def _offset(self, array: Array, parts: list[ast.expr]) -> tuple[Value, tuple[int | str, ...]]:
+        """Return the first index of a part of an array in its numbers, and the part's shape."""
         offset = integer(0)
         shape: list[int | str] = []
         for axis, part in enumerate(parts):
@@ -283,26 +302,13 @@ class Expressions:
             step = start if stride.text == "1" else self.operation(ast.Mult, stride, start)
             if step.text != "0":
                 offset = step if offset.text == "0" else self.operation(ast.Add, offset, step)
-        shape += array.shape[len(parts) :]
-        content = None
-        if array.content is not None and offset.known is not None:
-            content = array.content[offset.known :]
-        if shape:
-            kind = Array(array.element, tuple(shape), array.storage, content)
-            is_start = offset.text == "0"
-            text = owner.text if is_start else f"{owner.at(12)} + {offset.at(13)}"
-            return Value(kind, text, owner.level if is_start else 12)
-        if array.is_table and content:
-            return integer(int(content[0]))
-        self.require(not array.is_table, parts[0], "a table is read at an index that is not known")
-        known = content[0] if content else None
-        return Value(array.element, f"{owner.at(ATOM)}[{offset.text}]", known=known)
+        return offset, (*shape, *array.shape[len(parts) :])
 
     def _range(self, part: ast.expr, size: int | str) -> tuple[Value, int | str | None]:
         """Return the first index along an axis, and how many there are; None for an index alone."""
         if not isinstance(part, ast.Slice):
             return self.scalar(part), None
-        self.require(part.step is None, part.step)
+        self.require(part.step is None, part.step, "a slice with a step has no translation")
         start = self.scalar(part.lower) if part.lower else integer(0)
         stop = self.scalar(part.upper) if part.upper else length(size)
         width = stop if start.text == "0" else self.operation(ast.Sub, stop, start)
@@ -316,15 +322,13 @@ class Expressions:
             owner = self.value(node.func.value)
             shape = tuple(size.known for size in arguments)
             self.require(None not in shape, node, "the shape is not known when the code is made")
-            kind = Array(owner.kind.element, shape, owner.kind.storage, owner.kind.content)
-            return Value(kind, owner.text, owner.level)
+            return replace(owner, kind=replace(owner.kind, shape=shape))
         called = self.value(node.func).kind
         self.require(isinstance(called, Object), node)
         if called.value in _CALLS:
             return _CALLS[called.value](self, *arguments)
         if hasattr(called.value, "_fields"):
-            kind = self.translator.named_tuple(called.value, arguments)
-            return Value(kind, items=arguments)
+            return Value(self.translator.named_tuple(called.value, arguments), items=arguments)
         return self._called(node, called.value, arguments)
 
     def _called(self, node: ast.Call, function: Any, arguments: list[Value]) -> Value:

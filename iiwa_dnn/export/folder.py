@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,7 +14,9 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.export.code import Code, code_of
+from iiwa_dnn.export.load import tested
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Lissajous, Reference
@@ -21,6 +24,16 @@ from iiwa_dnn.robot import Configuration
 
 STEPS = 500
 """Steps of the vectors."""
+
+_FILES = (
+    "controller.h",
+    "controller.c",
+    "test_controller.c",
+    "Makefile",
+    "example.c",
+    "example_fri.cpp",
+    "README.md",
+)
 
 
 class Vectors(NamedTuple):
@@ -47,7 +60,11 @@ class Vectors(NamedTuple):
 
 
 def c99(
-    controller: Controller, folder: str | os.PathLike[str], q0: ArrayLike | None = None
+    controller: Controller,
+    folder: str | os.PathLike[str],
+    q0: ArrayLike | None = None,
+    *,
+    verify: bool = True,
 ) -> Path:
     """Write a controller as a folder of C99.
 
@@ -56,6 +73,8 @@ def c99(
         folder: The folder; files of an earlier export are overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
+        verify: Whether the C code is compiled, where there is a compiler, and compared with the
+            vectors; what comes out is in ``README.md``.
 
     Returns:
         The folder.
@@ -70,11 +89,12 @@ def c99(
     vectors = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
     code = code._replace(values=code.values | _texts(twin, start, code, vectors))
-    for name in ("controller.h", "controller.c", "test_controller.c", "Makefile"):
-        write_text(folder / name, code.fill(name))
-    for name in ("example.c", "example_fri.cpp", "README.md"):
-        write_text(folder / name, code.fill(name))
     write_csv(folder / "vectors.csv", _head(twin), vectors.table)
+    for name in _FILES:
+        write_text(folder / name, code.fill(name, {"verified": "not yet: `make test`"}))
+    with suppress(MissingDependencyError):
+        if verify:
+            write_text(folder / "README.md", code.fill("README.md", {"verified": tested(folder)}))
     return folder
 
 
@@ -145,7 +165,6 @@ def _texts(
         "reference": json.dumps(settings["reference"]),
         "settings": json.dumps(settings, indent=2),
         "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
-        "verified": f"{len(vectors.t)} steps of Python's in closed loop, by `make test`",
     }
     if has_reference:
         texts["target_declaration"] = code.fill("target.h", {"reference": texts["reference"]})

@@ -1,7 +1,7 @@
 """Kinematics of a robot as straight C code, out of Pinocchio's model.
 
-Each joint's placement is a product of its parent's, of a constant one and of the joint's own motion,
-written entry by entry: constants are folded, and zeros and ones are left out.
+Each joint's placement is a product of its parent's, of a constant one and of the joint's own
+motion, written entry by entry: constants are folded, and zeros and ones are left out.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class _Code:
     def _kept(self, name: str, entry: Sum) -> Sum:
         factors = [*entry, ()]
         if len(entry) < 2 and (
-            not factors[0] or factors[0][1:] == () and abs(entry[factors[0]]) == 1.0
+            not factors[0] or (factors[0][1:] == () and abs(entry[factors[0]]) == 1.0)
         ):
             return entry
         self.variable(name, _text(entry))
@@ -97,7 +97,7 @@ def kinematics_code(robot: Robot, frames: Iterable[int]) -> str:
             text = _text(placed.position[i][0])
             code.lines.add(f"placements[{12 * index + 9 + i}] = {text};")
     body = "\n".join(code.lines.used()[0])
-    about = "/* Compute the joint Jacobian and the frames' placements (iiwa_dnn/robot/kinematics.py). */"
+    about = "/* Compute the joint Jacobian and the frames' placements, from the robot's model. */"
     head = "static void kinematics(const double *q, double *jacobian, double *placements)"
     return f"{about}\n{head}\n{{\n{body}\n}}"
 

@@ -10,14 +10,17 @@ from typing import NamedTuple
 WIDTH = 100
 
 # Words of C and macros of its headers that a Python name may not become.
-_TAKEN = frozenset(
+_TAKEN = re.findall(
+    r"\w+",
     "auto break case char const continue default do double else enum extern float for goto if "
     "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while bool true false NAN INFINITY I".split()
+    "union unsigned void volatile while bool true false NAN INFINITY I",
 )
 
-# Functions whose call may be left out where nobody needs the result.
-_PURE = frozenset("sqrt fabs sin cos atan2 floor ceil double_min double_max int_min int_max".split())
+_PURE = re.findall(
+    r"\w+", "sqrt fabs sin cos atan2 floor ceil double_min double_max int_min int_max"
+)
+"""Functions whose call may be left out where nobody needs the result."""
 
 
 def identifier(name: str) -> str:
@@ -37,7 +40,7 @@ class _Line(NamedTuple):
         """Test whether the line only gives a variable its value that is not among those read."""
         own = self.declared or self.stored
         called = re.findall(r"(\w+)\(", self.text)
-        return bool(own) and own not in read and _PURE.issuperset(called)
+        return bool(own) and own not in read and set(called) <= set(_PURE)
 
     def names(self) -> set[str]:
         """Return the names that the line reads."""

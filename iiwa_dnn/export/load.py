@@ -110,16 +110,41 @@ def load(
         header = (folder / "controller.h").read_text(encoding="utf-8")
     except OSError as error:
         raise FileError(folder / "controller.h", one_line(error)) from error
-    command = find_compiler(compiler)
     with tempfile.TemporaryDirectory() as place:
         library = Path(place) / "controller.so"
-        source = folder / "controller.c"
-        words = [command, *flags, "-shared", "-fPIC", "-o", library, source, "-lm"]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise FileError(source, f"does not compile: {done.stderr.strip()[:500]}")
+        _compile(folder, library, (*flags, "-shared", "-fPIC"), ["controller.c"], compiler)
         # The system keeps the file as long as it is loaded.
         return ExportedController(ctypes.CDLL(str(library)), header)
+
+
+def tested(folder: Path) -> str:
+    """Compile and run the test of an exported controller; return what it prints.
+
+    Raises:
+        FileError: The test does not compile.
+        MissingDependencyError: There is no C compiler.
+    """
+    with tempfile.TemporaryDirectory() as place:
+        program = Path(place) / "test_controller"
+        _compile(folder, program, FLAGS, ["test_controller.c", "controller.c"])
+        words = [str(program), str(folder / "vectors.csv")]
+        said = subprocess.run(words, capture_output=True, text=True, check=False).stdout
+        return f"{said.strip()} ({' '.join(FLAGS)})"
+
+
+def _compile(
+    folder: Path,
+    output: Path,
+    flags: Sequence[str],
+    names: Sequence[str],
+    compiler: str | None = None,
+) -> None:
+    """Compile files of a folder; raises what `load` does."""
+    sources = [str(folder / name) for name in names]
+    words = [find_compiler(compiler), *flags, "-o", str(output), *sources, "-lm"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise FileError(sources[-1], f"does not compile: {done.stderr.strip()[:500]}")
 
 
 def find_compiler(name: str | None = None) -> str:

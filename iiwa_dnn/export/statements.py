@@ -157,29 +157,33 @@ class Body(Expressions):
 
     def _loop(self, node: ast.For, name: str) -> None:
         """Translate a loop over a range."""
-        call = node.iter
-        is_range = isinstance(call, ast.Call) and self.value(call.func).kind == Object(range)
-        self.require(is_range, node)
-        assert isinstance(call, ast.Call)
-        limits = [self.scalar(argument) for argument in call.args]
-        if len(limits) == 1:
-            limits.insert(0, integer(0))
-        start, stop, step = [*limits, integer(1)][:3]
-        changed = set(_stored(ast.Module(node.body, [])))
-        read = {each.id for each in ast.walk(call) if isinstance(each, ast.Name)}
-        self.require(not changed & (read | {name}), node, "the loop changes its own range")
+        start, stop, step = self._limits(node, name)
         if start.known is not None and stop.known is not None:
-            values = range(start.known, stop.known, step.known)
+            values = range(start.known, stop.known, step)
             if self._enters(node) or not values:
                 self._write_out(node, name, [integer(value) for value in values])
                 return
         own = "again" if name == "_" else identifier(name)
-        sign = "<" if step.known > 0 else ">"
-        move = {1: "++", -1: "--"}.get(step.known, f" += {step.known}")
+        sign = "<" if step > 0 else ">"
+        move = {1: "++", -1: "--"}.get(step, f" += {step}")
         self.names[name] = Value(INT, own)
         self.lines.open(f"for (int {own} = {start.text}; {own} {sign} {stop.at(11)}; {own}{move})")
         self.inner(node.body)
         self.lines.close()
+
+    def _limits(self, node: ast.For, name: str) -> tuple[Value, Value, int]:
+        """Return start, stop and step of a range, which the loop leaves as they are."""
+        call = node.iter
+        self.require(isinstance(call, ast.Call), node)
+        assert isinstance(call, ast.Call)
+        self.require(self.value(call.func).kind == Object(range), node)
+        changed = set(_stored(ast.Module(node.body, [])))
+        read = {each.id for each in ast.walk(call) if isinstance(each, ast.Name)}
+        self.require(not changed & (read | {name}), node, "the loop changes its own range")
+        limits = [self.scalar(argument) for argument in call.args]
+        if len(limits) == 1:
+            limits.insert(0, integer(0))
+        return limits[0], limits[1], limits[2].known if len(limits) > 2 else 1
 
     def _enters(self, node: ast.For) -> bool:
         """Test whether a loop enters functions by their addresses."""

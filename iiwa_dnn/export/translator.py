@@ -97,7 +97,9 @@ class Translator:
         flat = np.ravel(values).tolist()
         kind = Array(INT if values.dtype.kind == "i" else DOUBLE, values.shape, content=tuple(flat))
         if not kind.is_table:
-            numbers = wrapped(", ".join(map(number, flat)) or "0.0", "    ").replace("\n        ", "\n    ")
+            numbers = wrapped(", ".join(map(number, flat)) or "0.0", "    ").replace(
+                "\n        ", "\n    "
+            )
             head = f"static const double {name}[{max(len(flat), 1)}]"
             self._tables[name] = f"{head} = {{\n{numbers}\n}};"
         return Value(kind, name)

@@ -182,7 +182,8 @@ class Value:
         start, size = (".at", kind.length) if isinstance(kind, Tuple) else ("", kind.shape[0])
         texts = [f"{self.at(ATOM)}{start}[{k}]" for k in range(int(size))]
         known = getattr(kind, "content", None) or [None] * len(texts)
-        return [Value(kind.element, *each) for each in zip(texts, [ATOM] * len(texts), known)]
+        pairs = zip(texts, known, strict=False)
+        return [Value(kind.element, text, known=value) for text, value in pairs]
 
 
 def integer(value: int) -> Value:

@@ -65,7 +65,7 @@ def conditions(x: np.ndarray, out: np.ndarray) -> None:
     out[2] = max(nan, 1.0, 2.0)
     out[3] = 1.0 if not nan > 0.0 else 2.0
     out[4] = 1.0 if 0.0 < x[0] <= x[1] else 2.0
-    out[5] = 1.0 if x[0] > 0.0 or x[1] > 5.0 and x[0] < 0.0 else 2.0
+    out[5] = 1.0 if x[0] > 0.0 or (x[1] > 5.0 and x[0] < 0.0) else 2.0
     out[6] = SCALE
     out[7] = -np.inf if x[0] > 0.0 else np.inf
     if x[0] > x[1]:
@@ -221,7 +221,7 @@ def _does_not_know(x: np.ndarray) -> None:
     [
         (_calls_itself, "calls itself"),
         (_allocates_unknown, "not known"),
-        (_takes_a_column, "x[::2]"),
+        (_takes_a_column, "a slice with a step"),
         (_multiplies_arrays, "`x` is no number"),
         (_adds_arrays, "`x` is no number"),
         (_uses_a_list, "[1.0, 2.0]"),
