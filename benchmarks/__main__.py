@@ -1,10 +1,11 @@
-"""``python -m benchmarks`` solvers, loop, targets, collisions or sizes: measure, beside peers."""
+"""``python -m benchmarks`` solvers, loop, targets, collisions, export or sizes: measure."""
 
 import sys
 
 from benchmarks.arms import bench_arms
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
+from benchmarks.exports import bench_export
 from benchmarks.sizes import bench_sizes
 
 COMMANDS = {
@@ -13,6 +14,7 @@ COMMANDS = {
     "targets": bench_targets,
     "collisions": bench_collisions,
     "arms": bench_arms,
+    "export": bench_export,
     "sizes": bench_sizes,
 }
 
