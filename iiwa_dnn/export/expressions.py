@@ -336,7 +336,13 @@ class Expressions:
         signature = Signature.entered_by(function)
         if signature is not None:
             function = signature.function_at(arguments.pop(0).known)
-        self.require(inspect.isfunction(getattr(function, "py_func", function)), node)
+        plain = getattr(function, "py_func", function)
+        self.require(inspect.isfunction(plain), node)
+        constants = [_constant_of(argument) for argument in arguments]
+        if all(constant is not None for constant in constants):
+            result = plain(*constants)
+            if isinstance(result, int | np.integer):
+                return integer(int(result))
         made = self.translator.function(function, arguments)
         if made is None:
             self.require(False, node, f"{function.__name__} calls itself")
@@ -355,6 +361,14 @@ class Expressions:
         if isinstance(kind, Struct) and not value.pointer:
             return [f"&{self.temporary(value).text}"]
         return [self.written(value).text]
+
+
+def _constant_of(value: Value) -> Any:
+    """Return a value as Python has it if all of it is known, else None."""
+    kind = value.kind
+    if not isinstance(kind, Array) or kind.content is None:
+        return value.known
+    return np.array(kind.content[: int(np.prod(kind.shape))]).reshape(kind.shape)
 
 
 class WideError(Exception):

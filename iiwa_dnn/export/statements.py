@@ -12,6 +12,7 @@ import numpy as np
 from iiwa_dnn.export.expressions import Expressions
 from iiwa_dnn.export.lines import identifier
 from iiwa_dnn.export.values import (
+    ATOM,
     DOUBLE,
     INT,
     Array,
@@ -21,7 +22,6 @@ from iiwa_dnn.export.values import (
     Value,
     integer,
 )
-from iiwa_dnn.qp.compiling import Signature
 
 if TYPE_CHECKING:
     from iiwa_dnn.export.translator import Translator
@@ -147,20 +147,24 @@ class Body(Expressions):
         assert isinstance(node.target, ast.Name)
         name = node.target.id
         outer = self.names.get(name)
-        if isinstance(node.iter, ast.Tuple):
-            self._write_out(node, name, [self.scalar(item) for item in node.iter.elts])
+        if isinstance(node.iter, ast.Call):
+            self._loop(node, node.iter, name)
         else:
-            self._loop(node, name)
+            values = self.value(node.iter)
+            items = [self.constant(item, "") for item in getattr(values.kind, "value", ())]
+            self._write_out(node, name, items or values.items)
         self.names.pop(name, None)
         if outer is not None:
             self.names[name] = outer
 
-    def _loop(self, node: ast.For, name: str) -> None:
+    def _loop(self, node: ast.For, call: ast.Call, name: str) -> None:
         """Translate a loop over a range."""
-        start, stop, step = self._limits(node, name)
+        start, stop, step = self._limits(node, call, name)
         if start.known is not None and stop.known is not None:
             values = range(start.known, stop.known, step)
-            if self._enters(node) or not values:
+            if not values:
+                return
+            if self._reads_table(node, name):
                 self._write_out(node, name, [integer(value) for value in values])
                 return
         own = "again" if name == "_" else identifier(name)
@@ -171,11 +175,8 @@ class Body(Expressions):
         self.inner(node.body)
         self.lines.close()
 
-    def _limits(self, node: ast.For, name: str) -> tuple[Value, Value, int]:
+    def _limits(self, node: ast.For, call: ast.Call, name: str) -> tuple[Value, Value, int]:
         """Return start, stop and step of a range, which the loop leaves as they are."""
-        call = node.iter
-        self.require(isinstance(call, ast.Call), node)
-        assert isinstance(call, ast.Call)
         self.require(self.value(call.func).kind == Object(range), node)
         changed = set(_stored(ast.Module(node.body, [])))
         read = {each.id for each in ast.walk(call) if isinstance(each, ast.Name)}
@@ -185,14 +186,23 @@ class Body(Expressions):
             limits.insert(0, integer(0))
         return limits[0], limits[1], limits[2].known if len(limits) > 2 else 1
 
-    def _enters(self, node: ast.For) -> bool:
-        """Test whether a loop enters functions by their addresses."""
-        names = [each.id for each in ast.walk(node) if isinstance(each, ast.Name)]
-        own = self.function.__globals__
-        return any(Signature.entered_by(own.get(name)) is not None for name in names)
+    def _reads_table(self, node: ast.For, name: str) -> bool:
+        """Test whether a loop reads a table that C does not have, at the loop's own variable."""
+        for each in ast.walk(node):
+            if isinstance(each, ast.Subscript) and isinstance(each.value, ast.Name | ast.Attribute):
+                used = {part.id for part in ast.walk(each.slice) if isinstance(part, ast.Name)}
+                owner = each.value
+                while isinstance(owner, ast.Attribute):
+                    owner = owner.value
+                is_here = isinstance(owner, ast.Name) and owner.id in self.names
+                if is_here and name in used and getattr(self.value(each.value).kind, "is_table", 0):
+                    return True
+        return False
 
     def _write_out(self, node: ast.For, name: str, values: list[Value]) -> None:
         """Write a loop's body once for each value."""
+        jumps = [each for each in ast.walk(node) if isinstance(each, ast.Break | ast.Continue)]
+        self.require(values and not jumps, node)
         for value in values:
             self.names[name] = value
             self.lines.open("")
@@ -210,15 +220,19 @@ class Body(Expressions):
             self._assign(target, node.value)
 
     def _assign(self, target: ast.expr, source: ast.expr) -> None:
-        if isinstance(target, ast.Subscript):
-            self._write(target, "=", self.scalar(source))
-        elif isinstance(target, ast.Tuple):
+        if isinstance(target, ast.Tuple):
             self._unpack(target, source)
+        elif not isinstance(target, ast.Name) or not self._allocate(target, source):
+            self._store_at(target, self.value(source))
+
+    def _store_at(self, target: ast.expr, value: Value) -> None:
+        """Assign a value to a variable or to an element of an array."""
+        if isinstance(target, ast.Subscript):
+            self._write(target, "=", value)
         else:
             self.require(isinstance(target, ast.Name), target)
             assert isinstance(target, ast.Name)
-            if not self._allocate(target, source):
-                self._store(target, self.value(source))
+            self._store(target, value)
 
     def _unpack(self, target: ast.Tuple, source: ast.expr) -> None:
         value = self.value(source)
@@ -228,11 +242,9 @@ class Body(Expressions):
         else:
             items = value.items or self.temporary(value).parts()
         self.require(len(items) == len(target.elts), target, "another number of values")
-        for name, item in zip(target.elts, items, strict=True):
-            self.require(isinstance(name, ast.Name), name)
-            assert isinstance(name, ast.Name)
-            if name.id != "_":
-                self._store(name, item)
+        for each, item in zip(target.elts, items, strict=True):
+            if getattr(each, "id", "") != "_":
+                self._store_at(each, item)
 
     def _kept(self, item: Value) -> Value:
         """Return a value that stays when its variable is written."""
@@ -242,23 +254,41 @@ class Body(Expressions):
         return self.temporary(Value(item.kind, f"({item.text})", pointer=item.pointer))
 
     def _allocate(self, target: ast.Name, source: ast.expr) -> bool:
-        """Declare an array if the source is one of ``np.empty`` or ``np.zeros``."""
-        if not isinstance(source, ast.Call) or ast.unparse(source.func) not in _ALLOCATORS:
+        """Declare an array if the source is one of ``np.empty`` or ``np.zeros``, or a copy."""
+        if not isinstance(source, ast.Call):
             return False
-        given = self.value(source.args[0])
-        shape = tuple(size.known for size in given.items or [given])
-        problem = "the size of an array is not known when the code is made"
-        self.require(None not in shape, source, problem)
-        self.require(target.id not in self.names, source, "an array is allocated once")
+        name = ast.unparse(source.func)
+        element = INT if len(source.args) > 1 else DOUBLE
+        if name in _ALLOCATORS:
+            given = self.value(source.args[0])
+            shape = tuple(size.known for size in given.items or [given])
+            self._declare_array(target, element, shape, _ALLOCATORS[name])
+            return True
+        if not name.endswith(".copy"):
+            return False
+        assert isinstance(source.func, ast.Attribute)
+        original = self.value(source.func.value)
+        self._declare_array(target, original.kind.element, original.kind.shape, "")
+        size = int(np.prod(original.kind.shape))
+        copy = self.names[target.id].text
+        self.lines.open(f"for (int k = 0; k < {size}; k++)")
+        self.lines.add(f"{copy}[k] = {original.at(ATOM)}[k];")
+        self.lines.close()
+        return True
+
+    def _declare_array(
+        self, target: ast.Name, element: Scalar, shape: tuple[Any, ...], start: str
+    ) -> None:
+        """Declare an array of the function."""
+        is_known = all(isinstance(size, int) for size in shape)
+        self.require(is_known, target, "the size of an array is not known when the code is made")
+        self.require(target.id not in self.names, target, "an array is allocated once")
         storage = Storage(self.function)
         storage.write()
-        element = INT if len(source.args) > 1 else DOUBLE
         variable = Value(Array(element, shape, storage), identifier(target.id))
         self._note(target.id, variable)
         text = f"{element.tag} {variable.text}[{max(int(np.prod(shape)), 1)}]"
-        start = _ALLOCATORS[ast.unparse(source.func)]
         self.lines.add(f"{text}{start};", variable.text)
-        return True
 
     def _note(self, name: str, variable: Value) -> None:
         self.stored.add(name)
@@ -321,6 +351,7 @@ class Body(Expressions):
         self.lines.add(f"{own.text} {sign} {value.text};", stored=own.text)
 
     def _write(self, target: ast.Subscript, sign: str, value: Value) -> None:
+        self.require(isinstance(value.kind, Scalar), target, "only numbers are written")
         owner = self.value(target.value)
         element = self.scalar(target)
         self.require(isinstance(owner.kind, Array), target)

@@ -17,6 +17,7 @@ pytestmark = needs("gcc")
 
 TABLE = np.array([2.0, 3.0, 5.0])
 LIMIT = 4
+PARTS = (0.5, 2.0)
 SCALE = -1.5
 
 
@@ -36,6 +37,14 @@ def _norm(x: np.ndarray) -> float:
 
 def _pair(x: np.ndarray, k: int) -> tuple[float, float]:
     return x[k], x[k + 1]
+
+
+def _count(x: np.ndarray) -> int:
+    found = 0
+    for i in range(x.size):
+        if x[i] > 2.5:
+            found += 1
+    return found
 
 
 def _two(rows: np.ndarray, k: int) -> Two:
@@ -97,9 +106,7 @@ def arrays(x: np.ndarray, rows: np.ndarray, out: np.ndarray) -> None:
     flat = np.empty(4)
     for i in range(flat.size):
         flat[i] = TABLE[i % TABLE.size]
-    before = np.empty(x.size)
-    for i in range(x.size):
-        before[i] = x[i]
+    before = x.copy()
     x[0] = 100.0
     out[2] = before[0] + work[1, 2] + work[0, 0] + len(rows)
     for k in range(rows.shape[0]):
@@ -111,8 +118,12 @@ def arrays(x: np.ndarray, rows: np.ndarray, out: np.ndarray) -> None:
     left = (a, b, 1.0)
     for i in range(3):
         out[8] += left[i]
-    for end in (0.5, 2.0):
-        out[9] = 10.0 * out[9] + end
+    for end in PARTS:
+        for other in (first[0], end):
+            out[9] = 10.0 * out[9] + other
+    out[12], out[13] = _pair(first, 1)
+    for _ in range(_count(TABLE)):
+        out[14] += 1.0
     square = x.reshape(2, 3)
     out[10] = square[1, 2]
     c = d = a**2 + b**3
@@ -142,7 +153,7 @@ def test_c_computes_what_python_does(function, sizes: tuple[int, ...], tmp_path:
 def test_arrays_are_pythons(tmp_path: Path) -> None:
     x = np.arange(6.0) + 1.0
     rows = np.arange(9.0).reshape(3, 3)
-    ours, theirs = both(arrays, tmp_path, x, rows, np.zeros(12))
+    ours, theirs = both(arrays, tmp_path, x, rows, np.zeros(15))
     for own, other in zip(ours, theirs, strict=True):
         np.testing.assert_array_equal(own, other)
     assert (ours[2] != 0.0).all()
