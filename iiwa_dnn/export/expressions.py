@@ -145,7 +145,8 @@ class Expressions:
             return self.names[node.id]
         if node.id in self.stored:
             raise WideError(node.id)
-        known = {**vars(builtins), **self.function.__globals__}
+        own = self.function.__globals__
+        known = own if node.id in own else vars(builtins)
         self.require(node.id in known, node, f"`{node.id}` is not known here")
         return self.constant(known[node.id], node.id)
 
@@ -230,8 +231,10 @@ class Expressions:
                 return self.constant(known, "")
         if kind is ast.Div and left.kind is INT:
             left = Value(DOUBLE, f"(double){left.at(UNARY)}", UNARY)
-        result = BOOL if issubclass(kind, ast.cmpop) else both
-        return Value(result, f"{left.at(level)} {sign} {right.at(level + 1)}", level, known)
+        is_test = issubclass(kind, ast.cmpop)
+        # Of a comparison of comparisons, compilers want to see what is meant.
+        text = f"{left.at(11 if is_test else level)} {sign} {right.at(level + 1)}"
+        return Value(BOOL if is_test else both, text, level, known)
 
     def on_compare(self, node: ast.Compare) -> Value:
         """Translate comparisons; of a chain, the middle is read twice."""
@@ -341,8 +344,8 @@ class Expressions:
         constants = [_constant_of(argument) for argument in arguments]
         if all(constant is not None for constant in constants):
             result = plain(*constants)
-            if isinstance(result, int | np.integer):
-                return integer(int(result))
+            if isinstance(result, int | float):
+                return self.constant(result, "")
         made = self.translator.function(function, arguments)
         if made is None:
             self.require(False, node, f"{function.__name__} calls itself")
@@ -416,6 +419,7 @@ _CALLS: dict[Any, Callable[..., Value]] = {
     np.ceil: _library("ceil"),
     np.floor: _library("floor"),
     math.floor: _library("floor"),
+    math.ceil: _library("ceil"),
     np.copysign: _library("copysign"),
     math.copysign: _library("copysign"),
     int: _to_integer,

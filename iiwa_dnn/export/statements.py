@@ -151,6 +151,9 @@ class Body(Expressions):
             self._loop(node, node.iter, name)
         else:
             values = self.value(node.iter)
+            if isinstance(values.kind, Array):
+                self._over_array(node, values, name)
+                return
             items = [self.constant(item, "") for item in getattr(values.kind, "value", ())]
             self._write_out(node, name, items or values.items)
         self.names.pop(name, None)
@@ -198,6 +201,17 @@ class Body(Expressions):
                 if is_here and name in used and getattr(self.value(each.value).kind, "is_table", 0):
                     return True
         return False
+
+    def _over_array(self, node: ast.For, array: Value, name: str) -> None:
+        """Translate a loop over the elements of an array."""
+        own = Value(array.kind.element, identifier(name))
+        index = f"{own.text}_index"
+        self.lines.open(f"for (int {index} = 0; {index} < {array.kind.shape[0]}; {index}++)")
+        self.lines.add(f"{own.declared()} = {array.at(ATOM)}[{index}];", own.text)
+        self.names[name] = own
+        self.inner(node.body)
+        self.lines.close()
+        del self.names[name]
 
     def _write_out(self, node: ast.For, name: str, values: list[Value]) -> None:
         """Write a loop's body once for each value."""

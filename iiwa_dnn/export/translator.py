@@ -13,6 +13,7 @@ import inspect
 import re
 import textwrap
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -198,6 +199,7 @@ class Translator:
         return next(name for name in names if name not in self._functions)
 
 
+@lru_cache(maxsize=1000)
 def _source(function: Any) -> tuple[str, ast.FunctionDef]:
     """Return the file of a function, from the package's name on, and its syntax tree."""
     lines, first = inspect.getsourcelines(function)
