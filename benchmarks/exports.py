@@ -1,7 +1,7 @@
 """Exported controllers: C's commands beside Python's, and the time, size and memory of a step.
 
-``python -m benchmarks export`` prints the tables of docs/export.md: every kind of controller in closed
-loop, C and Python side by side from the same start. The times of both are taken in turns.
+``python -m benchmarks export`` prints the table of docs/export.md: every kind of controller in
+closed loop, C and Python side by side from the same start.
 """
 
 import argparse
@@ -127,8 +127,8 @@ def bench_export(arguments: Sequence[str] | None = None, prog: str = "export") -
     print(tabulate(_COLUMNS, rows), "\n")
     first = rows[0]
     print(
-        f"The tail of {first['name']}: longest step {first['longest']:.1f} us; between two readings "
-        f"of the clock with nothing in between: median {first['idle']:.3f}, "
+        f"The tail of {first['name']}: longest step {first['longest']:.1f} us. Two readings of the "
+        f"clock with nothing in between: median {first['idle']:.3f}, "
         f"p99.9 {first['idle_p999']:.2f}, longest {first['idle_longest']:.1f} us."
     )
     if options.placo is not None:

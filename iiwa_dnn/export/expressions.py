@@ -233,7 +233,8 @@ class Expressions:
             left = Value(DOUBLE, f"(double){left.at(UNARY)}", UNARY)
         is_test = issubclass(kind, ast.cmpop)
         # Of a comparison of comparisons, compilers want to see what is meant.
-        text = f"{left.at(11 if is_test else level)} {sign} {right.at(level + 1)}"
+        lowest = 10 if is_test else level
+        text = f"{left.at(lowest + is_test)} {sign} {right.at(lowest + 1)}"
         return Value(BOOL if is_test else both, text, level, known)
 
     def on_compare(self, node: ast.Compare) -> Value:
