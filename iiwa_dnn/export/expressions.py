@@ -372,7 +372,8 @@ def _constant_of(value: Value) -> Any:
     kind = value.kind
     if not isinstance(kind, Array) or kind.content is None:
         return value.known
-    return np.array(kind.content[: int(np.prod(kind.shape))]).reshape(kind.shape)
+    shape = [int(size) for size in kind.shape]
+    return np.array(list(kind.content)[: math.prod(shape)]).reshape(shape)
 
 
 class WideError(Exception):

@@ -182,8 +182,7 @@ class Body(Expressions):
         """Return start, stop and step of a range, which the loop leaves as they are."""
         self.require(self.value(call.func).kind == Object(range), node)
         changed = set(_stored(ast.Module(node.body, [])))
-        read = {each.id for each in ast.walk(call) if isinstance(each, ast.Name)}
-        self.require(not changed & (read | {name}), node, "the loop changes its own range")
+        self.require(not changed & (_names(call) | {name}), node, "the loop changes its own range")
         limits = [self.scalar(argument) for argument in call.args]
         if len(limits) == 1:
             limits.insert(0, integer(0))
@@ -192,13 +191,10 @@ class Body(Expressions):
     def _reads_table(self, node: ast.For, name: str) -> bool:
         """Test whether a loop reads a table that C does not have, at the loop's own variable."""
         for each in ast.walk(node):
-            if isinstance(each, ast.Subscript) and isinstance(each.value, ast.Name | ast.Attribute):
-                used = {part.id for part in ast.walk(each.slice) if isinstance(part, ast.Name)}
-                owner = each.value
-                while isinstance(owner, ast.Attribute):
-                    owner = owner.value
-                is_here = isinstance(owner, ast.Name) and owner.id in self.names
-                if is_here and name in used and getattr(self.value(each.value).kind, "is_table", 0):
+            if isinstance(each, ast.Subscript) and name in _names(each.slice):
+                is_here = _names(each.value) <= set(self.names)
+                is_plain = isinstance(each.value, ast.Name | ast.Attribute)
+                if is_here and is_plain and getattr(self.value(each.value).kind, "is_table", False):
                     return True
         return False
 
@@ -381,6 +377,11 @@ def _stored(tree: ast.AST) -> list[str]:
     """List the names that are written in a tree."""
     names = [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
     return [node.id for node in names if isinstance(node.ctx, ast.Store)]
+
+
+def _names(tree: ast.AST) -> set[str]:
+    """Return the names in a tree."""
+    return {each.id for each in ast.walk(tree) if isinstance(each, ast.Name)}
 
 
 def _is_known(value: Value) -> bool:
