@@ -25,6 +25,6 @@ def run(options: ExportOptions) -> int:
     folder = claim_folder(options)
     c99(controller, folder, q0)
     save_settings(options, folder)
-    lines = sum(1 for _ in (folder / "controller.c").open(encoding="utf-8"))
+    lines = (folder / "controller.c").read_text(encoding="utf-8").count("\n")
     print_lines(options, f"written to {folder}: {lines} lines of C; to test them: make -C {folder}")
     return 0
