@@ -142,3 +142,39 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "xarm7": arm("xarm7"),
 }
 """Functions that make each controller, by its name."""
+
+
+def without_solution(policy: str) -> Callable[[], Made]:
+    """Return the function that makes a heart too quick for the joints, with a policy."""
+
+    def make() -> Made:
+        robot = paper_robot()
+        made = drawing(robot=robot.with_limits(velocity=0.045 * robot.dq_max))
+        made[0].policy = policy
+        return made
+
+    return make
+
+
+def yielding_with_rates() -> Made:
+    """Return a heart with limits of acceleration and jerk, at whose start the task yields."""
+    limits = (iiwa_dnn.AccelerationLimits(2.0), iiwa_dnn.JerkLimits(50.0))
+    return drawing(DoubleIndicator(extra_limits=limits), iiwa_dnn.Circle())
+
+
+def braking_among_balls() -> Made:
+    """Return the heart among balls with limits of acceleration: every command is stoppable."""
+    balls = list(map(iiwa_dnn.Sphere, BALLS, RADII))
+    avoidance = iiwa_dnn.CollisionAvoidance(balls, self_collision=False, distance=DISTANCE)
+    return drawing(
+        with_parts(limits=(avoidance, iiwa_dnn.AccelerationLimits(5.0))), iiwa_dnn.Circle()
+    )
+
+
+SETTINGS |= {
+    "without a solution: slow": without_solution("slow"),
+    "without a solution: relax": without_solution("relax"),
+    "without a solution: stop": without_solution("stop"),
+    "yielding to acceleration and jerk": yielding_with_rates,
+    "braking among balls": braking_among_balls,
+}

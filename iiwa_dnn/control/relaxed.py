@@ -170,18 +170,18 @@ def largest_factor(qp: QPViews, yielding: Yielding, point: Vector) -> float:
     Returns:
         The factor; NaN where not even 0 is feasible.
     """
-    data = program_data(qp.q.size + 1, qp.h.size, qp.b.size)
+    data = np.zeros(data_size(qp.q.size + 1, qp.h.size, qp.b.size))
     factor: float = _largest_factor(qp, yielding, data, point)
     return factor
 
 
 @compiled
-def program_data(n: int, m: int, p: int) -> Vector:
-    """Make room for a program, `QP.data`, (size,), zero.
+def data_size(n: int, m: int, p: int) -> int:
+    """Count the numbers of a program, `QP.data`.
 
-    Its views do not keep it: the function that makes them gets it as an argument.
+    Views do not keep such an array: the function that makes them gets it as an argument.
     """
-    return np.zeros((n + m + p) * (n + 1) + 2 * n)
+    return (n + m + p) * (n + 1) + 2 * n
 
 
 @compiled
@@ -298,7 +298,7 @@ def least_violation(qp: QPViews, yielding: Yielding, q: Vector, point: Vector) -
     Returns:
         Whether there is a solution.
     """
-    data = program_data(qp.q.size, qp.h.size, held_rows(yielding.weights))
+    data = np.zeros(data_size(qp.q.size, qp.h.size, held_rows(yielding.weights)))
     found: bool = _least_violation(qp, yielding, q, data, point)
     return found
 
@@ -488,7 +488,10 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> None:
 
     If the rows contradict the bounds, it is the nearest one within the bounds.
     """
-    if inside(qp, x) or _nearest_within(qp, x, yielding, program_data(x.size, qp.h.size, 0)):
+    if inside(qp, x):
+        return
+    data = np.zeros(data_size(x.size, qp.h.size, 0))
+    if _nearest_within(qp, x, yielding, data):
         return
     for i in range(x.size):
         x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
@@ -510,7 +513,8 @@ def _nearest_within(qp: QPViews, x: Vector, yielding: Yielding, data: Vector) ->
         for i in range(n):
             nearest.G[j, i] = qp.G[j, i]
     point = np.empty(2 * n + m)
-    if not settled(nearest, yielding, np.zeros(3 * n + m), point):
+    state = np.zeros(3 * n + m)
+    if not settled(nearest, yielding, state, point):
         return False
     for i in range(n):
         x[i] = point[i]

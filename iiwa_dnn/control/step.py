@@ -112,12 +112,6 @@ class ControlStep:
         program.append(answer.address, answer.constants, answer.rates)
         return True
 
-    @property
-    def network_constants(self) -> Vector:
-        """Constants of the network's entry, those of `ANSWER`, (k,); empty without a network."""
-        entry = self.program.table[1 + self.program.table[0, 4]]
-        return self.program.constants[entry[4] : entry[5]]
-
     def _add_paths(self, references: Mapping[str, Reference]) -> bool:
         """Add an entry for each reference; return whether all of them are compiled."""
         frames = self.program.target_frames

@@ -225,14 +225,16 @@ def extremes(motion: Motion, x: float, b: float, dt: float) -> tuple[float, floa
 
 
 @compiled
-def motion_to_rest(dq: Vector, last: Vector, limits: Vector, dt: float) -> Motion:
+def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: float) -> Motion:
     """Compute the shortest motion to rest from a command dq (n,) after the last one (n,) [rad/s].
 
-    The limits are those of `least_periods`, dt is the control period [s].
+    Its `bend` (n,) [rad/s] is overwritten. The limits are those of `least_periods`, dt is the
+    control period [s].
     """
     periods = least_periods(dq, last, limits, dt)
     cubic = has_jerk(limits)
-    bend = np.zeros(dq.size)
+    for i in range(dq.size):
+        bend[i] = 0.0
     if not periods < np.inf:
         return Motion(dq, bend, -1.0, cubic)
     if cubic and periods > 0.0:
@@ -319,7 +321,8 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     """
     n = motion.first.size
     scene = scene_views(constants, n)
-    ends = place_ends(scene, instant.placements)
+    ends = np.empty(scene.ends.shape)
+    place_ends(scene, instant.placements, ends)
     of_first, of_bend = sums(motion, motion.periods)
     travel = np.empty(n)
     for i in range(n):
@@ -387,7 +390,8 @@ def stopping_time(instant: Instant, yielding: Yielding, dq: Vector) -> float:
     It is -1 if the motion breaks a limit, or brings a pair too near.
     """
     dt = yielding.dt
-    motion = motion_to_rest(dq, instant.last, yielding.limits, dt)
+    bend = np.empty(dq.size)
+    motion = motion_to_rest(dq, instant.last, bend, yielding.limits, dt)
     if motion.periods < 0.0 or not keeps_joint_limits(motion, instant.q, yielding.limits, dt):
         return -1.0
     scenes = yielding.scenes

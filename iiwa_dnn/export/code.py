@@ -10,20 +10,22 @@ from typing import Any, NamedTuple
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
+from iiwa_dnn.control.relaxed import BUDGET, Yielding
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep, control_step, sample_targets
+from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import DOUBLE, Array, Tuple, Value, integer
-from iiwa_dnn.networks.integrators.base import BUDGET
-from iiwa_dnn.schemes.program import ProgramArrays
+from iiwa_dnn.export.values import BOOL, DOUBLE, Array, Known, Tuple, Value, integer
+from iiwa_dnn.schemes.program import ProgramArrays, write_program
 from iiwa_dnn.schemes.step import TARGET_SIZE
-
-TRIES = 2
-"""Times that the network is asked at a step: from its last state, and from its first one."""
 
 _DOUBLE = 8
 """Bytes of a number."""
+
+
+GUARD = "\n            && guard_step(&arrays, c->past, c->following, &yielding)"
+"""Condition on a command where braking has to keep clear of obstacles."""
 
 
 class Code(NamedTuple):
@@ -63,32 +65,33 @@ def code_of(controller: Controller) -> Code:
     dof = robot.dof
     clock = Value(Tuple(DOUBLE, 2), "clock")
     translator.define(clock.kind)
-    arguments = [
-        _array("row", step.layout.width),
-        arrays,
-        _array("q", dof),
-        _array("past", 4, dof),
-        _array("following", 4, dof),
-        _array("state", state),
-        clock,
-        integer(WRITE),
-    ]
+    row = _array("row", step.layout.width)
+    past = _array("past", 5, dof)
+    following = _array("following", 5, dof)
+    network = _array("state", state)
+    targets = _array("targets", len(program.target_frames), TARGET_SIZE)
+    data = _array("data", program.data_size)
+    t = Value(DOUBLE, "t")
+    arguments = [row, arrays, _array("q", dof), past, following, network, clock, integer(WRITE)]
     translator.function(control_step, arguments)
+    yielding = _yielding(translator, step)
+    further = [integer(_action(controller)), Value(BOOL, "yields")]
+    translator.function(yield_step, [row, arrays, past, following, network, yielding, *further])
+    translator.function(write_program, [data, arrays, past, targets, t])
+    if step.yielding.stop:
+        translator.function(guard_step, [arrays, past, following, yielding])
     has_reference = step.begin == SAMPLE
-    frames = len(program.target_frames)
     if has_reference:
-        targets = _array("targets", frames, TARGET_SIZE)
-        translator.function(sample_targets, [arrays, Value(DOUBLE, "t"), targets])
+        translator.function(sample_targets, [arrays, t, targets])
+    frames = len(program.target_frames)
     columns = step.layout.columns
     sizes = {
         "width": step.layout.width,
-        "past": 4 * dof,
+        "past": 5 * dof,
         "state": state,
         "jacobian": 6 * dof,
         "placements": PLACEMENT * robot.model.nframes,
     }
-    budget = int(step.network_constants[BUDGET])
-    at_lb = (n + m + p) * (n + 1)
     values: dict[str, Any] = {
         **sizes,
         "robot": robot.name,
@@ -101,11 +104,12 @@ def code_of(controller: Controller) -> Code:
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
-        "systems": TRIES * budget,
-        "size": _DOUBLE * (sum(sizes.values()) + 4 * dof + 2),
+        "systems": ATTEMPTS * BUDGET,
+        "size": _DOUBLE * (sum(sizes.values()) + 5 * dof + 3),
         "actions": _actions(),
-        "at_lb": at_lb,
-        "at_ub": at_lb + n,
+        "policy": _action(controller).value,
+        "at_decision": columns["decision"].start,
+        "guard": GUARD * bool(step.yielding.stop),
         "at_dq": columns["dq"].start,
         "at_targets": columns["targets"].start,
         "code": translator.text(),
@@ -148,6 +152,28 @@ def _arrays(translator: Translator, step: ControlStep) -> Value:
         Value(DOUBLE, "rate"),
     ]
     return Value(translator.named_tuple(ProgramArrays, values), "arrays", pointer=True)
+
+
+def _action(controller: Controller) -> Action:
+    """Return the action that a controller's policy asks for at a step without a solution."""
+    if controller.mode == "continuous":
+        return Action.STOP
+    return {"slow": Action.SLOW, "relax": Action.RELAX}.get(controller.policy, Action.STOP)
+
+
+def _yielding(translator: Translator, step: ControlStep) -> Value:
+    """Return what relaxed programs need beside a step's own."""
+    own = step.yielding
+    values = [
+        translator.table("row_weights", own.weights),
+        translator.table("elastic_rows", own.elastic),
+        translator.table("motion_constants", own.limits),
+        translator.table("relaxed_settings", own.settings),
+        translator.table("scenes", own.scenes),
+        Value(DOUBLE, "dt"),
+        *(Value(Known("int", address)) for address in own[-5:]),
+    ]
+    return Value(translator.named_tuple(Yielding, values), "yielding", pointer=True)
 
 
 def _array(name: str, *shape: int) -> Value:

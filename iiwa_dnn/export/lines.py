@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 WIDTH = 100
 
-# Words of C and macros of its headers that a Python name may not become.
+# Words of C, macros of its headers and functions that are looked for in vain: no Python name
+# becomes one of them.
 _TAKEN = re.findall(
     r"\w+",
     "auto break case char const continue default do double else enum extern float for goto if "
     "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while bool true false NAN INFINITY I",
+    "union unsigned void volatile while bool true false NAN INFINITY I malloc free alloca",
 )
 
 _PURE = re.findall(

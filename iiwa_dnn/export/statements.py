@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,6 +68,11 @@ class Body(Expressions):
         self._wide = wide
         parameters = [argument.arg for argument in tree.args.args]
         self._stores = Counter([*parameters, *_stored(tree)])
+
+    def take(self, parameters: dict[str, Value]) -> None:
+        """Begin with parameters; one that is written later is not known."""
+        for name, own in parameters.items():
+            self.names[name] = own if self._stores[name] == 1 else replace(own, known=None)
 
     def block(self, statements: Sequence[ast.stmt]) -> bool:
         """Translate statements; return whether the last of them leaves the block."""

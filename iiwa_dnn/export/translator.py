@@ -163,7 +163,7 @@ class Translator:
         wide: frozenset[str] = frozenset()
         while True:
             body = Body(self, function, file, tree, wide)
-            body.names.update(names)
+            body.take(names)
             try:
                 body.block(tree.body)
             except WideError as error:

@@ -61,6 +61,14 @@ class Scalar:
     tag: str
 
 
+@dataclass(frozen=True)
+class Known(Scalar):
+    """A number of a named tuple that is known when the code is made; C does not have it."""
+
+    value: int = 0
+    is_table = True
+
+
 INT = Scalar("int")
 DOUBLE = Scalar("double")
 BOOL = Scalar("bool")
@@ -178,7 +186,10 @@ class Value:
             return self.items
         if isinstance(kind, Struct):
             dot = "->" if self.pointer else "."
-            return [Value(own, f"{self.at(ATOM)}{dot}{name}") for name, own in kind.fields]
+            fields = [Value(own, f"{self.at(ATOM)}{dot}{name}") for name, own in kind.fields]
+            return [
+                integer(own.kind.value) if isinstance(own.kind, Known) else own for own in fields
+            ]
         start, size = (".at", kind.length) if isinstance(kind, Tuple) else ("", kind.shape[0])
         texts = [f"{self.at(ATOM)}{start}[{k}]" for k in range(int(size))]
         known = getattr(kind, "content", None) or [None] * len(texts)

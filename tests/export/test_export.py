@@ -42,24 +42,29 @@ def test_commands_are_pythons_in_closed_loop(name: str, tmp_path: Path) -> None:
     ours = q0.copy()
     theirs = q0.copy()
     active = 0
+    actions = set()
     reaches_limits = name in ("velocity limits active", "collisions, 21 pairs")
-    for k in range(2000 if reaches_limits else 500):
-        targets = controller.targets(k * dt)
+    yields = name.startswith(("without", "yielding", "braking"))
+    for k in range(2000 if reaches_limits or yields else 500):
+        targets = controller.targets(k * dt - controller.delay)
+        sampled = exported.target(k * dt)
+        np.testing.assert_allclose(sampled, targets.ravel(), rtol=0, atol=1e-9 if yields else 1e-11)
         command = controller.step(ours, k * dt)
         dq, action = exported.step(theirs, targets)
         assert action == command.action
+        actions.add(action)
         difference = np.abs(dq - command.dq) / controller.robot.dq_max
         assert difference.max() < 1e-9
         solution = command.solution
         active += bool((np.abs(solution.z_box) > 1e-9).any() or (solution.z > 1e-9).any())
-        if exported.has_reference:
-            np.testing.assert_allclose(exported.target(k * dt), targets.ravel(), rtol=0, atol=1e-11)
         ours = ours + dt * command.dq
         theirs = theirs + dt * dq
     assert exported.has_reference
     assert np.abs(ours - q0).max() > 1e-4
     if reaches_limits:
         assert active > 50
+    if yields:
+        assert len(actions) > 1
 
 
 def test_the_folder_passes_its_own_test_with_the_code_free_of_undefined_behaviour(
@@ -139,7 +144,7 @@ def test_size_and_stated_memory(heart: Path, tmp_path: Path) -> None:
     run("gcc", "-std=c99", "-Os", "-c", "-o", tmp_path / "controller.o", heart / "controller.c")
     columns = run("size", tmp_path / "controller.o").splitlines()[1].split()
     text, data, bss = map(int, columns[:3])
-    assert text <= 24_000
+    assert text <= 36_000  # with the relaxed programs, each of a size of its own
     assert data == bss == 0
     assert loaded(heart).size <= 16_000
 

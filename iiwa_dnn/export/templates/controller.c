@@ -9,6 +9,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Places in the row, and the action that the policy asks for at a step without a solution. */
+#define AT_TARGETS @at_targets@
+#define AT_DECISION @at_decision@
+#define AT_DQ @at_dq@
+#define POLICY @policy@
+#define WRITE 1
+
 /* The size that the header states. */
 typedef char controller_size[sizeof(struct controller) == CONTROLLER_SIZE ? 1 : -1];
 
@@ -29,6 +36,18 @@ static struct program_arrays controller_arrays(struct controller *c)
     return arrays;
 }
 
+/* Assigned, and not initialized: compilers would keep a copy of that in memory. */
+static struct yielding controller_yielding(void)
+{
+    struct yielding yielding;
+    yielding.weights = row_weights;
+    yielding.elastic = elastic_rows;
+    yielding.limits = motion_constants;
+    yielding.settings = relaxed_settings;
+    yielding.dt = CONTROLLER_DT;
+    return yielding;
+}
+
 static bool all_finite(const double *values, int count)
 {
     double sum = 0.0;
@@ -36,27 +55,6 @@ static bool all_finite(const double *values, int count)
         sum += values[i] * 0.0;
     }
     return sum == 0.0;
-}
-
-static void forget_state(struct controller *c)
-{
-    for (int i = 0; i < @state@; i++) {
-        c->state[i] = 0.0;
-    }
-}
-
-/* Stop within the bounds of the step's program: a program without a solution has no better answer. */
-static int step_without_solution(struct controller *c, double *dq)
-{
-    const double *lower = c->row + @at_lb@;
-    const double *upper = c->row + @at_ub@;
-    for (int i = 0; i < CONTROLLER_DOF; i++) {
-        dq[i] = lower[i] > 0.0 ? lower[i] : (upper[i] < 0.0 ? upper[i] : 0.0);
-        c->following[CONTROLLER_DOF + i] = dq[i];
-        c->following[2 * CONTROLLER_DOF + i] = c->past[CONTROLLER_DOF + i];
-        c->following[3 * CONTROLLER_DOF + i] = dq[i];
-    }
-    return CONTROLLER_STOP;
 }
 
 void controller_init(struct controller *c)
@@ -74,24 +72,36 @@ int controller_step(struct controller *c, const double *q, const double *target,
         return CONTROLLER_INVALID;
     }
     const struct program_arrays arrays = controller_arrays(c);
-    const struct pair clock = {{c->steps * CONTROLLER_DT, c->delay}};
+    const struct yielding yielding = controller_yielding();
+    const double t = c->steps * CONTROLLER_DT;
+    const struct pair clock = {{t, c->delay}};
+    bool solved = false;
+    int action = 0;
     kinematics(q, c->jacobian, c->placements);
     for (int i = 0; i < 18 * CONTROLLER_FRAMES; i++) {
-        c->row[@at_targets@ + i] = target[i];
+        c->row[AT_TARGETS + i] = target[i];
     }
-    int action = 0;
-    bool solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, 1);
-    if (!solved) {
-        forget_state(c);
-        solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, 1);
-    }
-    if (solved) {
+    if (c->yields) {
         for (int i = 0; i < CONTROLLER_DOF; i++) {
-            dq[i] = c->row[@at_dq@ + i];
+            c->past[i] = q[i];
+        }
+        write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
+        for (int i = 0; i < 3; i++) {
+            c->row[AT_DECISION + i] = 0.0;
         }
     } else {
-        forget_state(c);
-        action = step_without_solution(c, dq);
+        solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, WRITE)@guard@;
+    }
+    if (!solved) {
+        action = yield_step(c->row, &arrays, c->past, c->following, c->state, &yielding, POLICY,
+            c->yields != 0);
+        c->yields = action == CONTROLLER_SLOW || action == CONTROLLER_RELAX;
+    }
+    if (action != 0) {
+        c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);
+    }
+    for (int i = 0; i < CONTROLLER_DOF; i++) {
+        dq[i] = c->row[AT_DQ + i];
     }
     for (int i = 0; i < @past@; i++) {
         c->past[i] = c->following[i];

@@ -29,6 +29,8 @@ struct controller {
     double placements[@placements@];  /* of the frames */
     double steps;              /* steps since controller_init */
     double delay;              /* time by which the reference's clock is behind [s] */
+    int yields;                /* whether the task yielded at the last step */
+    int unused;                /* keeps the size the same everywhere */
 };
 
 /* Begin at rest. */
