@@ -138,9 +138,23 @@ def functions(x: np.ndarray, out: np.ndarray) -> None:
     out[3] = np.pi / (x[0] - (x[1] - x[2])) / x[2] - -x[0]
 
 
+def _capped(x: float, count: int) -> float:
+    if x > 1.0:
+        count = LIMIT
+    return x * count if count == LIMIT else -x
+
+
+def parameters(x: np.ndarray, out: np.ndarray) -> None:
+    """Call a function with a known number, which it changes."""
+    out[0] = _capped(x[0], 2)
+    out[1] = _capped(-x[0], 2)
+    free = x[1]
+    out[2] = free
+
+
 @pytest.mark.parametrize(
     ("function", "sizes"),
-    [(integers, (2, 36)), (conditions, (2, 10)), (functions, (3, 4))],
+    [(integers, (2, 36)), (conditions, (2, 10)), (functions, (3, 4)), (parameters, (2, 3))],
     ids=lambda each: getattr(each, "__name__", ""),
 )
 def test_c_computes_what_python_does(function, sizes: tuple[int, ...], tmp_path: Path) -> None:
