@@ -222,14 +222,14 @@ class Controller:
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
         asks = not state.yields and state.halted is None
-        if step.has_network and asks:
-            network = self._network_state(layout)
+        network = self._warm_state(step) if asks else None
+        if network is not None:
             clock = (t, state.delay)
             if step.run(
                 row, step.arrays, joints, state.past, state.following, network, clock, begin
             ) and self._is_stoppable(step):
                 return Command(row, layout)
-            return self._yield(step, row, network)
+            return self._yield(step, row)
         state.past[Q] = joints
         return self._compute_in_python(step, row, t, begin, asks)
 
@@ -266,7 +266,7 @@ class Controller:
         qp = QP.from_data(data, layout.sizes)
         if not asks:
             layout.view(row, "decision")[:] = 0.0  # the network was not asked
-            return self._yield(step, row, self._network_state(layout))
+            return self._yield(step, row)
         if self.mode == "converged":
             solution = solver.solve(qp)
             solved = solution.status is Status.SOLVED
@@ -279,16 +279,18 @@ class Controller:
         self._send(step, row)
         if solved and self._is_stoppable(step):
             return Command(row, layout)
-        return self._yield(step, row, self._network_state(layout))
+        return self._yield(step, row)
 
-    def _network_state(self, layout: RowLayout) -> Vector:
-        """Return the state from which the projection network starts, (size,)."""
+    def _warm_state(self, step: ControlStep) -> Vector | None:
+        """Return the state from which a compiled network starts, (size,); None if it has none."""
+        if not step.has_network:
+            return None
         solver = self.solver
-        n, m, p = layout.sizes
-        if not is_projection(solver.network):
-            return np.zeros(3 * n + m + p)
-        warm = solver.warm_state(layout.sizes)
-        return solver.cold_state(layout.sizes) if warm is None else warm
+        sizes = step.layout.sizes
+        warm = solver.warm_state(sizes)
+        if warm is None and is_projection(solver.network):
+            warm = solver.cold_state(sizes)
+        return warm
 
     def _is_stoppable(self, step: ControlStep) -> bool:
         """Test whether the arm can brake from a command without coming near to an obstacle."""
@@ -297,7 +299,7 @@ class Controller:
         state = self._state
         return bool(guard_step(step.arrays, state.past, state.following, step.yielding))
 
-    def _yield(self, step: ControlStep, row: Vector, network: Vector) -> Command:
+    def _yield(self, step: ControlStep, row: Vector) -> Command:
         """Answer a step without a solution as the policy says."""
         state = self._state
         layout = step.layout
@@ -308,11 +310,13 @@ class Controller:
         checks.finite_array("target", targets, targets.shape)
         if policy == "raise" and halted is None:
             self._raise(QP.from_data(layout.view(row, "program"), layout.sizes))
-        action = Action.SLOW if policy == "slow" else Action.RELAX
-        if step.program.accelerates and policy == "slow":
-            action = Action.RELAX  # the clock of an arm in motion cannot be slowed down at once
-        if policy == "stop" or halted is not None or self.mode == "continuous":
-            action = Action.STOP
+        action = Action.STOP
+        if halted is None and self.mode == "converged":
+            action = step.actions[policy]
+        n, m, p = layout.sizes
+        network = self._warm_state(step)
+        if network is None or not is_projection(self.solver.network):
+            network = np.zeros(3 * n + m + p)
         taken = yield_step(
             row,
             step.arrays,

@@ -22,6 +22,7 @@ from iiwa_dnn.control.command import (
     RowLayout,
     row_views,
 )
+from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import make_yielding
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.control.yielding import with_limits
@@ -42,7 +43,7 @@ from iiwa_dnn.schemes.program import (
 )
 
 FEASIBLE_BUDGET = 60.0
-"""Linear systems after which a program counts as one without a solution."""
+"""Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
 
 SAMPLE, WRITE, ANSWER = range(3)
 """Where a control step begins: at the targets, at the program, at the answer."""
@@ -61,6 +62,7 @@ class ControlStep:
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
         yielding: What relaxed programs need beside a step's own.
+        actions: Action of each policy at a step without a solution.
     """
 
     def __init__(
@@ -91,6 +93,9 @@ class ControlStep:
         self.arrays = program.arrays(dt)
         self.run = self._entry()
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
+        # At the acceleration level the clock of an arm in motion cannot be slowed down at once.
+        slow = Action.RELAX if program.accelerates else Action.SLOW
+        self.actions = {"slow": slow, "relax": Action.RELAX, "stop": Action.STOP}
 
     @property
     def yields(self) -> bool:
@@ -107,8 +112,9 @@ class ControlStep:
         if answer is None:
             program.append(0, np.zeros(0))
             return False
-        # A program that a few systems do not solve most likely has no solution.
-        answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
+        if program.rate_limits is not None:
+            # A program that a few systems do not solve most likely has no solution.
+            answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
         program.append(answer.address, answer.constants, answer.rates)
         return True
 

@@ -90,7 +90,7 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     reasons = []
     if incidents["fallback_steps"]:
         steps = _count(incidents["fallback_steps"])
-        unsettled = "answered by the reference: the network did not settle"
+        unsettled = "answered at a second attempt: the network did not settle"
         reasons.append(f"{steps} {unsettled}{at if fell_back else ''}")
     done = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
     if any(done.values()):

@@ -22,7 +22,7 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.simulation.loop import Outcome
 
 PATIENCE = 100
-"""Consecutive fallbacks to the reference solver after which a run warns."""
+"""Consecutive second attempts after which a run warns."""
 
 _OF_THE_CHECK = {"solution_gap", "objective_gap", "reference_residual", "t"}
 
@@ -156,7 +156,7 @@ class Recorder:
         if self._series == PATIENCE:
             warnings.warn(
                 f"step {k}: the network did not settle in {PATIENCE} steps in a row, and the "
-                "reference solver answered in its place",
+                "answer of a second attempt was taken",
                 stacklevel=2,
             )
 

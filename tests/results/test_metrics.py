@@ -391,7 +391,7 @@ def test_the_first_step_is_said_of_the_reason_that_it_belongs_to():
     action = np.array([0, 0, 1, 0, 0, 4, 0, 0, 0, 0])  # a fallback first, then a stop
     record = make_record(action=action, fraction=np.ones(10))
     assert failures(record) == [
-        "1 step answered by the reference: the network did not settle, the first at step 2 "
+        "1 step answered at a second attempt: the network did not settle, the first at step 2 "
         "(t = 0.2 s)",
         "1 step without a solution (1 stopped); in the way: no bound, a singular pose",
     ]

@@ -454,7 +454,7 @@ def test_a_budget_that_is_too_small_falls_back_to_the_reference() -> None:
     np.testing.assert_allclose(record.dq, run().dq, rtol=0, atol=1e-7)
     # Counted, and told: the network did not do what it is for.
     assert compute_metrics(record)["incidents"]["fallback_steps"] == 49
-    assert any("49 steps answered by the reference" in reason for reason in failures(record))
+    assert any("49 steps answered at a second attempt" in reason for reason in failures(record))
 
 
 @pytest.mark.parametrize(("steps", "count"), [(100, 0), (101, 1), (150, 1)])
