@@ -132,13 +132,17 @@ def _words_of_file(kind: type[Any], path: Path) -> list[str]:
         if isinstance(value, bool) != is_flag or isinstance(value, dict):
             wanted = "true or false" if is_flag else "a text, a number or a list"
             raise FileError(path, f"{key} must be {wanted}, not {value!r}")
-        if is_flag:
-            words.append(_option(name if value else f"no_{name}"))
-        elif isinstance(value, list):
-            words += [_option(name), *map(str, value)]
-        else:
-            words.append(f"{_option(name)}={value}")
+        words += _words_of_value(name, value)
     return words
+
+
+def _words_of_value(name: str, value: Any) -> list[str]:
+    """Return the words of the command line that set an option of this name."""
+    if isinstance(value, bool):
+        return [_option(name if value else f"no_{name}")]
+    if isinstance(value, list):
+        return [_option(name), *map(str, value)]
+    return [f"{_option(name)}={value}"]
 
 
 def _option(field: str) -> str:

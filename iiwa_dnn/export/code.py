@@ -17,6 +17,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
 from iiwa_dnn.export.values import BOOL, DOUBLE, Array, Known, Tuple, Value, integer
+from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
 from iiwa_dnn.schemes.program import ProgramArrays, write_program
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -104,7 +105,7 @@ def code_of(controller: Controller) -> Code:
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
-        "systems": ATTEMPTS * BUDGET,
+        "systems": _own_budget(step) + (ATTEMPTS - 1) * BUDGET,
         "size": _DOUBLE * (sum(sizes.values()) + 5 * dof + 3),
         "actions": _actions(),
         "policy": _action(controller).value,
@@ -152,6 +153,13 @@ def _arrays(translator: Translator, step: ControlStep) -> Value:
         Value(DOUBLE, "rate"),
     ]
     return Value(translator.named_tuple(ProgramArrays, values), "arrays", pointer=True)
+
+
+def _own_budget(step: ControlStep) -> int:
+    """Return the largest number of linear systems that the step's own program may take."""
+    entry = step.program.table[1 + step.program.table[0, 4]]
+    budget = step.program.constants[entry[4] + OWN_BUDGET]
+    return int(budget)
 
 
 def _action(controller: Controller) -> Action:
