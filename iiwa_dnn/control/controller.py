@@ -470,6 +470,10 @@ class Controller:
             twin.step(home, 0.0, poses)
         if self.reference is not None:
             twin.step(home, 0.0)
+        if self.mode == "converged":  # and a target that no arm reaches
+            twin.policy = "relax"
+            far = {name: Target(at.position + 99.0, at.rotation) for name, at in frames.items()}
+            twin.step(home, 0.0, far)
 
     def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
         """Return the targets of a time of the reference's clock [s], (k, 18), or those given.
