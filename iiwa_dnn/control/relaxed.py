@@ -199,7 +199,7 @@ def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector
     for _ in range(MAX_PASSES):
         before = point[n]
         for i in range(n):
-            scaled.q[i] = -row_dot(scaled.P, i, point[:n])
+            scaled.q[i] = -row_dot(scaled.P, i, point)
         if not settled(scaled, yielding, state, point):
             return np.nan
         if abs(point[n] - before) <= 0.1 * REACHED:
