@@ -308,8 +308,8 @@ class Controller:
         targets = layout.targets(row)
         checks.finite_array("q", state.past[Q], (layout.dof,))
         checks.finite_array("target", targets, targets.shape)
-        if policy == "raise" and halted is None:
-            self._raise(QP.from_data(layout.view(row, "program"), layout.sizes))
+        if policy == "raise" and halted is None and self.mode == "converged":
+            self._raise_unless_solved(QP.from_data(layout.view(row, "program"), layout.sizes))
         action = Action.STOP
         if halted is None and self.mode == "converged":
             action = step.actions[policy]
@@ -334,9 +334,11 @@ class Controller:
             self._send(step, row)
         return Command(row, layout, Action(taken))
 
-    def _raise(self, qp: QP) -> None:
-        """Raise the error of a program without a solution."""
+    def _raise_unless_solved(self, qp: QP) -> None:
+        """Raise the error of a program for which all attempts of the solver find no solution."""
         failed = self.solver.solve(qp)
+        if failed.found:
+            return
         message = "no joint velocity inside the bounds fulfils the task"
         problem = qp.to_qpsolvers()
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))

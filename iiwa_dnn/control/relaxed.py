@@ -85,7 +85,7 @@ REACHED = 1e-9
 
 
 class Yielding(NamedTuple):
-    """What relaxed programs need beside a step's own.
+    """Constants with which the relaxed programs of a scheme are written and answered.
 
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.

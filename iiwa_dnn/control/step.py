@@ -95,7 +95,9 @@ class ControlStep:
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
         # At the acceleration level the clock of an arm in motion cannot be slowed down at once.
         slow = Action.RELAX if program.accelerates else Action.SLOW
-        self.actions = {"slow": slow, "relax": Action.RELAX, "stop": Action.STOP}
+        # A program that has a solution after all is no reason to raise: `relax` finds it.
+        relax = Action.RELAX
+        self.actions = {"slow": slow, "relax": relax, "stop": Action.STOP, "raise": relax}
 
     @property
     def yields(self) -> bool:

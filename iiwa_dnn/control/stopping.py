@@ -47,7 +47,7 @@ SLACK = 1e-9
 
 
 class Instant(NamedTuple):
-    """What is known at a step, beside its program.
+    """Joints, kinematics and constants of one step.
 
     Attributes:
         q: Joint positions [rad], (dof,).

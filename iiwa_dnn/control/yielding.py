@@ -1,11 +1,12 @@
-"""What is done at a step without a solution, in one compiled call: limits hold, the task yields.
+"""Answers of steps without a solution, in one compiled call: limits hold, the task yields.
 
 `iiwa_dnn.control.policies` says what each policy means. With acceleration or jerk limits a command
 goes on a straight line towards the velocity that the softened program asks for. Where collisions
 are avoided too, a command is given only if it is stoppable (`iiwa_dnn.control.stopping`); if not,
 one nearer to the braking motion in hand is, and in the end that motion itself.
 
-Every way through `yield_step` ends after `ATTEMPTS` times `relaxed.BUDGET` linear systems.
+After the step's own program, every way through `yield_step` ends after `ATTEMPTS` - 1 programs of
+`relaxed.BUDGET` linear systems.
 """
 
 import math
@@ -33,7 +34,6 @@ from iiwa_dnn.control.relaxed import (
     nearest_within,
     note_blocking,
     on_rows,
-    settled,
 )
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.control.stopping import (
@@ -46,18 +46,19 @@ from iiwa_dnn.control.stopping import (
     next_velocity,
     stopping_time,
 )
+from iiwa_dnn.networks.integrators.base import TOLERANCE, enter_answer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import VECTOR, Signature
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, compiled, qp_views
-from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
 ATTEMPTS = 13
-"""Programs of `relaxed.BUDGET` linear systems at most: the step's own, five passes of the scaled
-one, then three times the step's own from its last state and from a cold start, and the softened one
-or that of the nearest command."""
+"""Programs at most: the step's own with a budget of its own, five passes of the scaled one, then
+three times the step's own from its last state and from a cold start, and the softened one or that
+of the nearest command."""
 
 NONE = int(Action.NONE)
 FALLBACK = int(Action.FALLBACK)
@@ -183,21 +184,32 @@ def _is_path(targets: Matrix) -> bool:
 def _answered(views: RowViews, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
     """Let the network answer a program from its last state or, if need be, from a cold start."""
     tried = state.copy()
-    solved = settled(qp, yielding, tried, views.point)
-    if not solved:
+    settings = yielding.settings
+    total = 0.0
+    for _ in range(2):
+        systems, time, primal, dual, gap = enter_answer(
+            yielding.answer, qp, 0, settings, tried, views.point
+        )
+        total += systems
+        if within(primal, dual, gap, settings[TOLERANCE]):
+            for i in range(tried.size):
+                state[i] = tried[i]
+            views.figures[0] = total
+            views.figures[1] = time
+            views.figures[2] = primal
+            views.figures[3] = dual
+            views.figures[4] = gap
+            views.decision[1] = 1.0
+            views.decision[2] = SOLVED
+            return True
         for i in range(tried.size):
             tried[i] = 0.0
-        solved = settled(qp, yielding, tried, views.point)
-    if solved:
-        for i in range(tried.size):
-            state[i] = tried[i]
-        _judge(views, qp, 1.0, SOLVED)
-    return solved
+    return False
 
 
 @compiled
 def _judge(views: RowViews, qp: QPViews, fraction: float, status: int) -> None:
-    """Note the residuals of the answer, how far the clock advances, and a status."""
+    """Note the residuals of a decided answer, how far the clock advances, and a status."""
     views.figures[0] = 0.0
     views.figures[1] = 0.0
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)

@@ -111,7 +111,7 @@ def resolve(
     taken = yield_step(row, arrays, past, following, state, relaxing, int(action), False)
     status = tuple(Status)[int(views.decision[2])]
     figures = views.figures.tolist()
-    solution = Solution(views.point, qp.sizes, status, 0, 0.0, *figures[2:])
+    solution = Solution(views.point, qp.sizes, status, int(figures[0]), 0.0, *figures[2:])
     answered = QP.from_data(views.program, qp.sizes)
     sides = views.blocking[:n].astype(np.int8)
     rows = views.blocking[n:].astype(np.int8)
@@ -318,6 +318,7 @@ def test_a_program_that_has_a_solution_gets_it_at_a_second_attempt(
     answer = resolve(qp, policy)
     assert answer.action is Action.FALLBACK
     assert answer.fraction == 1.0
+    assert answer.solution.iterations > 0
     np.testing.assert_array_equal(answer.qp.data, qp.data)
     assert answer.solution.residuals.largest <= 1e-9
     other = qpsolvers.solve_problem(qp.to_qpsolvers(), solver="proxqp")
@@ -466,3 +467,23 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     codes = {action.name.lower(): int(action) for action in Action}
     assert codes == {"none": 0, "fallback": 1, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
     assert {code: name for name, code in codes.items() if code} == ACTIONS
+
+
+def test_raise_takes_a_solution_that_the_first_attempt_has_missed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    controller = Controller(paper_robot(), DoubleIndicator(), policy="raise")
+    start = paper_start()
+    near = Target(start.position + [1e-3, 0.0, 0.0], start.rotation)
+    expected = controller.step(PAPER_Q0, 0.0, near).dq
+    layout = controller.layout
+    qp = DoubleIndicator(home=PAPER_Q0).build_qp(start, near)
+
+    def missed(row: np.ndarray, *given: object) -> bool:
+        layout.view(row, "program")[:] = qp.data
+        return False
+
+    monkeypatch.setattr(controller._laid_out()[0], "run", missed)
+    command = controller.step(PAPER_Q0, 0.0, near)
+    assert command.action is Action.FALLBACK
+    np.testing.assert_allclose(command.dq, expected, rtol=0, atol=1e-7)
