@@ -15,6 +15,7 @@ ORDER = (
     "errors",
     "checks",
     "files",
+    "naming",
     "robot",
     "references",
     "qp",
@@ -31,7 +32,7 @@ ORDER = (
 )
 
 # It reads a Record and recomputes nothing: robot, solver and simulation are out of its sight.
-BEFORE_THE_RECORD = {"errors", "checks", "files"}
+BEFORE_THE_RECORD = {"errors", "checks", "files", "naming"}
 # What draws the robot itself needs its shapes too, and nothing else of it.
 DRAW_THE_ROBOT = {"pictures", "scenery"}
 

@@ -15,6 +15,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 from iiwa_dnn.qp.layout import Sizes, compiled
+from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 FIGURES = 5
@@ -23,6 +24,8 @@ PLACEMENT = 12
 """Numbers of a frame's placement, as `Kinematics.placements` has them."""
 DECISION = 3
 """Numbers of a decision: action, share of the period, status."""
+PAST = 3
+"""Rows of what a program was built at: joint positions, last command and the one before."""
 
 STATUSES = tuple(Status)
 """Statuses by their number in a row."""
@@ -37,7 +40,8 @@ class RowViews(NamedTuple):
         point: The answer, `Solution.point`, (2 n + m + p,).
         figures: Iterations, network time, primal and dual residual, gap, (5,).
         placement: Placement of the first tracked frame, (12,).
-        q: Joint positions that the program was built at [rad], (dof,).
+        past: Joint positions that the program was built at [rad], last command and the one before
+            it [rad/s], (3, dof).
         dq: Command [rad/s], (dof,).
         decision: Action, share of the period by which the reference's clock advances, and number of
             the answer's status in `STATUSES`, (3,).
@@ -50,7 +54,7 @@ class RowViews(NamedTuple):
     point: Vector
     figures: Vector
     placement: Vector
-    q: Vector
+    past: Matrix
     dq: Vector
     decision: Vector
     blocking: Vector
@@ -58,7 +62,7 @@ class RowViews(NamedTuple):
 
 
 _V = VECTOR
-ROW_VIEWS = types.BaseTuple.from_types((_V, _V, _V, _V, _V, _V, _V, _V, MATRIX), RowViews)
+ROW_VIEWS = types.BaseTuple.from_types((_V, _V, _V, _V, MATRIX, _V, _V, _V, MATRIX), RowViews)
 """numba's type of `RowViews`, for a `Signature`."""
 
 
@@ -68,8 +72,8 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     at_point = (n + m + p) * (n + 1) + 2 * n
     at_figures = at_point + 2 * n + m + p
     at_placement = at_figures + FIGURES
-    at_q = at_placement + PLACEMENT
-    at_dq = at_q + dof
+    at_past = at_placement + PLACEMENT
+    at_dq = at_past + PAST * dof
     at_decision = at_dq + dof
     at_blocking = at_decision + DECISION
     at_targets = at_blocking + n + m
@@ -77,8 +81,8 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
         row[:at_point],
         row[at_point:at_figures],
         row[at_figures:at_placement],
-        row[at_placement:at_q],
-        row[at_q:at_dq],
+        row[at_placement:at_past],
+        row[at_past:at_dq].reshape(PAST, dof),
         row[at_dq:at_decision],
         row[at_decision:at_blocking],
         row[at_blocking:at_targets],
@@ -95,17 +99,21 @@ class RowLayout:
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
         dq: Columns of the command.
+        names: Names of the limits; None where nobody asks for them.
     """
 
-    def __init__(self, sizes: Sizes, dof: int, frames: int) -> None:
+    def __init__(
+        self, sizes: Sizes, dof: int, frames: int, names: LimitNames | None = None
+    ) -> None:
         """Lay out rows for programs of these sizes, and a number of tracked frames."""
+        self.names = names
         n, m, p = sizes
         lengths = {
             "program": (n + m + p) * (n + 1) + 2 * n,
             "point": 2 * n + m + p,
             "figures": FIGURES,
             "placement": PLACEMENT,
-            "q": dof,
+            "past": PAST * dof,
             "dq": dof,
             "decision": DECISION,
             "blocking": n + m,
@@ -199,6 +207,11 @@ class Command:
         return QP.from_data(self._layout.view(self.row, "program"), self._layout.sizes)
 
     @property
+    def past(self) -> Matrix:
+        """Joint positions [rad], last command and the one before it [rad/s], (3, n), a view."""
+        return self._layout.view(self.row, "past").reshape(PAST, -1)
+
+    @property
     def targets(self) -> Matrix:
         """Targets of the tracked frames, (k, 18)."""
         return self._layout.targets(self.row)
@@ -245,15 +258,9 @@ class Command:
     def _against(self) -> list[str]:
         """Return the limits that stood in the way, in words."""
         found = self.resolution
-        if found is None:
+        if found is None or self._layout.names is None:
             return []
-        sides = {"lower": found.sides < 0, "upper": found.sides > 0}
-        names = [
-            f"joint {joint + 1} {side} bound"
-            for side, blocking in sides.items()
-            for joint in np.flatnonzero(blocking)
-        ]
-        return names + [f"inequality row {row + 1}" for row in np.flatnonzero(found.rows)]
+        return self._layout.names.in_words(found.qp, found.sides, found.rows, self.past)
 
 
 _WORDS = {

@@ -275,7 +275,7 @@ class Controller:
             solved = solution.status is Status.ADVANCED
         layout.fill(row, qp, solution)
         layout.view(row, "placement")[:] = program.placement
-        layout.view(row, "q")[:] = state.past[Q]
+        layout.view(row, "past")[:] = state.past[: LAST + 2].ravel()
         self._send(step, row)
         if solved and self._is_stoppable(step):
             return Command(row, layout)
@@ -309,7 +309,7 @@ class Controller:
         checks.finite_array("q", state.past[Q], (layout.dof,))
         checks.finite_array("target", targets, targets.shape)
         if policy == "raise" and halted is None and self.mode == "converged":
-            self._raise_unless_solved(QP.from_data(layout.view(row, "program"), layout.sizes))
+            self._raise_unless_solved(QP.from_data(layout.view(row, "program"), layout.sizes), step)
         action = Action.STOP
         if halted is None and self.mode == "converged":
             action = step.actions[policy]
@@ -334,12 +334,19 @@ class Controller:
             self._send(step, row)
         return Command(row, layout, Action(taken))
 
-    def _raise_unless_solved(self, qp: QP) -> None:
+    def _raise_unless_solved(self, qp: QP, step: ControlStep) -> None:
         """Raise the error of a program for which all attempts of the solver find no solution."""
         failed = self.solver.solve(qp)
         if failed.found:
             return
-        message = "no joint velocity inside the bounds fulfils the task"
+        message = "no joint velocity inside the limits fulfils the task"
+        names = step.layout.names
+        if failed.status is Status.PRIMAL_INFEASIBLE and failed.certificate is not None and names:
+            _, m, p = qp.sizes
+            rows = failed.certificate[p : p + m]
+            past = self._state.past[: LAST + 2]
+            against = names.in_words(qp, failed.certificate[p + m :], rows, past)
+            message += f", against {', '.join(against)}" if against else ""
         problem = qp.to_qpsolvers()
         raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
 

@@ -17,6 +17,7 @@ from iiwa_dnn.control.command import (
     ADVANCED,
     NOT_FINITE,
     NOT_SETTLED,
+    PAST,
     PLACEMENT,
     SOLVED,
     RowLayout,
@@ -34,6 +35,7 @@ from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
+from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.schemes.program import (
     ProgramArrays,
     StepProgram,
@@ -85,7 +87,8 @@ class ControlStep:
         self.program = program
         self.version = solver.version
         frames = program.target_frames
-        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames))
+        names = LimitNames(program, dt)
+        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
         self.begin = SAMPLE if self._add_paths(references) else WRITE
         if not program.is_compiled:
@@ -188,7 +191,8 @@ def control_step(
     t, delay = clock
     for i in range(dof):
         past[Q, i] = q[i]
-        views.q[i] = q[i]
+        for k in range(PAST):
+            views.past[k, i] = past[k, i]
     if begin == SAMPLE:
         sample_targets(arrays, t - delay, views.targets)
     if begin <= WRITE:

@@ -16,6 +16,7 @@ from numba import types
 
 from iiwa_dnn.control.command import (
     NOT_SETTLED,
+    PAST,
     PLACEMENT,
     ROW_VIEWS,
     SOLVED,
@@ -155,7 +156,7 @@ def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding) -> None:
     note_blocking(point, n, m, 1, views.blocking)
     if not factor >= 0.0:
         limits = np.empty(2 * n + m + held_rows(yielding.weights))
-        if not enter_violation(yielding.violation, qp, yielding, views.q, limits):
+        if not enter_violation(yielding.violation, qp, yielding, views.past[Q], limits):
             note_blocking(limits, n, m, 0, views.blocking)
 
 
@@ -590,7 +591,8 @@ def yield_step(
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
     for i in range(dof):
-        views.q[i] = past[Q, i]
+        for k in range(PAST):
+            views.past[k, i] = past[k, i]
         views.dq[i] = views.point[i]
         following[BEFORE, i] = past[LAST, i]
         following[LAST, i] = views.point[i]

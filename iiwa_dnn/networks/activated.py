@@ -27,7 +27,7 @@ from iiwa_dnn.qp.layout import Triple, Vector
 from iiwa_dnn.qp.program import QP
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ActivatedNetwork(Network):
     """A network of the package or of one's own, with an activation of the norm of its rates.
 

@@ -69,7 +69,7 @@ def evaluate_rates(
     enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Network(ABC):
     """A dynamic neural network for one quadratic program after another.
 

@@ -60,7 +60,7 @@ class _Dual(NamedTuple):
     upper: Vector
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class DualNetwork(Network):
     """The single-layer dual network, with p + m + n states: 14 for seven joints and rows.
 
@@ -119,7 +119,7 @@ class DualNetwork(Network):
         return 2.0 / max(float(np.linalg.eigvalsh(self._dual(qp).gram)[-1]), 1.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SimplifiedDualNetwork(DualNetwork):
     """The simplified dual network, with m + n states: 7 for seven joints and seven task rows."""
 

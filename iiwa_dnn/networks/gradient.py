@@ -22,7 +22,7 @@ from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class GradientNetwork(ZeroingNetwork):
     """The gradient network; the zeroing network's activation and form, no integral, no growth."""
 

@@ -31,7 +31,7 @@ from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class OneLayerNetwork(PrimalDualNetwork):
     """The one-layer network, with n + p + m states.
 

@@ -29,7 +29,7 @@ from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PrimalDualNetwork(Network):
     """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
 

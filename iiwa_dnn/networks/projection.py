@@ -134,7 +134,7 @@ def stable_step_of(data: Vector, n: int, m: int, p: int, active: Vector) -> floa
     return stable_step(qp_views(data, n, m, p), active)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ProjectionNetwork(Network):
     """The paper's network for one quadratic program after another.
 

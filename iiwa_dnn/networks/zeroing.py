@@ -36,7 +36,7 @@ from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ZeroingNetwork(Network):
     """The zeroing network, with n + p + m states, and as many again with the integral.
 

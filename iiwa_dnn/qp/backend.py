@@ -26,8 +26,9 @@ def register() -> None:
     From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
     Keyword arguments: ``eps_abs``, the absolute tolerance on primal residual, dual residual and gap
-    (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or
-    nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
+    (1e-9); ``eps_rel``, which adds nothing to it: an answer is then within both together. The
+    start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex
+    problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """
     from qpsolvers import solvers
 
@@ -42,6 +43,7 @@ def _solve_problem(
     initvals: Vector | None = None,
     verbose: bool = False,
     eps_abs: float = 1e-9,
+    eps_rel: float = 0.0,
 ) -> qpsolvers.Solution:
     """Solve a problem as qpsolvers' own functions do; see `register`."""
     from qpsolvers import ProblemError

@@ -275,6 +275,10 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
     if n == 0:
         raise InvalidInputError("q", "is empty", given[1])
     require_pairs(given)
+    if arrays[0].size != n * n:
+        # Either may be the wrong one.
+        problem = f"has shape {arrays[0].shape}, which does not go with q of {n}"
+        raise InvalidInputError("P", problem, given[0])
     _, m, p = (_rows(name, array, n) for name, array in zip("PGA", arrays[:5:2], strict=True))
     for name, array, shape in zip(FIELDS, arrays, field_shapes((n, m, p)), strict=True):
         if array.size != math.prod(shape):

@@ -8,6 +8,7 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
+from iiwa_dnn.naming import describe
 from iiwa_dnn.results.markdown import number
 from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics, limits, position_error
 from iiwa_dnn.results.record import Record
@@ -56,15 +57,6 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     ]
 
 
-def describe(limit: Mapping[str, Any]) -> str:
-    """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
-    if "row" in limit:
-        about = f" ({limit['about']})" if "about" in limit else ""
-        return f"row {limit['row']} of {limit['part']}{about}"
-    end = " limit" if limit["limit"] in ("position", "velocity") else ""
-    return f"joint {limit['joint']} {limit['side']} {limit['limit']}{end}"
-
-
 def path_completed(metrics: Mapping[str, Any]) -> list[str]:
     """Report an incomplete path as ``path completed 12.3 %``; a completed one has no line."""
     fraction = metrics.get("path_completed", 1.0)  # older metrics lack it
@@ -96,9 +88,12 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     if any(done.values()):
         counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items() if steps)
         steps = _count(sum(done.values()))
+        against = ", ".join(map(describe, first.get("against", ())))  # older metrics lack it
+        at += f", against {against}" if against else ""
+        often = "most often " if sum(done.values()) > 1 else ""
         reasons.append(
             f"{steps} without a solution ({counts}){'' if fell_back else at}; "
-            f"in the way: {_blocking(metrics)}{_far_start(record)}"
+            f"{often}in the way: {_blocking(metrics)}{_far_start(record)}"
         )
     if incidents["slow_steps"]:
         path_time = number(incidents["path_time_s"])

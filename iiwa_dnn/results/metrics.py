@@ -1,6 +1,6 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
 from typing import Any, NamedTuple
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
+from iiwa_dnn.naming import bound_name, bound_words, in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop", 5: "euler"}
@@ -125,18 +126,6 @@ def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
     values = record.settings[key]
     return np.array([unlimited if value is None else value for value in values], dtype=float)
-
-
-def bound_kinds(settings: Mapping[str, Any]) -> tuple[str, str]:
-    """Name the bounds of a run's joints, those below the velocity limit and those at it.
-
-    A bound may be another limit's than `JointLimits`; the settings list those under ``bounding``.
-    """
-    among = settings.get("bounding", ["JointLimits"])
-    own = "bound of " + " or ".join(name for name in among if name != "JointLimits")
-    if "JointLimits" not in among:
-        return own, own
-    return ("position" if len(among) == 1 else f"position limit or {own}"), "velocity"
 
 
 def compute_metrics(record: Record) -> dict[str, Any]:
@@ -308,16 +297,19 @@ def _incidents(record: Record) -> dict[str, Any]:
         return {}
     action = record.filled("action")
     blocking = record.filled("blocking")
-    # A bound is the velocity limit itself, or the tighter one near a position limit.
-    fast = np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max")
-    active = _bounds(record, record.filled("bound_multiplier"), fast)
+    kinds = record.bound_kind
+    if kinds is None:
+        # A bound is the velocity limit itself, or the tighter one near a position limit.
+        fast = np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max")
+        kinds = 1 + fast
+    active = _bounds(record, record.filled("bound_multiplier"), np.abs(kinds))
     return {
         "incidents": {
             "clipped_steps": record.filled("clipped").any(axis=1).sum(),
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
             "first": _first_action(record, action),
-            "blocking": _spells(record, _bounds(record, blocking, np.abs(blocking) == 2)),
+            "blocking": _spells(record, _bounds(record, blocking, np.abs(blocking))),
             "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
             "active_bounds": _spells(record, active, sized=True),
             "active_rows": _spells(record, _rows(record, "row_multiplier"), sized=True),
@@ -326,12 +318,14 @@ def _incidents(record: Record) -> dict[str, Any]:
 
 
 def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:
-    """Name the first step that a policy decided."""
+    """Name the first step that a policy decided, and what was in its way."""
     if not action.any():
         return None
     step = int(np.flatnonzero(action)[0])
     name = ACTIONS.get(int(action[step]), "unknown")
-    return {"step": step, "time_s": record.t[step], "action": name}
+    acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
+    against = in_the_way({"rows": (), **record.settings}, *acting)
+    return {"step": step, "time_s": record.t[step], "action": name, "against": against}
 
 
 def _collisions(record: Record) -> dict[str, Any]:
@@ -355,13 +349,13 @@ def _collisions(record: Record) -> dict[str, Any]:
     }
 
 
-def _bounds(record: Record, signed: Codes, at_velocity: BoolArray) -> Iterator[Named]:
+def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
     """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
-    sides = (("lower", -1), ("upper", 1))
-    kinds = enumerate(bound_kinds(record.settings))
-    for joint, (side, sign), (fast, limit) in product(range(record.dof), sides, kinds):
-        of_kind = at_velocity[:, joint] == fast
-        name = {"joint": joint + 1, "side": side, "limit": limit}
+    words = bound_words(record.settings)
+    codes = range(1, 1 + len(words))
+    for joint, sign, code in product(range(record.dof), (-1, 1), codes):
+        of_kind = kinds[:, joint] == code
+        name = bound_name(joint, sign * code, words)
         yield name, np.where(of_kind, sign * signed[:, joint], 0)
 
 

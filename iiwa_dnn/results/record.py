@@ -144,7 +144,17 @@ class Record:
         CodeArray | None,
         Column(
             "Bounds in the way of a solution: positive upper ones, negative lower ones; 1 for a "
-            "position limit, 2 for a velocity limit, 0 where none is in the way",
+            "position limit, 2 for a velocity, 3 for an acceleration, 4 for a jerk limit, 0 where "
+            "none is in the way",
+            ("N", "n"),
+            np.int8,
+        ),
+    ] = None
+    bound_kind: Annotated[
+        CodeArray | None,
+        Column(
+            "Kind of each bound with a multiplier, as in `blocking`. None if there is no "
+            "acceleration or jerk limit: a bound below the velocity limit is then of a position",
             ("N", "n"),
             np.int8,
         ),
@@ -235,9 +245,13 @@ class Record:
 
     @property
     def path_completed(self) -> float:
-        """Fraction of the path's duration that the reference's clock covered, 0 to 1."""
+        """Fraction of the path's duration that the reference's clock covered, 0 to 1.
+
+        The duration is the run's, or where the path has an end before that, the path's.
+        """
         dt = float(self.settings["dt"])
-        fraction = self.path_time / (dt * max(1, round(self.settings["duration"] / dt)))
+        duration = self.settings.get("path_duration", self.settings["duration"])
+        fraction = self.path_time / (dt * max(1, round(duration / dt)))
         return float(np.nan_to_num(np.clip(fraction, 0.0, 1.0)))
 
     def filled(self, name: str) -> NDArray[Any]:

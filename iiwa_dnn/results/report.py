@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
-from iiwa_dnn.results.failures import describe, failures, path_completed
+from iiwa_dnn.naming import describe
+from iiwa_dnn.results.failures import failures, path_completed
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
 from iiwa_dnn.results.plots import save_figures

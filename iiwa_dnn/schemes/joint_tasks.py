@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -46,7 +47,11 @@ class PostureTask(FeedbackTask):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        joints = {name: checks.finite("joints", value) for name, value in self.joints.items()}
+        given: Any = self.joints
+        if not isinstance(given, Mapping):
+            problem = "must be positions by joint name: dict(zip(robot.joint_names, q))"
+            raise InvalidInputError("joints", problem, given)
+        joints = {name: checks.finite("joints", value) for name, value in given.items()}
         self._set(joints=joints, rows=len(joints))
 
     def constants(self, robot: Robot) -> Vector:

@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
+from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.results.failures import describe
-from iiwa_dnn.results.metrics import bound_kinds
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, cut
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
 
 PATIENCE = 100
@@ -59,6 +59,8 @@ class Recorder:
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
         self.diverged = False
+        self._names = LimitNames(program, controller.dt)
+        self._tells_kinds = program.rate_limits is not None
         self._done = 0
         self._series = 0
         self.arrays: dict[str, NDArray[Any]] = {}
@@ -125,22 +127,11 @@ class Recorder:
 
     def stop_reason(self, k: int) -> str:
         """Describe the limits that stood in the way at step k, at which a policy stopped."""
-        kinds = bound_kinds(self._settings)
-        against = [
-            describe(
-                {
-                    "joint": i + 1,
-                    "side": "upper" if code > 0 else "lower",
-                    "limit": kinds[abs(code) - 1],
-                }
-            )
-            for i, code in enumerate(self.arrays["blocking"][k].tolist())
-            if code
-        ]
-        if "blocking_rows" in self.arrays:
-            rows = np.flatnonzero(self.arrays["blocking_rows"][k])
-            against += [describe(self._settings["rows"][i]) for i in rows]
-        return f", against {', '.join(against)}" if against else ""
+        codes = self.arrays["blocking"][k]
+        none = np.zeros((k + 1, len(self._settings["rows"])))
+        rows = self.arrays.get("blocking_rows", none)[k]
+        against = ", ".join(map(describe, in_the_way(self._settings, codes, rows)))
+        return f", against {against}" if against else ""
 
     def _array(self, name: str, **sizes: int) -> NDArray[Any]:
         """Return a column, allocated when it is first asked for."""
@@ -174,20 +165,24 @@ class Recorder:
             residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
+        if self._tells_kinds:
+            self._add_kinds(k, outcome.commands[0])
         resolution = outcome.commands[0].resolution
         if resolution is None:
             return
         self._array("fraction")[k] = resolution.fraction
-        robot = self._controller.robot
-        n = robot.dof
-        qp = resolution.qp
-        sides = resolution.sides[:n]
-        bound = np.where(sides > 0, qp.ub[:n], qp.lb[:n])
-        # Bounds that cross are others' than the robot's.
-        at_velocity = (np.abs(bound) >= robot.dq_max) & (qp.lb <= qp.ub)[:n]
-        self._array("blocking")[k] = sides * (1 + at_velocity)
+        sides = resolution.sides
+        past = outcome.commands[0].past
+        self._array("blocking")[k] = self._names.codes(resolution.qp, sides, past)
         if resolution.rows.any():
             self._array("blocking_rows", m=resolution.rows.size)[k] = resolution.rows
+
+    def _add_kinds(self, k: int, command: Command) -> None:
+        """Note of what kind the bounds with a multiplier are in step k."""
+        multipliers = self.layout.bound_multipliers(command.row)
+        if multipliers.any():
+            kinds = self._names.codes(command.qp, multipliers, command.past)
+            self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
         """Compute the kinetic index; a scheme of one's own may have its own, or none."""

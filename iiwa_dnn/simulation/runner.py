@@ -162,6 +162,7 @@ class Simulation:
         return {
             "dt": controller.dt,
             "duration": duration,
+            **_end_of_path(controller.reference, duration),
             "mode": controller.mode,
             "motion": self._motion if self._plant.exact else "physics",
             "policy": controller.policy,
@@ -287,6 +288,14 @@ def _reference_settings(reference: References | None) -> dict[str, Any]:
     if not isinstance(reference, Mapping):
         return {} if reference is None else reference.settings()
     return {"name": "frames"} | {name: path.settings() for name, path in reference.items()}
+
+
+def _end_of_path(reference: References | None, duration: float) -> dict[str, float]:
+    """Return the duration of a path that ends before the run of this duration does [s]."""
+    paths = by_frame(reference, "").values()
+    ends = [path.duration if path.period == np.inf else np.inf for path in paths]
+    end = max(ends, default=np.inf)
+    return {"path_duration": end} if end < duration else {}
 
 
 def step_count(duration: float, dt: float) -> int:

@@ -406,7 +406,8 @@ def test_a_step_that_raises_writes_nothing(
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err == (
-        "track_heart: error: step 403: no joint velocity inside the bounds fulfils the task\n"
+        "track_heart: error: step 403: no joint velocity inside the limits fulfils the task, "
+        "against joint 4 lower velocity limit\n"
     )
     assert list(tmp_path.iterdir()) == []
 

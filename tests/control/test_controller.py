@@ -126,7 +126,8 @@ def test_a_command_says_in_words_what_it_is() -> None:
     far = Target(start.position + [0.5, 0.0, 0.0], start.rotation)
     controller = Controller(paper_robot(), DoubleIndicator(), policy="stop")
     stopped = repr(controller.step(PAPER_Q0, 0.0, far))
-    assert stopped.endswith("no solution: stopped, against joint 4 lower bound; ok = False>")
+    reason = "no solution: stopped, against joint 4 lower velocity limit; ok = False>"
+    assert stopped.endswith(reason)
     controller.policy = "relax"
     assert "as near to the task as the limits allow, against" in repr(
         controller.step(PAPER_Q0, 0.0, far)

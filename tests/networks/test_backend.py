@@ -17,7 +17,8 @@ def test_qpsolvers_lists_the_network_once_and_solves_with_it() -> None:
     for seed in range(20):
         qp, known = programs.strictly_convex(np.random.default_rng([41, seed]), None, 1e2)
         problem = qp.to_qpsolvers()
-        x = qpsolvers.solve_qp(*problem.unpack(), solver="iiwa_dnn", initvals=known, eps_abs=1e-8)
+        options = {"solver": "iiwa_dnn", "eps_abs": 1e-8, "eps_rel": 1e-9}
+        x = qpsolvers.solve_qp(*problem.unpack(), initvals=known, **options)
         np.testing.assert_allclose(x, known, atol=1e-5)
         solution = qpsolvers.solve_problem(problem, solver="iiwa_dnn")
         assert solution.is_optimal(2e-9)

@@ -408,3 +408,16 @@ def test_rounding_of_the_cost_is_not_sharpened() -> None:
     solver = DNNSolver(tol=1e-6)
     solution = solver.solve(qp)
     assert solver.sharpen(qp, solution) is solution
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-12, 1e-7, 1e-3])
+def test_a_slight_cost_counts_as_any_other(size: float) -> None:
+    """min size (x^2 / 2 - x) within [0, 0.5] lies at the upper bound, whatever the size."""
+    bounds = {"lb": np.zeros(1), "ub": np.array([0.5])}
+    qp = QP(size * np.eye(1), np.array([-size]), **bounds)
+    solution = iiwa_dnn.solve_problem(qp)
+    assert solution.found
+    np.testing.assert_allclose(solution.x, [0.5], rtol=1e-9)
+    np.testing.assert_allclose(solution.z_box, [0.5 * size], rtol=1e-6)
+    nothing = iiwa_dnn.solve_problem(QP(np.zeros((1, 1)), np.zeros(1), **bounds))
+    assert nothing.found

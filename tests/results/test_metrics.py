@@ -364,7 +364,8 @@ def test_rows_in_the_way_are_named():
     assert found[0] == {"part": "Obstacle", "row": 1, **first}
     assert [row["row"] for row in found] == [1, 2]
     assert failures(record)[1] == (
-        "7 steps without a solution (7 slowed), the first at step 2 (t = 0.2 s); in the way: "
+        "7 steps without a solution (7 slowed), the first at step 2 (t = 0.2 s), against "
+        "joint 5 lower position limit, row 1 of Obstacle; most often in the way: "
         "row 1 of Obstacle, row 2 of CollisionAvoidance, joint 5 lower position limit"
     )
     away = sample(record, "position_desired", 0, record.position[0] + [0.0, 0.3, 0.4])
@@ -420,7 +421,12 @@ def test_clipped_steps_and_bounds_in_the_way():
     record = make_record(clipped=clipped, blocking=blocking, action=np.eye(10, dtype=int)[6] * 9)
     incidents = compute_metrics(record)["incidents"]
     assert incidents["clipped_steps"] == 3
-    assert incidents["first"] == {"step": 6, "time_s": pytest.approx(0.6), "action": "unknown"}
+    assert incidents["first"] == {
+        "step": 6,
+        "time_s": pytest.approx(0.6),
+        "action": "unknown",
+        "against": [{"joint": 1, "side": "upper", "limit": "velocity"}],
+    }
     assert incidents["blocking"] == [
         {"joint": joint, "side": side, "limit": limit, "steps": 1, "time_s": 0.1, "first_s": first}
         for joint, side, limit, first in (

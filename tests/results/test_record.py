@@ -23,7 +23,7 @@ ARRAYS = [
     if field.name not in ("settings", "wall_time_s") and field.default is not None
 ]
 OPTIONAL = {
-    "ddq", "torque", "bound_multiplier", "clipped", "action", "fraction", "blocking",
+    "ddq", "torque", "bound_multiplier", "bound_kind", "clipped", "action", "fraction", "blocking",
     "row_multiplier", "blocking_rows", "distance", "nearest", "level_residual", "frame_position",
     "frame_rotation", "frame_position_desired", "frame_rotation_desired",
 }  # fmt: skip
@@ -86,6 +86,7 @@ def test_what_happened_is_in_the_file_where_anything_did(tmp_path):
     assert optional == OPTIONAL | {"wall_time_s"}
     happened = {
         "bound_multiplier": np.linspace(-1.0, 1.0, 70).reshape(10, 7),
+        "bound_kind": 3 * np.eye(10, 7, dtype=np.int8),
         "ddq": np.linspace(-3.0, 3.0, 70).reshape(10, 7),
         "clipped": np.eye(10, 7, dtype=np.int8),
         "action": np.arange(10, dtype=np.int8) % 5,

@@ -178,6 +178,7 @@ def test_parts_leave_slack_variables_out() -> None:
         (lambda: RelativePoseTask("a", "b", ((1.0,),)), "pose"),
         (lambda: RemoteCenterTask((0.0, 1.0)), "point"),
         (lambda: PostureTask({"a": np.nan}), "joints"),
+        (lambda: PostureTask([0.0] * 7), "joints"),  # type: ignore[arg-type]
         (lambda: Manipulability(weight=-1.0), "weight"),
         (
             lambda: ElbowAngleTask().angle_of(SIX),

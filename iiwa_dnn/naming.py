@@ -1,0 +1,55 @@
+"""What a limit in the way is called, in the same words in commands, errors, reports and pages."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+KINDS = ("position", "velocity", "acceleration", "jerk")
+"""Kinds of a joint's bound; the code of one in commands and records is its place here, from 1."""
+
+
+def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return what a bound of each of `KINDS` is called in a run of these settings.
+
+    Their ``bounding`` lists the limits with bounds, of any of which a bound of kind 1 may be.
+    """
+    bounding = settings.get("bounding", ["JointLimits"])
+    own = "bound of " + " or ".join(name for name in bounding if name != "JointLimits")
+    if "JointLimits" not in bounding and bounding:
+        return own, own, *KINDS[2:]
+    return ("position" if len(bounding) <= 1 else f"position limit or {own}"), *KINDS[1:]
+
+
+def bound_name(joint: int, code: int, words: Sequence[str]) -> dict[str, Any]:
+    """Return the name of a joint's bound, as `describe` takes it.
+
+    Args:
+        joint: Number of the joint, from 0.
+        code: Kind of the bound, positive for an upper one, negative for a lower one.
+        words: `bound_words`.
+    """
+    side = "upper" if code > 0 else "lower"
+    return {"joint": joint + 1, "side": side, "limit": words[abs(code) - 1]}
+
+
+def in_the_way(
+    settings: Mapping[str, Any], codes: Iterable[int], rows: Iterable[float]
+) -> list[dict[str, Any]]:
+    """Return the names of bounds and rows, as `describe` takes them.
+
+    Args:
+        settings: Settings of the run, with its inequality rows.
+        codes: Codes of the joints' bounds, 0 for none, (n,).
+        rows: Other than 0 for an inequality row that is meant, (m,).
+    """
+    words = bound_words(settings)
+    bounds = [bound_name(joint, int(code), words) for joint, code in enumerate(codes) if code]
+    return bounds + [row for row, acts in zip(settings["rows"], rows, strict=True) if acts]
+
+
+def describe(limit: Mapping[str, Any]) -> str:
+    """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
+    if "row" in limit:
+        about = f" ({limit['about']})" if "about" in limit else ""
+        return f"row {limit['row']} of {limit['part']}{about}"
+    end = " limit" if limit["limit"] in KINDS else ""
+    return f"joint {limit['joint']} {limit['side']} {limit['limit']}{end}"

@@ -1,0 +1,111 @@
+"""Names of a controller's limits, and the kind of a joint's bound.
+
+With acceleration or jerk limits a bound is made of all of them at once. It is said to be of the
+first limit, in the order of `iiwa_dnn.naming.KINDS`, without which it would be another one.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.qp import QP, Matrix
+from iiwa_dnn.schemes.motion_limits import joint_bounds
+from iiwa_dnn.schemes.program import StepProgram
+
+Signs = NDArray[Any]
+
+POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
+
+_CLOSE = 1e-9
+"""Difference of two bounds that is rounding, in units of the velocity limit."""
+
+
+class LimitNames:
+    """Names of the bounds and inequality rows of a controller's programs."""
+
+    def __init__(self, program: StepProgram, dt: float) -> None:
+        """Take the limits of a step program and its control period [s]."""
+        self._settings = program.settings()
+        self._dt = dt
+        self._limits = np.vstack([program.robot.limits, np.full((2, program.robot.dof), np.inf)])
+        motion = program.rate_limits
+        if motion is not None and not program.accelerates:
+            self._limits = motion.constants(program.robot).reshape(self._limits.shape)
+
+    def in_words(self, qp: QP, sides: Signs, rows: Signs, past: Matrix) -> list[str]:
+        """Name bounds and rows of a program; arguments as `codes`, and (m,) not 0 for a row."""
+        return [*map(describe, in_the_way(self._settings, self.codes(qp, sides, past), rows))]
+
+    def codes(self, qp: QP, sides: Signs, past: Matrix) -> NDArray[np.int8]:
+        """Give the bounds on some sides of a program's joints their codes.
+
+        Args:
+            qp: The program.
+            sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+
+        Returns:
+            Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
+        """
+        found = np.zeros(past.shape[1], np.int8)
+        for i in np.flatnonzero(sides[: found.size]):
+            crossed = qp.lb[i] > qp.ub[i]  # such bounds are others' than the robot's
+            value = qp.ub[i] if sides[i] > 0.0 else qp.lb[i]
+            sign = 1.0 if sides[i] > 0.0 else -1.0
+            kind = POSITION if crossed else bound_kind(value, sign, past, self._limits, i, self._dt)
+            found[i] = int(sign) * kind
+        return found
+
+
+def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, dt: float) -> int:
+    """Tell the kind of one bound.
+
+    Args:
+        value: The bound [rad/s].
+        sign: 1 for an upper bound, -1 for a lower one.
+        past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+        limits: Lower and upper position limits, velocity, acceleration and jerk limits, (5, n).
+        i: The joint.
+        dt: Control period [s].
+    """
+    q = past[0, i]
+    last = past[1, i]
+    before = past[2, i]
+    velocity = limits[2, i]
+    close = _CLOSE * velocity
+    rates = (velocity, limits[3, i], limits[4, i])
+    if rates[1] == np.inf and rates[2] == np.inf:
+        return VELOCITY if abs(value) >= velocity - close else POSITION
+    above = limits[1, i] - q
+    below = q - limits[0, i]
+    if abs(_side(sign, last, before, above, below, rates, dt) - value) > close:
+        return POSITION  # a tighter bound, of another limit
+    for kind in range(POSITION, JERK):
+        if kind == POSITION:
+            above = np.inf
+            below = np.inf
+        elif kind == VELOCITY:
+            rates = (np.inf, rates[1], rates[2])
+        else:
+            rates = (np.inf, np.inf, rates[2])
+        if not abs(_side(sign, last, before, above, below, rates, dt) - value) <= close:
+            return kind
+    return JERK
+
+
+def _side(
+    sign: float,
+    last: float,
+    before: float,
+    above: float,
+    below: float,
+    rates: tuple[float, float, float],
+    dt: float,
+) -> float:
+    """Compute `joint_bounds` on one side."""
+    lower, upper = joint_bounds(last, before, above, below, rates, dt)
+    return upper if sign > 0.0 else lower
