@@ -39,6 +39,7 @@ def run(scheme: Scheme) -> Record:
     return record
 
 
+@pytest.mark.long
 def test_each_scheme_is_the_best_at_what_it_minimises() -> None:
     records = {name: run(scheme) for name, scheme in SCHEMES.items()}
     for record in records.values():
