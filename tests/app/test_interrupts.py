@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import signal
 import subprocess
@@ -110,6 +111,30 @@ def test_what_goes_wrong_on_the_way_out_changes_nothing(
     with pytest.raises(SystemExit) as caught:
         run()
     assert (caught.value.code, capsys.readouterr().err) == ENDS[number]
+
+
+@pytest.mark.parametrize("number", ENDS)
+def test_a_signal_in_a_callback_of_c_is_not_lost(
+    number: signal.Signals, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """C code drops an exception that its callback raises, as LLVM's compiler does."""
+    callback = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(number))
+    hook = sys.unraisablehook
+    before = signal.getsignal(signal.SIGALRM)
+    gone_on = []
+
+    @ended_by_signals()
+    def run() -> None:
+        callback()
+        time.sleep(10.0)
+        gone_on.append(True)
+
+    with pytest.raises(SystemExit) as ended:
+        run()
+    assert not gone_on
+    assert (ended.value.code, capsys.readouterr().err) == ENDS[number]
+    assert sys.unraisablehook is hook
+    assert signal.getsignal(signal.SIGALRM) is before
 
 
 def test_other_errors_pass_and_the_handlers_before_are_put_back() -> None:
