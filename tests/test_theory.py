@@ -184,3 +184,50 @@ def test_the_filter_delays_and_that_is_nine_of_eulers_errors() -> None:
     plain, filtered = largest(1), largest(10)
     # Ten samples are late by four and a half steps, Euler's method by half a step of its own.
     assert filtered / plain == pytest.approx((4.5 + 0.5) / 0.5, rel=0.05)
+
+
+def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain() -> None:
+    """Also on a straight line at constant velocity, whose target has no acceleration."""
+    dt = 1e-3
+    straight = Waypoints([0.0, 2.0], [[0.0, 0.0, 0.0], [0.04, 0.06, -0.02]], ends="natural")
+    path = straight.anchored(paper_start())
+    options = {"dt": dt, "filter_window": 10, "check": UNCHECKED}
+    record = simulate(paper_robot(), SO3, path, PAPER_Q0, **options)
+    acceleration = np.gradient(record.dq, dt, axis=0)
+    delay = 5.0 * dt  # four and a half steps of the filter, and half a step of Euler's method
+    for k in range(1000, record.steps, 250):
+        moved = Configuration(paper_robot(), record.q[k]).jacobian[:3] @ acceleration[k]
+        error = np.linalg.norm(position_error(record)[k])
+        assert error == pytest.approx(delay * np.linalg.norm(moved) / DELTA, rel=0.05)
+
+
+@pytest.mark.parametrize(("step", "settles"), [(0.95, False), (0.8, False), (0.5, True)])
+def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
+    step: float, settles: bool
+) -> None:
+    qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
+    network = ProjectionNetwork(primal_projection=False)
+    state = np.zeros(network.state_size(qp))
+    rates = network.flow(qp).rates
+    for _ in range(1000):
+        state = state + step * rates(state)
+    assert bool(abs(state[0] - 1.0) < 1e-9) is settles
+    assert settles or np.abs(state).max() > 1e20
+
+
+def test_the_integral_damps_below_the_root_of_half_its_gain() -> None:
+    """Sinusoids and an error at the start, by the closed loop's transfer function."""
+    gain = 0.25 * DELTA**2
+
+    def share(frequency: float) -> float:
+        s = 1j * frequency
+        return float(abs(s * (s + DELTA) / (s * s + DELTA * s + gain)))
+
+    edge = np.sqrt(0.5 * gain)
+    assert share(0.99 * edge) < 1.0 < share(1.01 * edge)
+    assert share(np.sqrt(gain)) == pytest.approx(np.sqrt(1.25))
+    t = np.linspace(0.0, 2.0, 20001)
+    error = (1.0 - 0.5 * DELTA * t) * np.exp(-0.5 * DELTA * t)
+    slope = np.gradient(error, t)
+    assert slope[0] == pytest.approx(-DELTA, rel=1e-3)  # the integral begins with nothing
+    assert error.min() == pytest.approx(-np.exp(-2.0), rel=1e-6)
