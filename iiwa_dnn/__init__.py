@@ -33,6 +33,7 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import TrackingSolver
 from iiwa_dnn.qp import QP, Residuals, Solution, Status
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.proof import Proof, prove
 from iiwa_dnn.references import (
     Circle,
     Cone,
@@ -98,12 +99,12 @@ __all__ = [
     "JointLimits", "JointTorque", "KineticEnergy", "Limit", "Line", "Lissajous", "Manipulability",
     "MissingDependencyError", "MovingTarget", "MujocoPlant", "Network", "NoSolutionError",
     "NotFoundError", "OnSurface", "OneLayerNetwork", "OrientationTask", "PoseTask", "PositionTask",
-    "PostureTask", "PrimalDualNetwork", "ProjectionNetwork", "PseudoInverse", "Record", "Reference",
-    "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
-    "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
-    "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots",
-    "compute_metrics", "failures", "load_robot", "retime", "robot_from_dh", "simulate",
-    "solve_batch", "solve_problem",
+    "PostureTask", "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record",
+    "Reference", "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme",
+    "SimplifiedDualNetwork", "Simulation", "Solution", "Sphere", "Status", "Step", "Still",
+    "Target", "Task", "Tilting", "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork",
+    "available_robots", "compute_metrics", "failures", "load_robot", "prove", "retime",
+    "robot_from_dh", "simulate", "solve_batch", "solve_problem",
 ]  # fmt: skip
 
 _RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}

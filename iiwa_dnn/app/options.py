@@ -21,7 +21,7 @@ from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
 
-Check = Literal["proxqp", "osqp", "both", "none"]
+Check = Literal["proxqp", "osqp", "both", "proof", "none"]
 SHELLS = ("bash", "zsh", "tcsh")
 
 # Options whose default, None or (), the help need not show.
@@ -80,7 +80,7 @@ class TrackOptions(RunOptions):
     dt: float = 1e-4  # control period [s]
     duration: _Float = None  # length of the run [s] (none: one round on the path)
     seed: int = 0  # seed of the random numbers
-    check: Check = "proxqp"  # reference solvers that check every step
+    check: Check = "proxqp"  # reference solvers that check every step, or a rigorous proof
     tolerance: float = 1e-6  # largest gap between the network and a checking solver [rad/s]
     speed: float = 1.0  # ratio of the velocity limits to the data sheet's [1]
     acceleration_limit: _Limit = None  # acceleration limit [rad/s^2], or robot: its own
@@ -214,7 +214,7 @@ class SolveOptions:
     command: ClassVar[str] = "solve"
     file: Positional[_Path] = None  # program, written with numpy.savez
     tol: float = 1e-9  # largest residual of a solution [program's units]
-    check: Check = "none"  # reference solvers that check the solution
+    check: Check = "none"  # reference solvers that check the solution, or a rigorous proof
     out: _Path = None  # .npz file of the solution
     quiet: _Quiet = False  # print nothing but the reason of a failure
     verbose: _Verbose = False  # print the multipliers, and the traceback of an error too

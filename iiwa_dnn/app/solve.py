@@ -17,6 +17,7 @@ from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.proof import prove
 
 ARRAYS = ("P", "q", "G", "h", "A", "b", "lb", "ub")
 
@@ -82,6 +83,11 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
     if options.verbose:
         lines += [f"{name:<11}{_text(value)}" for name, value in _multipliers(solution).items()]
     check = CrossCheck(CHECKS[options.check])
+    if options.check == "proof":
+        proof = prove(qp, solution)
+        shown = f"within {proof.bound:.3g} of the exact solution in x"
+        reason = f"; {proof.reason}" if proof.reason else ""
+        return [*lines, f"proof      {shown if proof.bound < np.inf else 'none'}{reason}"]
     agreement = check.check(qp, np.asarray(solution.x))
     gaps = zip(agreement.solution_gap[0], agreement.objective_gap[0], strict=True)
     for name, (gap, objective) in zip(check.solvers, gaps, strict=True):

@@ -49,6 +49,7 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "proxqp": ("proxqp",),
     "osqp": ("osqp",),
     "both": ("proxqp", "osqp"),
+    "proof": ("proof",),
     "none": (),
 }
 
@@ -102,7 +103,7 @@ _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "next_gain": (lambda o: o.tracking != "next", "--tracking next"),
     "gain": (lambda o: o.tracking == "next", "--tracking paper; beside next it is --next-gain"),
     "noise_at": (lambda o: o.noise == 0.0, "--noise"),
-    "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp or both"),
+    "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp, both or proof"),
     "push_at": (lambda o: not o.push, "--push"),
     "push_for": (lambda o: not o.push, "--push"),
 }

@@ -22,6 +22,13 @@ _AHEAD = 2
 Job = tuple[Matrix, Sizes, Matrix, bool]
 
 
+def _free_cores(programs: int) -> int:
+    """Count the cores that are worth a process for so many programs."""
+    import loky
+
+    return loky.cpu_count() - 1 if programs >= _WORTH_A_PROCESS else 0
+
+
 class CheckPool:
     """Judges blocks of programs while others are still being made.
 
@@ -43,12 +50,10 @@ class CheckPool:
             workers: Processes beside the caller's; None takes the cores that are free, or none
                 where so few programs would not repay them.
         """
-        if workers is None:
-            import loky
-
-            workers = loky.cpu_count() - 1 if programs >= _WORTH_A_PROCESS else 0
         self.check = check
-        self.workers = workers if check.solvers else 0
+        self.workers = 0
+        if check.asks_solvers:
+            self.workers = _free_cores(programs) if workers is None else workers
         self._judged: dict[int, Agreement] = {}
         self._waiting: dict[int, tuple[Future[Agreement], Job]] = {}
         self._count = 0
@@ -62,13 +67,15 @@ class CheckPool:
         if kind is not None and self._executor is not None:
             self._executor.shutdown(wait=False, kill_workers=True)
 
-    def submit(self, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool = False) -> None:
-        """Take the next block: N programs of one shape, and the answers to be judged, (N, n).
+    def submit(
+        self, programs: Matrix, sizes: Sizes, answers: Matrix, by_cost: bool = False
+    ) -> None:
+        """Take the next block: N programs of one shape, and the answers to be judged.
 
-        `by_cost` is as in `CrossCheck.check_block`.
+        The arguments are those of `CrossCheck.check_block`.
         """
         number = self._count
-        job = (programs, sizes, x, by_cost)
+        job = (programs, sizes, answers, by_cost)
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:

@@ -1,7 +1,8 @@
-"""Cross-check of an answer: the same program, put to an established solver.
+"""Cross-check of an answer: the same program, put to an established solver, or a proof.
 
-The reference gets the program through qpsolvers, and nothing of the network's state. Its own
-residuals are judged before it is believed.
+A reference gets the program through qpsolvers, and nothing of the network's state. Its own
+residuals are judged before it is believed. "proof" stands among the references for
+`iiwa_dnn.qp.proof`, which asks no other solver.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.proof import prove_block
 from iiwa_dnn.qp.residuals import largest_residuals
 
 if TYPE_CHECKING:
@@ -52,6 +53,9 @@ _FLAT = 1e-10
 
 SOLVERS = tuple(_SOLVER_OPTIONS)
 
+PROOF = "proof"
+"""Name of the proof among the references."""
+
 
 class Agreement(NamedTuple):
     """Gaps between answers to N programs and k reference solvers; NaN where a reference failed.
@@ -60,6 +64,9 @@ class Agreement(NamedTuple):
         solution_gap: Largest difference in x, (N, k); joint velocities in [rad/s].
         objective_gap: Absolute difference in the objective, (N, k).
         reference_residual: Largest KKT residual of each reference, (N, k); inf without an answer.
+
+    Of a proof, the gap is the bound of `Proof` and the residual is 0; without a bound, both are
+    inf.
     """
 
     solution_gap: Matrix
@@ -71,6 +78,12 @@ class Agreement(NamedTuple):
         """Concatenate the agreements of several blocks, for k = `solvers`."""
         nothing = [np.empty((0, solvers))]
         return cls(*(np.concatenate(nothing + [part[i] for part in parts]) for i in range(3)))
+
+    @classmethod
+    def beside(cls, columns: Sequence[tuple[Vector, Vector, Vector]], count: int) -> Agreement:
+        """Put the gaps and residuals (N,) of each reference side by side, for N = `count`."""
+        nothing = [np.empty((count, 0))]
+        return cls(*(np.column_stack(nothing + [each[i] for each in columns]) for i in range(3)))
 
     def worst_of(self, group: int) -> Agreement:
         """Take the largest of each `group` of consecutive programs, as for the stages of a step."""
@@ -84,7 +97,8 @@ class CrossCheck:
     """Reference solvers, and the tolerances of an agreement.
 
     Attributes:
-        solvers: Names of the references, out of ``SOLVERS``; none switches the check off.
+        solvers: Names of the references, out of ``SOLVERS`` and ``"proof"``; none switches the
+            check off.
         tolerance: Largest gap in x that counts as agreement [rad/s].
         reference_tolerance: Largest KKT residual at which a reference is believed.
     """
@@ -102,71 +116,86 @@ class CrossCheck:
         if not isinstance(names, tuple | list):
             raise InvalidInputError("solvers", f"must be a tuple of names, not {names!r}", names)
         for name in names:
-            checks.one_of("solvers", name, tuple(self._options))
+            checks.one_of("solvers", name, (*self._options, PROOF))
         for name in ("tolerance", "reference_tolerance"):
             checks.positive(name, getattr(self, name))
 
-    def check(self, qp: QP, x: Vector) -> Agreement:
+    @property
+    def asks_solvers(self) -> bool:
+        """Test whether a solver is asked, which takes long enough for a process of its own."""
+        return bool(set(self.solvers) - {PROOF})
+
+    def check(self, qp: QP, answer: Vector) -> Agreement:
         """Ask every reference for one program's solution and compare; N = 1.
 
         Args:
             qp: The program, n variables.
-            x: The answer to be judged, (n,).
+            answer: The answer to be judged: x (n,), or `Solution.point` (2 n + m + p,), whose
+                multipliers a proof begins with.
         """
-        return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(x)[np.newaxis])
+        return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(answer)[np.newaxis])
 
     def check_block(
-        self, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool = False
+        self, programs: Matrix, sizes: Sizes, answers: Matrix, by_cost: bool = False
     ) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.
 
         Args:
             programs: One `QP.data` a row.
             sizes: Their `QP.sizes`.
-            x: The answers to be judged, (N, n).
+            answers: The answers to be judged: x (N, n), or points (N, 2 n + m + p).
             by_cost: Measure the gap in x in the norm of P. Where it is above the tolerance and x is
-                not unique, since no cost acts along all directions, that is done anyhow.
+                not unique, since no cost acts along all directions, that is done anyhow. Such a
+                program has no proof, and is left out: all of it is NaN.
 
         Returns:
             Gaps and residuals, one row a program and one column a reference.
         """
+        columns = []
+        for name in self.solvers:
+            if name == PROOF:
+                columns.append(_proven(programs, sizes, answers, by_cost))
+            else:
+                x = answers[:, : sizes[0]]
+                columns.append(self._compared(name, programs, sizes, x, by_cost))
+        return Agreement.beside(columns, len(answers))
+
+    def _compared(
+        self, name: str, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool
+    ) -> tuple[Vector, Vector, Vector]:
+        """Compare answers x (N, n) with those of one reference: gaps and residuals, (N,)."""
         n = sizes[0]
-        if not self.solvers:
-            nothing = np.empty((len(x), 0))
-            return Agreement(nothing, nothing, nothing)
-        points, residuals = self._answers(self.solvers, programs, sizes)
-        for i, j in np.argwhere(~(residuals <= self.reference_tolerance)):
+        points, residuals = self._answers(name, programs, sizes)
+        for i in np.flatnonzero(~(residuals <= self.reference_tolerance)):
             # ProxQP calls one in some thousand programs infeasible that are not.
-            others = [name for name in self._options if name != self.solvers[j]]
-            point, residual = self._answers(others[:1], programs[i : i + 1], sizes)
-            if (residual <= self.reference_tolerance).any():
-                points[i, j] = point[0, 0]
-                residuals[i, j] = residual[0, 0]
-        believed = (residuals <= self.reference_tolerance)[..., np.newaxis]
-        references = np.where(believed, points, np.nan)[..., :n]
-        step = x[:, np.newaxis] - references
+            others = [other for other in self._options if other != name]
+            for other in others[:1]:
+                point, residual = self._answers(other, programs[i : i + 1], sizes)
+                if residual[0] <= self.reference_tolerance:
+                    points[i] = point[0]
+                    residuals[i] = residual[0]
+        believed = (residuals <= self.reference_tolerance)[:, np.newaxis]
+        references = np.where(believed, points, np.nan)[:, :n]
+        step = x - references
         cost = programs[:, : n * n].reshape(len(x), n, n)
         linear = programs[:, n * n : n * (n + 1)]
         # As a difference of points: subtracting two objectives would cancel.
-        curved = np.einsum("ijk,ikl,ijl->ij", step, cost, x[:, np.newaxis] + references) / 2.0
-        objective_gap = np.abs(curved + np.einsum("ijk,ik->ij", step, linear))
-        gap = np.abs(step).max(axis=2)
+        curved = np.einsum("ij,ijk,ik->i", step, cost, x + references) / 2.0
+        objective_gap = np.abs(curved + np.einsum("ij,ij->i", step, linear))
+        gap = np.abs(step).max(axis=1)
         loose = np.full(len(x), by_cost)
-        for i in np.flatnonzero((gap > self.tolerance).any(axis=1)):
+        for i in np.flatnonzero(gap > self.tolerance):
             qp = QP.from_data(programs[i], sizes)
             curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
             loose[i] |= bool(curvatures[0] <= _FLAT * curvatures[-1])
-        in_cost = np.sqrt(np.maximum(np.einsum("ijk,ikl,ijl->ij", step, cost, step), 0.0))
-        gap = np.where(loose[:, np.newaxis], in_cost, gap)
-        return Agreement(gap, objective_gap, residuals)
+        in_cost = np.sqrt(np.maximum(np.einsum("ij,ijk,ik->i", step, cost, step), 0.0))
+        return np.where(loose, in_cost, gap), objective_gap, residuals
 
-    def _answers(
-        self, solvers: Sequence[str], programs: Matrix, sizes: Sizes
-    ) -> tuple[NDArray[np.float64], Matrix]:
-        """Ask k solvers for the points of N programs, (N, k, size), and judge them, (N, k)."""
+    def _answers(self, name: str, programs: Matrix, sizes: Sizes) -> tuple[Matrix, Vector]:
+        """Ask a solver for the points of N programs, (N, size), and judge them, (N,)."""
         n, m, p = sizes
-        points = np.full((len(programs), len(solvers), 2 * n + m + p), np.nan)
-        residuals = np.empty(points.shape[:2])
+        points = np.full((len(programs), 1, 2 * n + m + p), np.nan)
+        residuals = np.empty((len(programs), 1))
         # Solvers may take minutes over one NaN.
         askable = ~np.isnan(programs).any(axis=1)
         with warnings.catch_warnings(), redirect_stdout(StringIO()):
@@ -176,12 +205,11 @@ class CrossCheck:
             warnings.simplefilter("ignore", UserWarning)
             for i in np.flatnonzero(askable):
                 problem = QP.from_data(programs[i], sizes).to_qpsolvers()
-                for j, name in enumerate(solvers):
-                    reference = self._solve(name, problem)
-                    if reference is not None and reference.x is not None:
-                        _copy_point(reference, sizes, points[i, j])
+                reference = self._solve(name, problem)
+                if reference is not None and reference.x is not None:
+                    _copy_point(reference, sizes, points[i, 0])
         largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
-        return points, residuals
+        return points[:, 0], residuals[:, 0]
 
     def options(self, name: str) -> dict[str, Any]:
         """Return a copy of the options with which qpsolvers asks the reference of this name."""
@@ -204,6 +232,23 @@ class CrossCheck:
         except Exception:  # whatever a reference raises, it has no answer
             return None
         return solution if solution.found else None
+
+
+def _proven(
+    programs: Matrix, sizes: Sizes, answers: Matrix, by_cost: bool
+) -> tuple[Vector, Vector, Vector]:
+    """Prove answers (N, n) or (N, 2 n + m + p): bounds, nothing on the objective, residuals."""
+    n, m, p = sizes
+    count = len(answers)
+    bounds = np.full(count, np.nan)
+    if by_cost:
+        return bounds, bounds, bounds
+    points = np.zeros((count, 2 * n + m + p))
+    points[:, : answers.shape[1]] = answers
+    reasons = np.empty(count, dtype=np.int64)
+    active = np.empty((count, n + m), dtype=np.int64)
+    prove_block(np.ascontiguousarray(programs), n, m, points, bounds, reasons, active)
+    return bounds, np.full(count, np.nan), np.where(bounds < np.inf, 0.0, np.inf)
 
 
 def _copy_point(solution: qpsolvers.Solution, sizes: Sizes, point: Vector) -> None:

@@ -10,7 +10,13 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import describe
 from iiwa_dnn.results.markdown import number
-from iiwa_dnn.results.metrics import JOINT_LIMITS, compute_metrics, limits, position_error
+from iiwa_dnn.results.metrics import (
+    JOINT_LIMITS,
+    PROOF,
+    compute_metrics,
+    limits,
+    position_error,
+)
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
@@ -143,7 +149,13 @@ def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
 def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
     reasons = []
     first = check["first_disagreement"]
-    if first is not None:
+    if first is not None and first["solver"] == PROOF:
+        reasons.append(
+            f"step {first['step']} (t = {first['time_s']:.6g} s): proven within "
+            f"{_show(first['gap'])} rad/s of the exact solution alone, tolerance "
+            f"{_show(check['tolerance'])}; {_count(check['disagreements'])} in all"
+        )
+    elif first is not None:
         disagree = "disagrees" if check["disagreements"] == 1 else "disagree"
         reasons.append(
             f"step {first['step']} (t = {first['time_s']:.6g} s): {first['solver']} differs by "
@@ -152,7 +164,9 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
         )
     if not check["judged"]:  # in continuous mode the gap is a lag
         return reasons
-    if check["reference_failures"]:
+    if check["reference_failures"] and check["solver"] == PROOF:
+        reasons.append(f"{_count(check['reference_failures'])} not proven")
+    elif check["reference_failures"]:
         reasons.append(
             f"{check['reference_failures']:,} reference answers missing or not accurate enough "
             f"to judge by ({check['solver']})"

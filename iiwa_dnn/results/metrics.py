@@ -13,6 +13,9 @@ from iiwa_dnn.files import plain
 from iiwa_dnn.naming import bound_name, bound_words, in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
+PROOF = "proof"
+"""Name of the proof among a run's reference solvers."""
+
 ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
@@ -227,8 +230,11 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     judged = record.settings["mode"] == "converged" and record.references > 0
     # Not `gap > tolerance`, which a NaN would pass.
     disagrees = believed & ~(gap <= check["tolerance"]) & judged
+    proofs = [name == PROOF for name in check["solvers"]]
+    proven = {"proven": int(believed[:, proofs].sum())} if any(proofs) else {}
     return {
         "solver": "+".join(check["solvers"]) or "none",
+        **proven,
         "steps_checked": int(asked.all(axis=1).sum()) if record.references else 0,
         "disagreements": int(disagrees.any(axis=1).sum()),
         "reference_failures": int((asked & ~believed).sum()),

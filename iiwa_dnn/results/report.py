@@ -11,7 +11,7 @@ from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.naming import describe
 from iiwa_dnn.results.failures import failures, path_completed
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
-from iiwa_dnn.results.metrics import ACTIONS, compute_metrics
+from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import save_figures
 from iiwa_dnn.results.record import Record
 
@@ -63,6 +63,10 @@ _SUMMARY = {
     "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
     "wall time": "{wall_time_s} s, {realtime_factor} x real time",
 }
+_PROVEN = (
+    "{proven} answers proven within {max_solution_gap} rad/s of the exact solution, "
+    "{reference_failures} not proven"
+)
 _FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"
 _NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
 _SETTLED = "max {max_position_error_settled_m} m from {settled_after_s} s on"
@@ -100,6 +104,12 @@ _CROSSCHECK: Table = (
     ("tolerance on it", "tolerance", "rad/s"),
     ("largest gap in the objective", "max_objective_gap", ""),
     ("largest residual of a reference", "max_reference_residual", ""),
+)
+_PROOF: Table = (
+    ("answers proven", "proven", ""),
+    ("answers not proven", "reference_failures", ""),
+    ("largest distance from the exact solution, at most", "max_solution_gap", "rad/s"),
+    ("tolerance on it", "tolerance", "rad/s"),
 )
 _INCIDENTS: Table = (
     ("steps with a clipped command", "clipped_steps", ""),
@@ -176,7 +186,7 @@ def write_report(
         "## Results",
         markdown_table(_HEAD, results),
         "## Cross-check",
-        markdown_table(_HEAD, _rows(metrics["crosscheck"], _CROSSCHECK)),
+        _checked(metrics["crosscheck"]),
         *_incidents(metrics.get("incidents")),
         *(f"Nearest pair: {pair}." for pair in _nearest_pair(metrics)),
         *([lag] if settings["mode"] == "continuous" else []),
@@ -210,6 +220,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
     if check["solver"] == "none":
         lines["cross-check"] = "not asked for"
+    if check["solver"] == PROOF:
+        lines["cross-check"] = _fill(_PROVEN, check)
     frames = metrics.get("frames", {}).items()
     lines |= {name: _fill(_FRAME, errors) for name, errors in frames}
     lines |= _physics_lines(metrics.get("physics"))
@@ -231,12 +243,21 @@ def _success(metrics: Mapping[str, Any]) -> str:
     solver = check["solver"]
     if check["judged"]:
         steps = f"all {metrics['steps']:,} steps solved"
+        if solver == PROOF:
+            return f"{steps}, within all limits and proven"
         return f"{steps}, within all limits and in agreement with {solver}"
     if solver == "none":
         return "completed within all limits; no reference solver was asked"
     failed = check["reference_failures"]
     doubt = f"; {failed:,} reference answers not to be believed" if failed else ""
     return f"completed within all limits; the gap to {solver} is a lag, not judged{doubt}"
+
+
+def _checked(check: Mapping[str, Any]) -> str:
+    """Lay out the report's table on the cross-check, and the proof's line above its own."""
+    if check["solver"] != PROOF:
+        return markdown_table(_HEAD, _rows(check, _CROSSCHECK))
+    return f"{_fill(_PROVEN, check)}.\n\n{markdown_table(_HEAD, _rows(check, _PROOF))}"
 
 
 def _fill(text: str, *values: Mapping[str, Any]) -> str:

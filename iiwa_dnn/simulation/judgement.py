@@ -37,9 +37,8 @@ class Judgement(ExitStack):
     def submit(self, rows: Matrix) -> None:
         """Hand the rows of a stretch of steps over to the check, (k, width)."""
         layout = self._layout
-        n, _, _ = layout.sizes
-        x = layout.view(rows, "point")[:, :n]
-        self._pools[0].submit(layout.view(rows, "program"), layout.sizes, x)
+        points = layout.view(rows, "point")
+        self._pools[0].submit(layout.view(rows, "program"), layout.sizes, points)
         for i, level in enumerate(self._levels):
             found = np.array([programs[i] for programs in self._waiting])
             programs, answers = np.split(found, [level.data.size], axis=1)

@@ -1,0 +1,212 @@
+"""Proofs of answers, judged by exact solutions in whole numbers, which share no code with them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from benchmarks import exact, programs
+from helpers_qp import known_qp
+from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove
+from iiwa_dnn.qp.proof import REASONS, Proof
+
+NOT_CONVEX = "the cost is not shown to be convex"
+DEPENDENT = "the active rows are linearly dependent, or nearly so"
+WEAK = REASONS[1]
+
+
+def answer(x: list[float], z_box: list[float] | None = None, **more: list[float]) -> object:
+    """An answer of no solver in particular."""
+    return SimpleNamespace(x=np.array(x), z_box=np.array(z_box or 0.0 * np.array(x)), **more)
+
+
+def whole_numbers(rng: np.random.Generator) -> QP:
+    """A program of small whole numbers around a point: rows repeat, multipliers vanish."""
+    n = int(rng.integers(1, 4))
+    m = int(rng.integers(0, 4))
+    p = int(rng.integers(0, 2))
+    root = rng.integers(-2, 3, (n, n)).astype(float)
+    x = rng.integers(-2, 3, n).astype(float)
+    G = rng.integers(-2, 3, (m, n)).astype(float)
+    A = rng.integers(-2, 3, (p, n)).astype(float)
+    P = root @ root.T + np.eye(n) * rng.integers(0, 2)
+    h = G @ x + rng.integers(0, 2, m)
+    lb = x - rng.integers(0, 2, n)
+    ub = x + rng.integers(0, 2, n)
+    return QP(P, rng.integers(-3, 4, n), G, h, A, A @ x, lb, ub)
+
+
+def judged(qp: QP, solution: Solution) -> tuple[Proof, float]:
+    """Prove an answer; also the bound over the true error, which is to be at least one."""
+    proof = prove(qp, solution)
+    if not proof.bound < np.inf:
+        assert proof.reason
+        return proof, np.inf
+    solved = exact.exact_solution(qp, exact.face_of(qp, proof.active))
+    assert solved is not None
+    error = exact.distance(solution.x, solved)
+    assert error <= Fraction(proof.bound)
+    return proof, float(Fraction(proof.bound) / error) if error else np.inf
+
+
+KINDS = {
+    "whole numbers": whole_numbers,
+    "strictly convex": lambda rng: programs.strictly_convex(rng, int(rng.integers(2, 6)))[0],
+    "an arm's shape": lambda rng: known_qp(rng, 7, 6, int(rng.integers(0, 2)))[0],
+    "rows badly scaled": lambda rng: programs.badly_scaled(rng, "rows times 1e-6 to 1e6"),
+}
+
+
+@pytest.mark.parametrize(("kind", "count", "share"), [
+    ("whole numbers", 300, 0.3), ("strictly convex", 150, 0.4), ("an arm's shape", 40, 0.9),
+    ("rows badly scaled", 3, 0.6),
+])  # fmt: skip
+def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -> None:
+    proven = 0
+    for seed in range(count):
+        rng = np.random.default_rng([26, seed])
+        qp = KINDS[kind](rng)
+        solution = DNNSolver().solve(qp)
+        if seed % 3 == 2:  # an answer that is a little off, or far
+            shift = 10.0 ** rng.uniform(-15.0, 0.0) * rng.standard_normal(solution.point.size)
+            solution = solution._replace(point=solution.point + shift)
+        proven += judged(qp, solution)[0].bound < np.inf
+    assert proven >= share * count
+
+
+def test_the_answer_of_another_solver_is_proven_as_well() -> None:
+    qp, _ = known_qp(np.random.default_rng(0), 6, 2, 2, inequalities=4)
+    problem = qp.to_qpsolvers()
+    for solve in (iiwa_dnn.solve_problem, lambda each: CrossCheck()._solve("proxqp", each)):
+        proof, ratio = judged(qp, solve(problem))
+        assert not proof.reason
+        assert proof.bound < 1e-8
+        assert ratio < 1e6
+    known = DNNSolver().solve(qp)
+    sides = np.sign(np.where(np.abs(known.z_box) > 1e-6, known.z_box, 0.0))
+    np.testing.assert_array_equal(proof.active, [*sides, *(known.z > 1e-6)])
+
+
+def test_nothing_about_the_answer_is_trusted() -> None:
+    qp, x = known_qp(np.random.default_rng(1), 5, 2, 2, inequalities=4)
+    far = x + np.array([3.0, 0.0, 0.0, 0.0, 0.0])
+    zeros = np.zeros(5)
+    for multipliers in (None, zeros, 1e3 * np.ones(5), -1e3 * np.ones(5)):
+        proof, _ = judged(qp, SimpleNamespace(x=far, z_box=multipliers))
+        if proof.bound < np.inf:
+            assert proof.bound == pytest.approx(3.0, abs=1e-9)
+    # Another x takes the same multipliers to the same active set.
+    solution = DNNSolver().solve(qp)
+    for name in "xyz":
+        moved = SimpleNamespace(**{part: getattr(solution, part) for part in ("x", "y", "z")})
+        moved.z_box = solution.z_box
+        setattr(moved, name, np.full(getattr(moved, name).size, np.nan))
+        assert prove(qp, moved).bound == np.inf
+
+
+@pytest.mark.parametrize(
+    ("qp", "x", "bound", "reason"),
+    [
+        (QP(np.eye(1), [-1.0], ub=[0.5]), [0.25], 0.25, ""),
+        (QP(np.eye(1), [-1.0], ub=[1.0]), [1.0], 0.0, WEAK),  # a multiplier of zero
+        (QP(np.zeros((1, 1)), [-1.0], ub=[2.0]), [2.0], np.inf, DEPENDENT),  # without multipliers
+        (QP(np.zeros((1, 1)), [0.0], lb=[2.0], ub=[2.0]), [2.5], 0.5, ""),
+        (QP(np.zeros((1, 1)), [0.0], lb=[0.0], ub=[2.0]), [1.0], np.inf, DEPENDENT),  # any x
+        (QP(np.zeros((1, 1)), [-0.0], G=[[1.0]], h=[0.0], ub=[0.0]), [0.0], np.inf, DEPENDENT),
+        (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[0.0]), [0.0, 0.0], 0.0, ""),  # 0 x = 0
+        (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[1e-300]), [0.0, 0.0], np.inf, DEPENDENT),
+        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 1.0]), [0.5, 0.5], np.inf,
+         DEPENDENT),
+        (QP([[-1e-18]], [0.0], lb=[-1.0], ub=[1.0]), [0.0], np.inf, NOT_CONVEX),
+        (QP([[1.0, 1.0], [1.0, 1.0 - 1e-15]], [0.0, 0.0]), [0.0, 0.0], np.inf, DEPENDENT),
+        (QP([[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], A=[[1.0, -1.0]], b=[0.0]), [0.0, 0.0], 0.0, ""),
+        (QP([[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], A=[[1.0, 1.0]], b=[0.0]), [0.0, 0.0], np.inf,
+         NOT_CONVEX),
+        (QP([[1.0, 1e-6], [-1e-6, 1.0]], [-1.0, -1.0]), [1.0, 1.0], 0.0, ""),  # its symmetric part
+        (QP(np.eye(1), [0.0], lb=[1.0], ub=[0.0]), [0.5], np.inf, REASONS[6]),
+        (QP(np.eye(1), [0.0], lb=[np.nan]), [0.0], np.inf, REASONS[6]),
+        (QP(np.eye(1), [0.0]), [np.inf], np.inf, DEPENDENT),
+        (QP(np.eye(1), [np.nan]), [0.0], np.inf, DEPENDENT),
+        (QP(np.eye(1), [0.0], G=[[0.0]], h=[-1.0]), [0.0], np.inf, DEPENDENT),
+        (QP(np.eye(1), [0.0], G=[[np.nan]], h=[1.0]), [0.0], np.inf, DEPENDENT),
+        (QP(np.eye(1), [0.0], G=[[np.nan]], h=[np.inf]), [0.0], 0.0, ""),  # limits nothing
+        (QP([[1e308]], [1e308]), [-1.0], np.inf, DEPENDENT),  # twice 1e308 is too much
+        (QP([[5e-324]], [0.0], lb=[1.0], ub=[1.0]), [1.0], 0.0, ""),
+    ],
+)  # fmt: skip
+def test_bounds_and_reasons(qp: QP, x: list[float], bound: float, reason: str) -> None:
+    proof = prove(qp, SimpleNamespace(x=np.array(x)))
+    assert proof.reason == reason
+    assert bound <= proof.bound <= bound + 1e-14
+
+
+def test_a_row_that_holds_by_less_than_rounding_is_not_decided() -> None:
+    # At x = (1/3, 1/3, ...) the row's slack is zero, or a rounding of it, and no multiplier helps.
+    rows = np.ones((1, 3))
+    for slack in (0.0, 1e-17, 1e-10):
+        qp = QP(np.eye(3), -np.ones(3) / 3.0, G=rows, h=[1.0 + slack])
+        proof, _ = judged(qp, DNNSolver().solve(qp))
+        assert proof.reason == (WEAK if slack < 1e-15 else "")
+        assert proof.bound < 1e-13
+
+
+def test_a_vertex_of_a_linear_program_is_proven_by_its_multipliers() -> None:
+    qp = QP(np.zeros((2, 2)), [-1.0, -2.0], G=[[1.0, 1.0]], h=[3.0], lb=[0.0, 0.0], ub=[2.0, 2.0])
+    proof, _ = judged(qp, DNNSolver().solve(qp))
+    np.testing.assert_array_equal(proof.active, [0, 1, 1])
+    assert (proof.reason, proof.bound < 1e-9) == ("", True)
+
+
+def test_where_products_underflow_the_bound_says_so() -> None:
+    assert prove(QP([[1e-308]], [-1e-308]), answer([1.0])).bound > 1e10
+    assert prove(QP([[1e-200]], [-1e-200]), answer([1.0])).bound < 1e-14
+
+
+def test_a_bound_counts_what_the_answer_lacks() -> None:
+    qp = QP(np.eye(2), [-3.0, 0.0], ub=[1.0, 5.0])
+    inside = prove(qp, answer([1.0 - 1e-7, 1e-9], [2.0, 0.0]))
+    np.testing.assert_array_equal(inside.active, [1, 0])
+    assert 1e-7 * (1.0 - 1e-9) <= inside.bound <= 1e-7 * (1.0 + 1e-7)
+
+
+def test_answers_that_are_none_are_refused() -> None:
+    qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=[1.0])
+    for wrong, problem in (
+        (SimpleNamespace(x=None), "has no x"),
+        (answer([1.0, 2.0, 3.0]), "has 3 entries in x, not 2"),
+        (answer([1.0, 2.0], y=np.zeros(2)), "has 2 entries in y, not 1"),
+    ):
+        with pytest.raises(InvalidInputError, match=problem):
+            prove(qp, wrong)
+    with pytest.raises(InvalidInputError, match="qp"):
+        prove(np.eye(2), answer([1.0, 2.0]))
+
+
+def test_a_check_hands_the_proof_on() -> None:
+    known = [known_qp(np.random.default_rng([3, seed]), 5, 2, 1)[0] for seed in range(20)]
+    points = np.stack([DNNSolver().solve(qp).point for qp in known])
+    data = np.stack([qp.data for qp in known])
+    points[7, 0] += 1e-5
+    points[9, 0] = np.nan
+    agreement = CrossCheck(("osqp", "proof")).check_block(data, known[0].sizes, points)
+    bounds = agreement.solution_gap[:, 1]
+    right = np.delete(np.arange(20), [7, 9])
+    assert (bounds[right] < 1e-8).all()
+    assert bounds[7] == pytest.approx(1e-5, rel=1e-3)
+    assert bounds[9] == np.inf
+    np.testing.assert_array_equal(
+        agreement.reference_residual[:, 1], np.where(bounds < 1, 0, np.inf)
+    )
+    # The other solver's answers are no farther than both bounds allow.
+    assert (agreement.solution_gap[right, 0] < 1e-7).all()
+    for qp, point, bound in zip(known, points, bounds, strict=True):
+        solution = DNNSolver().solve(qp)._replace(point=point)
+        assert prove(qp, solution).bound == bound
+    alone = CrossCheck(("proof",)).check(known[0], points[0])
+    assert alone.solution_gap[0, 0] == bounds[0]
+    # x alone will do where no multiplier has to be known.
+    assert CrossCheck(("proof",)).check(known[0], points[0, :5]).solution_gap[0, 0] < 1e-7
