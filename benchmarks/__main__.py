@@ -1,4 +1,4 @@
-"""``python -m benchmarks`` solvers, loop, targets, collisions, export or sizes: measure."""
+"""``python -m benchmarks`` solvers, loop, targets, collisions, export, proof or sizes: measure."""
 
 import sys
 
@@ -6,6 +6,7 @@ from benchmarks.arms import bench_arms
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
 from benchmarks.exports import bench_export
+from benchmarks.proofs import bench_proof
 from benchmarks.sizes import bench_sizes
 
 COMMANDS = {
@@ -15,6 +16,7 @@ COMMANDS = {
     "collisions": bench_collisions,
     "arms": bench_arms,
     "export": bench_export,
+    "proof": bench_proof,
     "sizes": bench_sizes,
 }
 

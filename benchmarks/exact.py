@@ -27,7 +27,7 @@ class WholeProgram(NamedTuple):
     Attributes:
         P: Twice the symmetric part of P times the power, (n, n).
         q: Twice q times the power, (n,).
-        A: Equality rows that are not empty, (p, n).
+        A: Equality rows and bounds that are equal, as many as are independent, (p, n).
         b: Right-hand side, (p,).
         C: Inequality rows, then upper and lower bounds, (m + 2 n, n).
         d: Right-hand side; None where there is no limit.
@@ -44,7 +44,7 @@ class WholeProgram(NamedTuple):
 
 
 def whole(qp: QP) -> WholeProgram | None:
-    """Convert a program of finite coefficients; None if 0 x = b contradicts itself."""
+    """Convert a program of finite coefficients; None if equality rows contradict each other."""
     ratios = [float(v).as_integer_ratio() for v in qp.data[np.isfinite(qp.data)]]
     one = max(below for _, below in ratios)
 
@@ -57,22 +57,42 @@ def whole(qp: QP) -> WholeProgram | None:
 
     n = qp.q.size
     P = rows(qp.P)
-    equalities = list(zip(rows(qp.A), map(number, qp.b), strict=True))
-    if any(b != 0 and not any(row) for row, b in equalities):
-        return None
-    kept = [(row, b) for row, b in equalities if any(row)]
     identity = [[one * (i == k) for k in range(n)] for i in range(n)]
+    table = [[*row, number(b)] for row, b in zip(rows(qp.A), qp.b, strict=True)]
+    table += [[*identity[i], number(qp.ub[i])] for i in np.flatnonzero(qp.lb == qp.ub)]
+    kept = independent(table)
+    if kept is None:
+        return None
     negative = [[-v for v in row] for row in identity]
     limits = [*qp.h, *qp.ub, *(-qp.lb)]
     return WholeProgram(
         [[P[i][k] + P[k][i] for k in range(n)] for i in range(n)],
         [2 * number(v) for v in qp.q],
-        [row for row, _ in kept],
-        [b for _, b in kept],
+        [row[:-1] for row in kept],
+        [row[-1] for row in kept],
         rows(qp.G) + identity + negative,
         [None if v == np.inf else number(v) for v in limits],
         one,
     )
+
+
+def independent(table: Rows) -> Rows | None:
+    """Return rows [a | b] that are independent; None if a x = b contradict each other."""
+    kept: Rows = []
+    reduced: list[tuple[int, list[int]]] = []
+    for row in table:
+        left = row
+        for pivot, other in reduced:
+            if left[pivot]:
+                factor = left[pivot]
+                left = [other[pivot] * v - factor * w for v, w in zip(left, other, strict=True)]
+        place = next((k for k, value in enumerate(left) if value), None)
+        if place == len(row) - 1:
+            return None
+        if place is not None:
+            kept.append(row)
+            reduced.append((place, left))
+    return kept
 
 
 def solve(rows: Rows, right: list[int]) -> tuple[list[int], int] | None:
@@ -142,8 +162,8 @@ def exact_solution(qp: QP, face: Face, most: int = 400) -> list[Fraction] | None
     program = whole(qp)
     if program is None:
         return None
-    waiting = deque([face])
-    seen = {face}
+    waiting = deque([face, frozenset()])
+    seen = {face, frozenset()}
     while waiting and len(seen) <= most:
         face = waiting.popleft()
         moves = _moves(program, face)
@@ -185,7 +205,7 @@ def face_of(qp: QP, active: np.ndarray) -> Face:
     """Return the face of an active set as in `iiwa_dnn.qp.proof.Proof`, (n + m,)."""
     n, m, _ = qp.sizes
     rows = [j for j in range(m) if active[n + j]]
-    upper = [m + i for i in range(n) if active[i] > 0]
+    upper = [m + i for i in range(n) if active[i] > 0 and qp.lb[i] < qp.ub[i]]
     lower = [m + n + i for i in range(n) if active[i] < 0]
     return frozenset(rows + upper + lower)
 

@@ -16,8 +16,10 @@ from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import BOOL, DOUBLE, Array, Known, Tuple, Value, integer
+from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Tuple, Value, integer
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
+from iiwa_dnn.qp.layout import Sizes, qp_views
+from iiwa_dnn.qp.proof import prove_point
 from iiwa_dnn.schemes.program import ProgramArrays, write_program
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -112,11 +114,27 @@ def code_of(controller: Controller) -> Code:
         "at_decision": columns["decision"].start,
         "guard": GUARD * bool(step.yielding.stop),
         "at_dq": columns["dq"].start,
+        "at_point": columns["point"].start,
+        "point_size": 2 * n + m + p,
+        "active_size": n + m,
         "at_targets": columns["targets"].start,
         "code": translator.text(),
+        "bound_code": _bound(program.sizes, program.data_size),
         "kinematics": kinematics_code(robot, program.kinematics.frame_ids),
     }
     return Code({name: str(value) for name, value in values.items()}, has_reference)
+
+
+def _bound(sizes: Sizes, data_size: int) -> str:
+    """Translate the proof of an answer, as a text of its own."""
+    n, m, p = sizes
+    translator = Translator()
+    views = translator.function(qp_views, [_array("data", data_size), *map(integer, sizes)])
+    assert views is not None
+    active = Value(Array(INT, (n + m,)), "active")
+    point = _array("point", 2 * n + m + p)
+    translator.function(prove_point, [Value(views.result, "qp", pointer=True), point, active])
+    return translator.text()
 
 
 def check(controller: Controller, step: ControlStep) -> None:

@@ -51,10 +51,15 @@ def unit_of(qp: QPViews) -> float:
 
 @compiled
 def symmetric_part(P: Matrix, S: Matrix) -> None:
-    """Write the symmetric part of P (n, n) into S (n, n), each entry rounded once."""
+    """Write the symmetric part of P (n, n) into S (n, n), each entry rounded once.
+
+    An entry that is too small to be halved becomes NaN, and nothing is proven.
+    """
     for i in range(P.shape[0]):
         for k in range(P.shape[0]):
-            S[i, k] = 0.5 * (P[i, k] + P[k, i])
+            both = P[i, k] + P[k, i]
+            half = 0.5 * both
+            S[i, k] = half if half + half == both else np.nan
 
 
 @compiled
@@ -85,7 +90,7 @@ def evaluate(
         reach[n + j] += unit * abs(qp.b[j])
     for j in range(qp.h.size):
         at = n + p + j
-        if spread[at] != 0.0:
+        if u[at] != 0.0 or spread[at] != 0.0:
             _add_multiple(qp.G, j, u[at], spread[at], value, reach)
         value[at], reach[at] = _row_value(qp.G, j, qp.h[j], u, spread)
         reach[at] += unit * abs(qp.h[j])
@@ -146,9 +151,9 @@ def enclose(qp: QPViews, S: Matrix, active: IntVector, u: Vector, error: Vector)
     _write_system(qp, S, places, count, K)
     largest = np.inf
     if _invert(K, R, count, variables, 0.0):
-        largest = _contraction(K, R, count, unit, alpha)
+        largest = _contraction(K, R, count, variables, unit, alpha)
     if not largest < LARGEST and _invert(K, R, count, variables, _balance(K, count, variables)):
-        largest = _contraction(K, R, count, unit, alpha)
+        largest = _contraction(K, R, count, variables, unit, alpha)
     if not largest < LARGEST:
         return False
     residual = np.empty(2 * qp.q.size)
@@ -168,8 +173,13 @@ def enclose(qp: QPViews, S: Matrix, active: IntVector, u: Vector, error: Vector)
 def _unknowns(qp: QPViews, active: IntVector, places: IntVector) -> tuple[int, int]:
     """List the places of the unknowns in ``[x | y | z]``, (2 n,).
 
-    A row 0 x = 0 always holds and has no unknown. More than 2 n unknowns are not listed: the rows
-    are then dependent.
+    A row 0 x = 0 holds everywhere, and one that repeats an active row wherever that does: they
+    have no unknown. More than 2 n unknowns are not listed, for the rows are then dependent.
+
+    Args:
+        qp: The program.
+        active: The active set as in `Proof`, (n + m,).
+        places: The places, (2 n,), overwritten.
 
     Returns:
         The number of unknowns, and how many of them are variables: those come first.
@@ -178,22 +188,53 @@ def _unknowns(qp: QPViews, active: IntVector, places: IntVector) -> tuple[int, i
     p = qp.b.size
     count = 0
     variables = 0
-    for k in range(n + p + qp.h.size):
-        if k < n:
-            used = active[k] == 0
-        elif k < n + p:
-            used = qp.b[k - n] != 0.0
-            for i in range(n):
-                used = used or qp.A[k - n, i] != 0.0
-        else:
-            used = active[k - p] != 0
-        if used:
-            if count < places.size:
-                places[count] = k
+    for i in range(n):
+        if active[i] == 0:
+            places[count] = i
             count += 1
-            if k < n:
-                variables += 1
+    variables = count
+    for j in range(p):
+        if not _holds_anyway(qp.A, qp.b, j, active, p):
+            count = _add_place(places, count, n + j)
+    for j in range(qp.h.size):
+        if active[n + j] != 0 and not _holds_anyway(qp.G, qp.h, j, active[n:], 0):
+            count = _add_place(places, count, n + p + j)
     return count, variables
+
+
+@compiled
+def _add_place(places: IntVector, count: int, place: int) -> int:
+    """Add a place to a list (size,) if there is room; return how many there are to be."""
+    if count < places.size:
+        places[count] = place
+    return count + 1
+
+
+@compiled
+def _holds_anyway(rows: Matrix, limits: Vector, j: int, active: IntVector, equalities: int) -> bool:
+    """Test whether row j is 0 x = 0 or repeats an active row before it, number by number.
+
+    Args:
+        rows: The rows, (k, n).
+        limits: Their right-hand sides, (k,).
+        j: Number of the row.
+        active: For each row whether it is active, (k,).
+        equalities: Number of rows that are active whatever `active` says.
+    """
+    for k in range(j + 1):
+        # Row j itself stands for a row of zeros.
+        differing = 0
+        if k == j:
+            differing += limits[j] != 0.0
+        elif limits[k] != limits[j] or (k >= equalities and active[k] == 0):
+            differing += 1
+        for i in range(rows.shape[1]):
+            if differing > 0:
+                break
+            differing += rows[j, i] != (rows[k, i] if k < j else 0.0)
+        if differing == 0:
+            return True
+    return False
 
 
 @compiled
@@ -202,16 +243,14 @@ def _write_system(qp: QPViews, S: Matrix, places: IntVector, count: int, K: Matr
     n = qp.q.size
     p = qp.b.size
     for a in range(count):
-        i = places[a]
+        row = places[a]
         for b in range(a + 1):
-            k = places[b]
-            entry = 0.0
-            if i < n:
-                entry = S[i, k]
-            elif k < n:
-                entry = qp.A[i - n, k] if i < n + p else qp.G[i - n - p, k]
-            K[a, b] = entry
-            K[b, a] = entry
+            K[a, b] = 0.0
+            if row < n:
+                K[a, b] = S[row, places[b]]
+            elif places[b] < n:
+                K[a, b] = qp.A[row - n, places[b]] if row < n + p else qp.G[row - n - p, places[b]]
+            K[b, a] = K[a, b]
 
 
 @compiled
@@ -288,10 +327,12 @@ def _sweep(R: Matrix, k: int, count: int, column: Vector) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=SUMS)
-def _contraction(K: Matrix, R: Matrix, count: int, unit: float, alpha: Vector) -> float:
+def _contraction(
+    K: Matrix, R: Matrix, count: int, variables: int, unit: float, alpha: Vector
+) -> float:
     """Bound the row sums of abs(I - R K), (size,), of symmetric matrices; return the largest.
 
-    K and R are (size, size).
+    K and R are (size, size); K is zero beyond the variables in the rows that are none's.
     """
     size = np.uint64(count)
     sums = np.empty(K.shape[0])
@@ -308,7 +349,7 @@ def _contraction(K: Matrix, R: Matrix, count: int, unit: float, alpha: Vector) -
         total = unit * weight + TINY
         for b in range(size):
             defect = 1.0 if a == b else 0.0
-            for k in range(size):
+            for k in range(size if b < variables else np.uint64(variables)):
                 defect -= R[a, k] * K[b, k]
             total += abs(defect)
         alpha[a] = (1.0 + unit) * total

@@ -208,10 +208,15 @@ def _begin(qp: QPViews, point: Vector, active: IntVector, u: Vector) -> None:
             u[n + p + j] = 0.0
 
 
+Signs = tuple[int, int, int, float]
+"""How many multipliers are negative; how many slacks are not shown to be positive; how many
+multipliers are not; and by how much in all, times the absolute values of their rows."""
+
+
 @compiled
 def _judge(
     qp: QPViews, S: Matrix, u: Vector, error: Vector, active: IntVector, following: IntVector
-) -> tuple[int, int, int, float]:
+) -> Signs:
     """Look at the signs of all slacks and multipliers over an enclosure.
 
     Args:
@@ -223,12 +228,8 @@ def _judge(
         following: The active set that the signs ask for, (n + m,), overwritten.
 
     Returns:
-        How many multipliers are negative, or -1 if two bounds cross; how many slacks are not
-        shown to be positive; how many multipliers are not shown to be positive; and by how much
-        in all, times their rows.
+        The signs; the first number is -1 if two bounds cross.
     """
-    n = qp.q.size
-    p = qp.b.size
     unit = unit_of(qp)
     spread = np.empty(u.size)
     value = np.empty(u.size)
@@ -236,57 +237,80 @@ def _judge(
     for k in range(u.size):
         spread[k] = unit * abs(u[k]) + error[k]
     evaluate(qp, S, u, spread, value, reach)
-    left = 0
-    opened = 0
-    weak = 0
-    missing = 0.0
     for k in range(active.size):
-        side = active[k]
-        following[k] = side
-        at = k if k < n else k + p
-        multiplier = -side * value[at] if k < n else u[at]
-        radius = reach[at] if k < n else error[at]
-        if k < n and not qp.lb[k] <= qp.ub[k]:
-            return -1, 0, 0, 0.0
-        if side == 0:
-            following[k] = _blocked(qp, k, u, error, value, reach)
-            opened += following[k] != 0
-        elif k >= n or qp.lb[k] < qp.ub[k]:
-            if not multiplier - radius > 0.0:
+        following[k] = active[k]
+    left, opened, weak, missing = _judge_bounds(qp, u, error, value, reach, following)
+    if left < 0:
+        return left, opened, weak, missing
+    n = qp.q.size
+    p = qp.b.size
+    for j in range(qp.h.size):
+        at = n + p + j
+        if active[n + j] != 0 and error[at] == 0.0 and u[at] >= 0.0:
+            continue  # it repeats another active row, and keeps the multiplier that it came with
+        if active[n + j] != 0:
+            sign = _sign(u[at], error[at])
+            if sign <= 0:
                 weak += 1
-                missing += larger(0.0, radius - multiplier) * _length(qp, k)
-            if multiplier + radius < 0.0:
+                missing += larger(0.0, error[at] - u[at]) * _length(qp.G, j)
+            if sign < 0:
                 left += 1
-                following[k] = 0
+                following[n + j] = 0
+        elif qp.h[j] < np.inf and not value[at] + reach[at] < 0.0:
+            opened += 1
+            following[n + j] = 1
     return left, opened, weak, (1.0 + unit) * missing
 
 
 @compiled
-def _blocked(qp: QPViews, k: int, u: Vector, error: Vector, value: Vector, reach: Vector) -> int:
-    """Find the side on which an inactive bound or row k is not shown to be kept; 0 if it is.
+def _judge_bounds(
+    qp: QPViews, u: Vector, error: Vector, value: Vector, reach: Vector, following: IntVector
+) -> Signs:
+    """Look at the signs of the bounds' slacks and multipliers, as `_judge` does at all.
 
-    The other arguments, (n + p + m,), are those of `_judge`.
+    All vectors begin with the n variables, (size,).
     """
-    n = qp.q.size
-    if k < n:
-        if not u[k] + error[k] < qp.ub[k]:
-            return 1
-        if not u[k] - error[k] > qp.lb[k]:
-            return -1
-        return 0
-    at = k + qp.b.size
-    return 0 if qp.h[k - n] == np.inf or value[at] + reach[at] < 0.0 else 1
+    left = 0
+    opened = 0
+    weak = 0
+    missing = 0.0
+    for i in range(qp.q.size):
+        side = following[i]
+        if not qp.lb[i] <= qp.ub[i]:
+            return -1, opened, weak, missing
+        if side == 0:
+            if not u[i] + error[i] < qp.ub[i]:
+                following[i] = 1
+                opened += 1
+            elif not u[i] - error[i] > qp.lb[i]:
+                following[i] = -1
+                opened += 1
+        elif qp.lb[i] < qp.ub[i]:
+            multiplier = -side * value[i]
+            sign = _sign(multiplier, reach[i])
+            if sign <= 0:
+                weak += 1
+                missing += larger(0.0, reach[i] - multiplier)
+            if sign < 0:
+                left += 1
+                following[i] = 0
+    return left, opened, weak, missing
 
 
 @compiled
-def _length(qp: QPViews, k: int) -> float:
-    """Add up the absolute values of the entries of bound or row k."""
-    n = qp.q.size
-    if k < n:
-        return 1.0
+def _sign(center: float, radius: float) -> int:
+    """Return the sign of all numbers of an interval; 0 if they have none in common."""
+    if center - radius > 0.0:
+        return 1
+    return -1 if center + radius < 0.0 else 0
+
+
+@compiled
+def _length(rows: Matrix, j: int) -> float:
+    """Add up the absolute values of row j of a matrix (k, n)."""
     total = 0.0
-    for i in range(n):
-        total += abs(qp.G[k - n, i])
+    for i in range(rows.shape[1]):
+        total += abs(rows[j, i])
     return total
 
 

@@ -119,7 +119,10 @@ def test_nothing_about_the_answer_is_trusted() -> None:
         (QP(np.zeros((1, 1)), [-0.0], G=[[1.0]], h=[0.0], ub=[0.0]), [0.0], np.inf, DEPENDENT),
         (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[0.0]), [0.0, 0.0], 0.0, ""),  # 0 x = 0
         (QP(np.eye(2), [0.0, 0.0], A=[[0.0, 0.0]], b=[1e-300]), [0.0, 0.0], np.inf, DEPENDENT),
-        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 1.0]), [0.5, 0.5], np.inf,
+        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 1.0]), [0.5, 0.5], 0.0, ""),
+        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [1.0, 1.0]], b=[1.0, 2.0]), [0.5, 0.5], np.inf,
+         DEPENDENT),
+        (QP(np.eye(2), [0.0, 0.0], A=[[1.0, 1.0], [2.0, 2.0]], b=[1.0, 2.0]), [0.5, 0.5], np.inf,
          DEPENDENT),
         (QP([[-1e-18]], [0.0], lb=[-1.0], ub=[1.0]), [0.0], np.inf, NOT_CONVEX),
         (QP([[1.0, 1.0], [1.0, 1.0 - 1e-15]], [0.0, 0.0]), [0.0, 0.0], np.inf, DEPENDENT),
@@ -127,6 +130,7 @@ def test_nothing_about_the_answer_is_trusted() -> None:
         (QP([[1.0, 2.0], [2.0, 1.0]], [0.0, 0.0], A=[[1.0, 1.0]], b=[0.0]), [0.0, 0.0], np.inf,
          NOT_CONVEX),
         (QP([[1.0, 1e-6], [-1e-6, 1.0]], [-1.0, -1.0]), [1.0, 1.0], 0.0, ""),  # its symmetric part
+        (QP([[1.0, 5e-324], [0.0, 1.0]], [0.0, 0.0]), [0.0, 0.0], np.inf, DEPENDENT),  # no half
         (QP(np.eye(1), [0.0], lb=[1.0], ub=[0.0]), [0.5], np.inf, REASONS[6]),
         (QP(np.eye(1), [0.0], lb=[np.nan]), [0.0], np.inf, REASONS[6]),
         (QP(np.eye(1), [0.0]), [np.inf], np.inf, DEPENDENT),
@@ -164,6 +168,17 @@ def test_a_vertex_of_a_linear_program_is_proven_by_its_multipliers() -> None:
 def test_where_products_underflow_the_bound_says_so() -> None:
     assert prove(QP([[1e-308]], [-1e-308]), answer([1.0])).bound > 1e10
     assert prove(QP([[1e-200]], [-1e-200]), answer([1.0])).bound < 1e-14
+
+
+def test_a_repeated_row_keeps_no_negative_multiplier() -> None:
+    # Both rows count as active at x = 7, and only together do their multipliers have a sign.
+    qp = QP(np.eye(1), [0.5], G=[[1.0], [1.0]], h=[1.0, 1.0])
+    for z in ([3.5, -5.0], [-5.0, 3.5], [0.0, -1e-9], [1.0, 1.0], [-1e-320, -1e-320]):
+        proof, _ = judged(qp, answer([7.0], z=np.array(z)))
+        assert proof.bound >= 7.5
+    doubled = QP(np.eye(1), [-2.0], G=[[1.0], [1.0]], h=[1.0, 1.0])
+    proof, _ = judged(doubled, answer([1.0], z=np.array([0.4, 0.6])))
+    assert (proof.reason, proof.bound < 1e-14) == ("", True)
 
 
 def test_a_bound_counts_what_the_answer_lacks() -> None:
