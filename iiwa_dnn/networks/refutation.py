@@ -1,4 +1,4 @@
-r"""Search for a certificate that a program has no solution, along the way the network diverges.
+r"""Search for evidence that a program has no solution, along the way the network diverges.
 
 On an infeasible program the multipliers of the projection network grow for ever, on an unbounded
 one x does, and the difference of two long implicit steps tends to the direction of that growth: for
@@ -15,6 +15,8 @@ from iiwa_dnn.networks.integrators.implicit import advance_implicit
 from iiwa_dnn.qp.certificates import (
     RADIUS,
     infeasibility_radius,
+    proves_infeasible,
+    proves_unbounded,
     towards_bound,
     unboundedness_radius,
 )
@@ -32,7 +34,7 @@ _SLIGHT = 1e-4
 
 
 def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
-    """Follow the network from where it was given up, and prove that there is no solution.
+    """Follow the network from where it was given up, and prove that there is no solution near.
 
     Takes at most `ROUNDS` + 1 implicit steps, of at most 100 linear systems each, and after each
     but the first at most four small least-squares problems.
@@ -42,9 +44,9 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
         point: ``[x | y | z | z_box]`` where the network was given up.
 
     Returns:
-        ``PRIMAL_INFEASIBLE`` with multipliers ``[y | z | z_box]`` of size p + m + n, or
-        ``UNBOUNDED`` with a direction (n,), verified; None where none was found, which proves
-        nothing.
+        ``PRIMAL_INFEASIBLE`` or ``NONE_FEASIBLE_NEAR`` with multipliers ``[y | z | z_box]`` of size
+        p + m + n, or ``UNBOUNDED`` or ``NONE_OPTIMAL_NEAR`` with a direction (n,), verified; None
+        where none was found, which proves nothing.
     """
     n, m, p = qp.sizes
     check_size("point", point, 2 * n + m + p)
@@ -74,10 +76,12 @@ def _verified(qp: QP, growth: Vector) -> tuple[Status, Vector] | None:
     n = qp.sizes[0]
     for multipliers in (growth[n:], _polished_multipliers(qp, growth[n:])):
         if infeasibility_radius(qp, multipliers) >= RADIUS:
-            return Status.PRIMAL_INFEASIBLE, multipliers
+            proven = proves_infeasible(qp, multipliers)
+            return Status.PRIMAL_INFEASIBLE if proven else Status.NONE_FEASIBLE_NEAR, multipliers
     for direction in (growth[:n], _polished_direction(qp, growth[:n])):
         if unboundedness_radius(qp, direction) >= RADIUS:
-            return Status.UNBOUNDED, direction
+            proven = proves_unbounded(qp, direction)
+            return Status.UNBOUNDED if proven else Status.NONE_OPTIMAL_NEAR, direction
     return None
 
 

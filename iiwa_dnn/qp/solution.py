@@ -38,12 +38,18 @@ class Status(str, Enum):
     NOT_FINITE = "not finite"
     """The data or the state is no longer a number."""
     PRIMAL_INFEASIBLE = "primal infeasible"
-    """No point with entries below 1e8 satisfies the constraints: Farkas multipliers prove it."""
+    """No point satisfies the constraints: Farkas multipliers prove it, rounding counted."""
     UNBOUNDED = "dual infeasible (unbounded)"
     """The cost falls for ever along a direction that no constraint ends: the direction proves it.
 
     The program is unbounded then, unless no point is feasible in the first place.
     """
+    NONE_FEASIBLE_NEAR = "no feasible point within 1e8"
+    """Every point that satisfies the constraints has an entry of 1e8 or more: it is proven of
+    multipliers that leave a residual. There may be one farther away."""
+    NONE_OPTIMAL_NEAR = "no KKT point within 1e8"
+    """Every KKT point has an entry or a multiplier of 1e8 or more: it is proven of a direction that
+    leaves a residual. There may be one farther away."""
 
 
 class Residuals(NamedTuple):
@@ -79,8 +85,9 @@ class Solution(NamedTuple):
         primal: Primal residual of this very point, as qpsolvers defines it.
         dual: Dual residual.
         gap: Duality gap.
-        certificate: Proof that there is no solution, where one was verified: ``[y | z | z_box]`` of
-            size p + m + n for an infeasible program, the direction (n,) for an unbounded one.
+        certificate: Evidence that there is no solution, or none within 1e8 as the status says,
+            where it was verified: ``[y | z | z_box]`` of size p + m + n for an infeasible program,
+            the direction (n,) for an unbounded one.
     """
 
     point: Vector
