@@ -2,12 +2,14 @@
 
 ``python -m benchmarks proof`` proves answers to programs of many kinds and judges each finite bound
 by `benchmarks.exact`, which shares no code with the proof: no bound may be below the true error.
-Every third answer is moved by 1e-16 to 1, and every sixth has the multipliers of another.
+Every third answer is moved by 1e-16 to 1, and every sixth has the multipliers of another. With
+``--runs STEPS`` it proves every step of whole runs instead, and times the proofs.
 """
 
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import NamedTuple
@@ -15,14 +17,16 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks import exact, programs
-from benchmarks.export_settings import SETTINGS
+from benchmarks.export_settings import SETTINGS, drawing
 from benchmarks.foreign import ARMS, recorded
 from benchmarks.report import tabulate
 from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import prove
 from iiwa_dnn.qp.solution import Solution
-from iiwa_dnn.robot import Configuration
+from iiwa_dnn.references import Circle, Heart
+from iiwa_dnn.robot import Configuration, load_robot
 
 Answers = Iterator[tuple[QP, Solution]]
 
@@ -172,13 +176,108 @@ def judge(name: str, answers: Answers) -> Row:
     return Row(name, count, proven / count, weak / count, violations, unjudged, median)
 
 
+class Run(NamedTuple):
+    """Proofs of a whole run.
+
+    Attributes:
+        name: Name of the run.
+        steps: Number of steps.
+        proven: Number of answers with a finite bound.
+        largest: Largest of the finite bounds [rad/s].
+        prove: Time of a proof, in blocks of 1,000 [us].
+        solve: Time of a solve, one after another, warm [us].
+    """
+
+    name: str
+    steps: int
+    proven: int
+    largest: float
+    prove: float
+    solve: float
+
+
+_RUNS = {
+    "run": "{name}",
+    "steps": "{steps:,}",
+    "proven": "{proven:,}",
+    "largest bound [rad/s]": "{largest:.1e}",
+    "proof [us]": "{prove:.1f}",
+    "solve [us]": "{solve:.1f}",
+}
+
+
+def runs(steps: int) -> Iterator[Run]:
+    """Prove every step of whole runs of controllers, and time the proofs."""
+    at_limit = load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    made = {
+        "heart": drawing(),
+        "circle": drawing(path=Circle()),
+        "obstacle": SETTINGS["collisions with itself, a box, a floor"](),
+        "two arms": SETTINGS["two arms"](),
+        "acceleration and jerk limits": SETTINGS["acceleration and jerk"](),
+        "at the limit": drawing(robot=at_limit, path=Heart(scale=0.008)),
+        "velocity limits active": SETTINGS["velocity limits active"](),
+        "block form of the paper": SETTINGS["block form"](),
+    }
+    for name, (controller, q0) in made.items():
+        controller.anchor(Configuration(controller.robot, q0))
+        q = q0.copy()
+        commands = []
+        for k in range(steps):
+            commands.append(controller.step(q, k * controller.dt))
+            q = q + controller.dt * commands[-1].dq
+        qps = [command.qp for command in commands]
+        data = np.stack([qp.data for qp in qps])
+        points = np.stack([command.solution.point for command in commands])
+        bounds = CrossCheck(("proof",)).check_block(data, qps[0].sizes, points).solution_gap[:, 0]
+        finite = bounds[bounds < np.inf]
+        yield Run(
+            name,
+            steps,
+            finite.size,
+            float(finite.max(initial=0.0)),
+            _quietest(
+                lambda data=data, points=points, sizes=qps[0].sizes: _blocks(data, sizes, points)
+            )
+            / steps,
+            _quietest(lambda qps=qps: _solved(qps)) / steps,
+        )
+
+
+def _blocks(data: np.ndarray, sizes: tuple[int, int, int], points: np.ndarray) -> None:
+    check = CrossCheck(("proof",))
+    for first in range(0, len(data), 1000):
+        block = slice(first, first + 1000)
+        check.check_block(data[block], sizes, points[block])
+
+
+def _solved(qps: list[QP]) -> None:
+    solver = DNNSolver()
+    for qp in qps:
+        solver.solve(qp)
+
+
+def _quietest(call: Callable[[], None]) -> float:
+    """Return the least time of five calls [us]."""
+    times = []
+    for _ in range(5):
+        began = time.perf_counter()
+        call()
+        times.append(time.perf_counter() - began)
+    return 1e6 * min(times)
+
+
 def bench_proof(arguments: list[str], prog: str) -> int:
     """Print a row for each kind; return 1 if a bound was below the true error, else 0."""
     parser = argparse.ArgumentParser(description=__doc__, prog=prog)
     parser.add_argument("--programs", type=int, default=1_000_000, help="number of random programs")
     parser.add_argument("--steps", type=int, default=1000, help="programs of each controller")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random programs")
+    parser.add_argument("--runs", type=int, default=0, help="steps of each whole run; nothing else")
     given = parser.parse_args(arguments)
+    if given.runs:
+        print(tabulate(_RUNS, [run._asdict() for run in runs(given.runs)]))
+        return 0
     kinds: list[tuple[str, Answers]] = [
         *((f"arm: {name}", arms_answers(name, given.steps)) for name in SETTINGS),
         *((f"Pink's, {arm}", recorded_answers(arm, given.steps)) for arm in ARMS),

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp.certificates import proves_infeasible
 from iiwa_dnn.qp.curvature import least_curvature
 from iiwa_dnn.qp.enclosure import IntVector, enclose, evaluate, symmetric_part, unit_of
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled, larger, qp_views
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 ROUNDS = 5
 """Active sets that are tried, each out of the signs of the one before."""
 
-PROVEN, WEAK, FLAT, DEPENDENT, UNDECIDED, NOT_CONVEX, CROSSED, FAR = range(8)
+PROVEN, WEAK, FLAT, DEPENDENT, UNDECIDED, NOT_CONVEX, CROSSED, FAR, INFEASIBLE = range(9)
 
 REASONS = (
     "",
@@ -43,6 +44,7 @@ REASONS = (
     "the cost is not shown to be convex",
     "a lower bound exceeds its upper bound, or is no number",
     "the answer is not finite",
+    "proven: no point satisfies the constraints",
 )
 """Reasons by their number; the first two come with a finite bound."""
 
@@ -69,7 +71,8 @@ def prove(qp: QP, solution: Solution | qpsolvers.Solution) -> Proof:
 
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
-    the program count as exact.
+    the program count as exact. Where a `Solution` has a certificate instead, the reason says
+    whether it proves that there is none.
 
     Args:
         qp: The program.
@@ -88,6 +91,10 @@ def prove(qp: QP, solution: Solution | qpsolvers.Solution) -> Proof:
     bound = np.empty(1)
     reason = np.empty(1, dtype=np.int64)
     prove_block(qp.data[np.newaxis], n, m, point[np.newaxis], bound, reason, active)
+    certificate: Any = getattr(solution, "certificate", None)
+    is_farkas = certificate is not None and certificate.size == point.size - n
+    if bound[0] == np.inf and is_farkas and proves_infeasible(qp, certificate):
+        reason[0] = INFEASIBLE
     return Proof(float(bound[0]), active[0], REASONS[reason[0]])
 
 

@@ -320,3 +320,37 @@ def test_errors_of_loading(heart: Path, tmp_path: Path) -> None:
         exported.step([1.0], np.zeros(18))
     with pytest.raises(InvalidInputError, match="target"):
         exported.step(np.zeros(7), [np.nan] * 18)
+
+
+@pytest.mark.parametrize("name", ["velocity limits active", "two arms"])
+def test_the_bound_of_a_command_is_pythons(name: str, tmp_path: Path) -> None:
+    controller, q0 = SETTINGS[name]()
+    folder = c99(controller, tmp_path, q0, verify=False)
+    exported = {flags: load(folder, (*QUICK, *flags), "gcc") for flags in CONTRACTIONS}
+    assert {each.bound() for each in exported.values()} == {np.inf}  # no command yet
+    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
+    layout = controller.layout
+    q = q0.copy()
+    proven = 0
+    for k in range(60):
+        targets = controller.targets(k * controller.dt - controller.delay)
+        for each in exported.values():
+            dq, _ = each.step(q, targets)
+            row = np.array(each._memory[: layout.width])
+            point = layout.view(row, "point").copy()
+            point[: dq.size] = dq
+            qp = iiwa_dnn.QP.from_data(layout.view(row, "program").copy(), layout.sizes)
+            bound = iiwa_dnn.prove(qp, _solution(point, layout.sizes)).bound
+            # The centers of both enclosures differ by the rounding of another order.
+            np.testing.assert_allclose(each.bound(), bound, rtol=1e-6)
+            proven += bound < 1e-6
+        q = q + controller.dt * dq
+    assert proven == 120
+
+
+CONTRACTIONS = ((), ("-mfma", "-ffp-contract=fast"))
+"""Flags without and with products and sums that are rounded once."""
+
+
+def _solution(point: np.ndarray, sizes: tuple[int, int, int]) -> iiwa_dnn.Solution:
+    return iiwa_dnn.Solution(point, sizes, iiwa_dnn.Status.SOLVED, 1, 0.0, 0.0, 0.0, 0.0)

@@ -201,6 +201,17 @@ def test_answers_that_are_none_are_refused() -> None:
         prove(np.eye(2), answer([1.0, 2.0]))
 
 
+def test_a_certificate_is_proven_or_is_not() -> None:
+    rows = [[-1.0, -1.0]]
+    for limit, reason in ((-3.0, "proven: no point satisfies the constraints"), (-1.0, "")):
+        qp = QP(np.eye(2), np.zeros(2), G=rows, h=[limit], ub=[1.0, 1.0])
+        proof = prove(qp, DNNSolver().solve(qp))
+        assert proof.reason == reason
+        assert (proof.bound < np.inf) is (reason == "")
+        farkas = DNNSolver().solve(qp)._replace(certificate=np.ones(3))
+        assert prove(qp, farkas).reason == reason
+
+
 def test_a_check_hands_the_proof_on() -> None:
     known = [known_qp(np.random.default_rng([3, seed]), 5, 2, 1)[0] for seed in range(20)]
     points = np.stack([DNNSolver().solve(qp).point for qp in known])
