@@ -46,6 +46,16 @@ def test_the_answer_is_printed_and_written(
         assert set(answer.files) == {"x", "y", "z_box"}
 
 
+def test_the_answer_is_proven(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("solve", [saved(tmp_path, **PROGRAM), "--check", "proof"]) == 0
+    words = capsys.readouterr().out.splitlines()[-1].split()
+    assert words[:2] == ["proof", "within"]
+    assert 0.0 < float(words[2]) < 1e-8
+    flat = saved(tmp_path, P=np.zeros((1, 1)), q=np.zeros(1), lb=np.zeros(1), ub=np.ones(1))
+    assert run("solve", [flat, "--check", "proof"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].startswith("proof      none; the active rows")
+
+
 def test_inequalities_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = saved(tmp_path, P=np.eye(2), q=np.zeros(2), G=[[-1.0, -1.0]], h=[-2.0])
     assert run("solve", [file]) == 0

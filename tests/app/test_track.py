@@ -153,7 +153,13 @@ def test_metrics_can_be_recomputed_from_the_record_alone(
 
 @pytest.mark.parametrize(
     ("check", "solver", "columns"),
-    [("proxqp", "proxqp", 1), ("osqp", "osqp", 1), ("both", "proxqp+osqp", 2), ("none", "none", 0)],
+    [
+        ("proxqp", "proxqp", 1),
+        ("osqp", "osqp", 1),
+        ("both", "proxqp+osqp", 2),
+        ("proof", "proof", 1),
+        ("none", "none", 0),
+    ],
 )
 def test_references(check: str, solver: str, columns: int, tmp_path: Path) -> None:
     record, metrics = run(tmp_path, "--check", check)

@@ -179,6 +179,30 @@ def test_in_continuous_mode_the_gap_is_a_lag_and_not_judged():
     assert failures(dataclasses.replace(record, kkt_residual=np.full(10, 0.3))) == []
 
 
+def test_proofs_are_counted_and_what_is_not_proven_is_a_failure():
+    bounds = np.full((10, 1), 1e-12)
+    residual = np.zeros((10, 1))
+    fields = {
+        "solvers": ("proof",), "solution_gap": bounds, "reference_residual": residual,
+        "objective_gap": np.full((10, 1), np.nan),
+    }  # fmt: skip
+    record = make_record(**fields)
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["proven"], check["reference_failures"], check["steps_checked"]) == (10, 0, 10)
+    assert check["max_solution_gap"] == 1e-12
+    assert failures(record) == []
+    bounds[3] = residual[3] = np.inf
+    bounds[5] = 1e-3
+    record = make_record(**fields)
+    check = compute_metrics(record)["crosscheck"]
+    assert (check["proven"], check["reference_failures"], check["disagreements"]) == (9, 1, 1)
+    assert failures(record) == [
+        "step 5 (t = 0.5 s): proven within 0.001 rad/s of the exact solution alone, "
+        "tolerance 1e-06; 1 step in all",
+        "1 step not proven",
+    ]
+
+
 def test_without_a_check():
     metrics = compute_metrics(make_record(solvers=()))
     check = metrics["crosscheck"]

@@ -146,6 +146,23 @@ def test_summary_is_short_aligned_and_true(run):
     assert lines[-1].endswith("in agreement with proxqp+osqp")
 
 
+def test_a_proven_run_says_so(tmp_path):
+    record = make_record(
+        solvers=("proof",),
+        solution_gap=np.full((10, 1), 3e-12),
+        objective_gap=np.full((10, 1), np.nan),
+        reference_residual=np.zeros((10, 1)),
+    )
+    metrics = compute_metrics(record)
+    line = "10 answers proven within 3e-12 rad/s of the exact solution, 0 not proven"
+    assert f"cross-check        {line}\n" in summary(metrics)
+    assert summary(metrics).endswith("all 10 steps solved, within all limits and proven")
+    text = write_report(record, metrics, tmp_path).read_text(encoding="utf-8")
+    assert f"{line}." in text
+    assert "| answers proven | 10 |" in text
+    assert "reference solver |" not in text
+
+
 def test_summary_of_odd_runs():
     nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
     text = summary(compute_metrics(nothing))
