@@ -34,7 +34,7 @@ _COLUMNS = {
     "kind": "{name}",
     "programs": "{programs:,}",
     "proven": "{proven:.1%}",
-    "of these by the curvature alone": "{weak:.1%}",
+    "by the curvature alone": "{weak:.1%}",
     "bound below the true error": "{violations}",
     "not judged": "{unjudged}",
     "median of bound / error": "{ratio:.3g}",

@@ -249,13 +249,30 @@ def _judge(
     left, opened, weak, missing = _judge_bounds(qp, u, error, value, reach, following)
     if left < 0:
         return left, opened, weak, missing
+    released, added, doubtful, lacking = _judge_rows(qp, u, error, value, reach, following)
+    missing = (1.0 + unit) * (missing + lacking)
+    return left + released, opened + added, weak + doubtful, missing
+
+
+@compiled
+def _judge_rows(
+    qp: QPViews, u: Vector, error: Vector, value: Vector, reach: Vector, following: IntVector
+) -> Signs:
+    """Look at the signs of the rows' slacks and multipliers, as `_judge` does at all.
+
+    All vectors are those of `_judge`, (n + p + m,), and `following` (n + m,) is updated.
+    """
+    left = 0
+    opened = 0
+    weak = 0
+    missing = 0.0
     n = qp.q.size
     p = qp.b.size
     for j in range(qp.h.size):
         at = n + p + j
-        if active[n + j] != 0 and error[at] == 0.0 and u[at] >= 0.0:
+        if following[n + j] != 0 and error[at] == 0.0 and u[at] >= 0.0:
             continue  # it repeats another active row, and keeps the multiplier that it came with
-        if active[n + j] != 0:
+        if following[n + j] != 0:
             sign = _sign(u[at], error[at])
             if sign <= 0:
                 weak += 1
@@ -266,7 +283,7 @@ def _judge(
         elif qp.h[j] < np.inf and not value[at] + reach[at] < 0.0:
             opened += 1
             following[n + j] = 1
-    return left, opened, weak, (1.0 + unit) * missing
+    return left, opened, weak, missing
 
 
 @compiled

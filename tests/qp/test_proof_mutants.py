@@ -53,7 +53,10 @@ MUTANTS = {
         "and not value[at] + reach[at] < 0.0",
         "and value[at] > np.inf",
     ),
-    "index of the rows": ("at = n + p + j\n        if active", "at = n + j\n        if active"),
+    "index of the rows": (
+        "at = n + p + j\n        if following",
+        "at = n + j\n        if following",
+    ),
     "negative multipliers of repeats": ("error[at] == 0.0 and u[at] >= 0.0", "error[at] == 0.0"),
     "negative multipliers of rows": ("sign = _sign(u[at], error[at])", "sign = 1"),
     "negative multipliers of bounds": ("sign = _sign(multiplier, reach[i])", "sign = 1"),
