@@ -36,6 +36,7 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.schemes.limit_names import LimitNames
+from iiwa_dnn.schemes.motion_limits import check_ranges
 from iiwa_dnn.schemes.program import (
     ProgramArrays,
     StepProgram,
@@ -94,6 +95,8 @@ class ControlStep:
         if not program.is_compiled:
             self.begin = ANSWER
         self.arrays = program.arrays(dt)
+        if program.rate_limits is not None:
+            check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
         self.run = self._entry()
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
         # At the acceleration level the clock of an arm in motion cannot be slowed down at once.

@@ -22,8 +22,8 @@ acceleration held at -A', and the jerk J (`stopping_distance`; mirrored where th
 turn round), and its highest point on the way there, `highest`, grows with v_k: the upper bound is
 its root. In one step of the true limits that point can always be kept, since -J over a whole step
 brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J' is at most
-A / (8 dt) and dq_max / (8 dt^2). Samples are above the spline by 0.2 J' dt^3 at most, which is kept
-free at either end.
+A / (8 dt) and dq_max / (8 dt^2). Samples are above that way by `MARGIN` at most, which is kept free
+at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
@@ -46,7 +46,7 @@ from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.step import StepViews
 
 MARGIN = 0.2
-"""Room that is kept free at a position limit, in units of J dt^3."""
+"""Margin that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
 
 ROUNDING = 2e-14
 """Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
@@ -169,14 +169,28 @@ class MotionLimits(Limit):
         for limit in self.limits:
             row = rates[int(isinstance(limit, JerkLimits))]
             np.minimum(row, limit.of(robot), out=row)
-        acceleration, jerk = rates
-        turn = 2.0 * np.minimum(acceleration, np.sqrt(2.0 * jerk * robot.dq_max)) ** 3
-        short = turn > jerk**2 * (robot.q_upper - robot.q_lower)
-        if short.any():
-            i = int(np.flatnonzero(short)[0])
-            problem = f"joint {i + 1}: {jerk[i]:g} rad/s^3 is too little to stop in its range"
-            raise InvalidInputError("jerk_limit", problem, jerk)
-        return np.concatenate([robot.limits.ravel(), rates.ravel()])
+        constants: Vector = np.concatenate([robot.limits.ravel(), rates.ravel()])
+        check_ranges(constants, np.inf)
+        return constants
+
+
+def check_ranges(constants: Vector, rate: float) -> None:
+    """Raise InvalidInputError if a joint's range is too short to turn round in.
+
+    Args:
+        constants: `MotionLimits.constants`, (5 n,).
+        rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
+    """
+    lower, upper, fastest, acceleration, jerk = constants.reshape(5, -1)
+    usable = np.minimum(jerk, rate * np.minimum(acceleration, rate * fastest) / SHARE)
+    steepest = np.minimum(acceleration, np.sqrt(2.0 * usable * fastest))
+    short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
+    if short.any():
+        i = int(np.flatnonzero(short)[0])
+        problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range"
+        if rate < np.inf:
+            problem += f", and more cannot be used at {1.0 / rate:g} s a step"
+        raise InvalidInputError("jerk_limit", problem, jerk)
 
 
 def merged(limits: Sequence[Limit]) -> list[Limit]:
@@ -214,10 +228,16 @@ def joint_bounds(
         lower, upper = _acceleration_bounds(last, above, below, rates, dt)
     else:
         return -np.inf, np.inf
-    if lower > upper:  # by rounding, or at a position that no command led to
-        lower = 0.5 * (lower + upper)
-        upper = lower
-    return lower, upper
+    if lower <= upper:
+        return lower, upper
+    # By rounding, or at a position that no command led to: the way back into the range may take
+    # longer, but not end beyond its other side.
+    command = 0.5 * (lower + upper)
+    if above < 0.0:
+        command = lower
+    elif below < 0.0:
+        command = upper
+    return command, command
 
 
 @compiled
@@ -231,8 +251,9 @@ def _acceleration_bounds(
     final = last + unit
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
-    upper = min(fastest, unit * approach(above / (unit * dt)))
-    lower = max(-fastest, -unit * approach(below / (unit * dt)))
+    # Outside of the range the way back is no quicker than the velocity limit.
+    upper = min(max(unit * approach(above / (unit * dt)), -fastest), fastest)
+    lower = min(max(-unit * approach(below / (unit * dt)), -fastest), fastest)
     return min(max(lower, first), final), min(max(upper, first), final)
 
 

@@ -12,9 +12,23 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from helpers_simulation import paper_robot
-from iiwa_dnn import AccelerationLimits, InvalidInputError, JerkLimits, Scheme, load_robot
+from iiwa_dnn import (
+    AccelerationLimits,
+    Controller,
+    InvalidInputError,
+    JerkLimits,
+    Scheme,
+    load_robot,
+)
 from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.schemes.motion_limits import approach, braking, joint_bounds
+from iiwa_dnn.schemes.motion_limits import (
+    MARGIN,
+    approach,
+    braking,
+    check_ranges,
+    joint_bounds,
+    stopping_distance,
+)
 from judge_limits import breaches
 
 INF = math.inf
@@ -65,6 +79,80 @@ def test_hostile_choices_break_no_limit(
     assert adversary(0.0, upper, limits, dt, draws, out) >= 0.0
     q = np.concatenate([[0.0], out])[:, np.newaxis]
     assert breaches(q, dt, -upper, upper, *limits) == []
+
+
+@pytest.mark.parametrize(
+    ("speed", "acceleration", "jerk", "dt"),
+    [(1.71, 8.65, INF, 1e-3), (2.175, 15.0, INF, 1e-2), (2.0, 300.0, INF, 2e-2),
+     (2.0, 15.0, 500.0, 1e-2)],
+)  # fmt: skip
+@pytest.mark.parametrize("start", [-1.6, 1.6])
+def test_outside_a_position_limit_the_velocity_limit_holds(
+    speed: float, acceleration: float, jerk: float, dt: float, start: float
+) -> None:
+    # Crossed bounds were averaged: 4.4 times the velocity limit at 300 rad/s^2 and 20 ms.
+    out = np.empty(2000)
+    limits = (speed, acceleration, jerk)
+    for seed in range(5):
+        draws = np.random.default_rng(seed).random((2000, 4))
+        assert adversary(start, 1.0, limits, dt, draws, out) >= 0.0
+        q = np.concatenate([[start], out])[:, np.newaxis]
+        assert breaches(q, dt, -1.6, 1.6, *limits) == []
+        inside = np.flatnonzero(np.abs(q[:, 0]) <= 1.0)
+        assert breaches(q[inside[0] :], dt, -1.0, 1.0) == []  # once back, it stays
+
+
+def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side() -> None:
+    dt, limits = 1e-2, (2.0, 5.0, INF)
+    q, last = 0.3, 0.0  # above a range of 1 mrad
+    for _ in range(300):
+        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, limits, dt)
+        assert lb <= ub
+        last = lb
+        q += dt * last
+        assert abs(last) <= 2.0
+        assert q >= -1e-3 - 1e-12
+    assert q <= 0.0
+
+
+@settings(max_examples=30)
+@given(
+    speed=st.floats(0.5, 5.0),
+    acceleration=st.floats(1.0, 100.0),
+    jerk=st.floats(100.0, 1e6),
+    dt=st.sampled_from([1e-3, 1e-2, 2e-2]),
+    upper=st.floats(1e-6, 1.0),
+    seed=st.integers(0, 1000),
+)
+@example(speed=2.0, acceleration=20.0, jerk=1e5, dt=1e-2, upper=5.5e-5, seed=0)
+def test_a_range_that_is_not_refused_is_long_enough(
+    speed: float, acceleration: float, jerk: float, dt: float, upper: float, seed: int
+) -> None:
+    # 1.1e-4 rad were accepted at 20 rad/s^2, 1e5 rad/s^3 and 10 ms, and left by 1.5e-4 rad.
+    while True:
+        try:
+            check_ranges(np.array([-upper, upper, speed, acceleration, jerk]), 1.0 / dt)
+            break
+        except InvalidInputError:
+            upper *= 1.02
+    out = np.empty(3000)
+    draws = np.random.default_rng(seed).random((3000, 4))
+    limits = (speed, acceleration, jerk)
+    assert adversary(0.0, upper, limits, dt, draws, out) >= -1e-12
+    q = np.concatenate([[0.0], out])[:, np.newaxis]
+    assert breaches(q, dt, -upper, upper, *limits) == []
+
+
+def test_samples_are_above_the_way_to_rest_by_no_more_than_the_margin() -> None:
+    # dt = J = 1: the sample after mean velocity v and acceleration a, less the way to rest.
+    a = np.linspace(-2.0, 2.0, 401)
+    excess = [
+        v + a_k / 3.0 - stopping_distance(v, a_k, 1.0, 100.0)
+        for a_k in a
+        for v in np.linspace(max(-0.5 * a_k * abs(a_k), 0.0), 4.0, 401)
+    ]
+    assert max(excess) == pytest.approx(27.0**-0.5, abs=1e-4)
+    assert max(excess) < MARGIN
 
 
 def stopping_room(v: float, step: float) -> float:
@@ -194,5 +282,10 @@ def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
         Scheme(limits=[JerkLimits()]).program(robot)
     with pytest.raises(InvalidInputError, match="too little to stop"):
         Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).program(robot)
+    # 375 rad/s^3 is enough, but at 80 ms a step braking cannot make use of so much.
+    coarse = Scheme(limits=[AccelerationLimits(30.0), JerkLimits(375.0)])
+    assert Controller(robot, coarse, dt=1e-3).program.rate_limits is not None
+    with pytest.raises(InvalidInputError, match=r"at 0\.08 s a step"):
+        Controller(robot.with_limits(velocity=9.0), coarse, dt=0.08).control_step  # noqa: B018
     with pytest.raises(InvalidInputError, match="jerk: joint 1: 0 is not above 0"):
         robot.with_limits(jerk=0.0)
