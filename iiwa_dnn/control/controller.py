@@ -14,7 +14,14 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade, Level
 from iiwa_dnn.control.command import Command, RowLayout
-from iiwa_dnn.control.paths import References, by_frame, paths_of, warn_if_far, warn_if_outside
+from iiwa_dnn.control.paths import (
+    References,
+    by_frame,
+    paths_of,
+    warn_if_far,
+    warn_if_outside,
+    warn_if_unstable,
+)
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
@@ -455,6 +462,8 @@ class Controller:
                 self.scheme = scheme
         self._anchored = self.scheme
         state.past[Q] = start.q
+        if not state.begun:
+            warn_if_unstable(self.program, self.dt, stacklevel=5)
         state.begun = True
 
     def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
@@ -471,6 +480,7 @@ class Controller:
     def warm_up(self) -> None:
         """Compile all that a step needs, so that the first one is as quick as the others."""
         twin = copy.copy(self)
+        twin._state.begun = True  # warnings are for the first step
         home = self.robot.start_posture()
         conf = Configuration(self.robot, home)
         frames = {name: conf.frame(name) for name in twin.program.target_frames}

@@ -15,6 +15,9 @@ from iiwa_dnn.qp import Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import OrientationTask, Scheme
+from iiwa_dnn.schemes.motion_limits import largest_gain
+from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.tasks import GainTask
 
 References = Reference | Mapping[str, Reference]
 
@@ -54,6 +57,26 @@ def warn_if_outside(start: Configuration, stacklevel: int) -> None:
     """Warn where a motion begins outside the joint limits."""
     if problem := start.robot.outside(start.q):
         warnings.warn(f"the start posture {problem}", stacklevel=stacklevel + 1)
+
+
+def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
+    """Warn where a gain is too high for the acceleration and jerk limits at a period dt [s]."""
+    if program.rate_limits is None or program.accelerates:
+        return
+    robot = program.robot
+    rate = 1.0 / dt
+    largest = largest_gain(program.rate_limits.constants(robot), rate)
+    gain = 0.0
+    for block in program.blocks:
+        if isinstance(block.part, GainTask) and block.part.row_weight > 0.0:
+            _, own, tracks_next = block.part.constants(robot)[:3]
+            gain = max(gain, min(own, rate) if tracks_next else own)
+    if gain > largest * (1.0 + 1e-9):
+        message = (
+            f"a gain of {gain:.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with these "
+            f"limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
+        )
+        warnings.warn(message, stacklevel=stacklevel + 1)
 
 
 def warn_if_far(

@@ -193,6 +193,22 @@ def check_ranges(constants: Vector, rate: float) -> None:
         raise InvalidInputError("jerk_limit", problem, jerk)
 
 
+def largest_gain(constants: Vector, rate: float) -> float:
+    """Compute the feedback gain up to which a loop with these limits is stable [1/s].
+
+    It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
+    from one limit to the other (docs/limits.md).
+
+    Args:
+        constants: `MotionLimits.constants`, (5 n,).
+        rate: Control periods a second [1/s].
+    """
+    _, _, fastest, acceleration, jerk = constants.reshape(5, -1)
+    with np.errstate(invalid="ignore"):  # a joint without limits
+        delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
+    return float(1.0 / (delay.max() + 1.0 / rate))
+
+
 def merged(limits: Sequence[Limit]) -> list[Limit]:
     """Return the limits with those on acceleration and jerk as one block, the last."""
     rates = tuple(limit for limit in limits if isinstance(limit, _RateLimits))
