@@ -1,8 +1,9 @@
-"""``python -m benchmarks`` solvers, loop, targets, collisions, export, proof or sizes: measure."""
+"""``python -m benchmarks`` and a name of `COMMANDS`: measure."""
 
 import sys
 
 from benchmarks.arms import bench_arms
+from benchmarks.arrivals import bench_arrivals
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
 from benchmarks.exports import bench_export
@@ -15,6 +16,7 @@ COMMANDS = {
     "targets": bench_targets,
     "collisions": bench_collisions,
     "arms": bench_arms,
+    "arrivals": bench_arrivals,
     "export": bench_export,
     "proof": bench_proof,
     "sizes": bench_sizes,

@@ -1,12 +1,17 @@
-"""Hostile targets, obstacles, acceleration limits: ``python -m benchmarks.braking STEPS``.
+"""Hostile targets, obstacles, acceleration limits: ``python -m benchmarks.braking STEPS [SEED]``.
 
-Arms among random obstacles, with random control periods and limits, are asked for targets that jump
-behind, into and past what is in the way, and in the end back to their start. coal judges the
-distances, at every step and half-way between steps; finite differences judge the limits.
+Arms among random obstacles, still and moving, with random control periods and limits, are asked for
+targets that jump behind, into and past what is in the way and beyond the joints' limits, and in the
+end back to their start. coal judges the distances, at every step and half-way between steps; finite
+differences judge the limits. Where an arm is not back in time, it is led back along the path that
+it came by: if it can go there, its state was no trap, and the tip's own way ended in a minimum.
 """
 
 import sys
 import time
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,14 +24,29 @@ from iiwa_dnn.qp import Matrix, Vector
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from judge_limits import breaches
 
+ARMS = ("iiwa7", "panda", "ur5", "xarm7", "kinova")
+ACCELERATION = 10.0
+"""Acceleration limit of arms that have none of their own [rad/s^2]."""
+
 DISTANCE = 0.02
 """Least distance that is promised [m]."""
 
 SLACK = 1e-6
 """Distance that coal's own tolerance may cost [m]."""
 
+HOSTILE = 6.0
+MOST = 20_000
+"""Time for hostile targets [s], and steps at most."""
+
 BACK = 20.0
 """Time that an arm has for the way back to its start [s]."""
+
+ARRIVED = 1e-3
+"""Distance of the tip from its start at which it is back [m]."""
+
+TURN = 0.02
+PATIENCE = 3.0
+"""Way of a joint to the next posture when an arm is led back [rad], and the time for it [s]."""
 
 
 class Case(NamedTuple):
@@ -38,100 +58,291 @@ class Case(NamedTuple):
     orientation: Any
     policy: Any
     dt: float
+    hostile: int
+    moving: bool
 
 
-def draw_obstacle(random: np.random.Generator, tip: Vector) -> Any:
-    """Draw an obstacle around a point (3,) [m]."""
+class Drive(NamedTuple):
+    """What an arm did.
+
+    Attributes:
+        path: Joint positions [rad], (k + 1, n).
+        ok: Whether each step had a solution, (k,).
+        left: Distance of the tip from its start in the end [m].
+    """
+
+    path: Matrix
+    ok: Any
+    left: float
+
+
+@cache
+def arm(name: str) -> iiwa_dnn.Robot:
+    """Load an arm, with accelerations."""
+    robot = iiwa_dnn.load_robot(name)
+    if np.isinf(robot.ddq_max).any():
+        robot = robot.with_limits(acceleration=ACCELERATION)
+    return robot
+
+
+def sway(random: np.random.Generator, until: float) -> dict[str, Any]:
+    """Draw a displacement that swings, and ends at a time [s]."""
+    direction = random.standard_normal(3)
+    direction /= np.linalg.norm(direction)
+    speed = float(random.uniform(0.02, 0.2))
+    rate = float(random.uniform(0.5, 2.0))
+
+    def motion(t: float) -> Vector:
+        shift: Vector = speed / rate * np.sin(rate * min(t, until)) * direction
+        return shift
+
+    return {"motion": motion, "speed": speed}
+
+
+def draw_obstacle(random: np.random.Generator, tip: Vector, move: dict[str, Any]) -> Any:
+    """Draw an obstacle around a point (3,) [m] that moves so."""
     kind = random.integers(4)
     center = tip + 0.35 * random.standard_normal(3)
     if kind == 0:
-        return iiwa_dnn.Sphere(center, 0.08)
+        return iiwa_dnn.Sphere(center, 0.08, **move)
     if kind == 1:
-        return iiwa_dnn.Capsule(center, center + 0.2 * random.standard_normal(3), 0.05)
+        end = center + 0.2 * random.standard_normal(3)
+        return iiwa_dnn.Capsule(center, end, 0.05, **move)
     if kind == 2:
-        return iiwa_dnn.Box(center, [0.08, 0.1, 0.06])
+        return iiwa_dnn.Box(center, [0.08, 0.1, 0.06], **move)
     normal = random.standard_normal(3)
     normal /= np.linalg.norm(normal)
-    return iiwa_dnn.HalfSpace(normal, float(normal @ tip) - random.uniform(0.1, 0.4))
+    offset = float(normal @ tip) - random.uniform(0.1, 0.4)
+    return iiwa_dnn.HalfSpace(normal, offset, **move)
 
 
 def draw_case(seed: int) -> Case:
     """Draw a case from a seed."""
     random = np.random.default_rng(seed)
-    robot = iiwa_dnn.load_robot(("iiwa7", "panda")[random.integers(2)])
+    robot = arm(ARMS[random.integers(len(ARMS))])
     start = iiwa_dnn.Configuration(robot, robot.start_posture())
-    obstacles = [draw_obstacle(random, start.position) for _ in range(random.integers(1, 4))]
+    dt = float(10.0 ** random.uniform(-4.0, np.log10(2e-2)))
+    hostile = min(int(HOSTILE / dt), MOST)
+    moving = bool(random.random() < 0.3)
+    obstacles = [
+        draw_obstacle(random, start.position, sway(random, hostile * dt) if moving else {})
+        for _ in range(random.integers(1, 4))
+    ]
+    nearest = (24, 64)[random.integers(2)]
     avoidance = iiwa_dnn.CollisionAvoidance(
-        obstacles, self_collision=bool(random.random() < 0.5), distance=DISTANCE, nearest=64
+        obstacles, self_collision=bool(random.random() < 0.5), distance=DISTANCE, nearest=nearest
     )
     limits: tuple[Any, ...] = (iiwa_dnn.AccelerationLimits(),)
     if random.random() < 0.5:
-        limits += (iiwa_dnn.JerkLimits(float(10.0 ** random.uniform(2.5, 4.0))),)
+        limits += (iiwa_dnn.JerkLimits(float(10.0 ** random.uniform(2.7, 4.0))),)
     orientation = ("none", "so3")[random.integers(2)]
     policy = ("slow", "relax")[random.integers(2)]
-    return Case(robot, avoidance, limits, orientation, policy, 10.0 ** random.uniform(-3.3, -1.8))
+    return Case(robot, avoidance, limits, orientation, policy, dt, hostile, moving)
 
 
-def drive(case: Case, seed: int, times: list[float]) -> tuple[Matrix, float]:
-    """Drive an arm for 6 s and ask it back; joint positions (k, n) and what is left [m]."""
+def hostile_targets(case: Case, seed: int) -> Iterator[iiwa_dnn.Target]:
+    """Yield targets: past the arm's reach, into and behind obstacles, at the joints' limits."""
     random = np.random.default_rng(seed)
-    robot, avoidance, limits, orientation, policy, dt = case
+    robot = case.robot
+    start = iiwa_dnn.Configuration(robot, robot.start_posture())
+    tip = start.position
+    places = [obstacle.points.mean(axis=0) for obstacle in case.avoidance.obstacles]
+    while True:
+        kind = random.integers(5)
+        one = places[random.integers(len(places))]
+        other = places[random.integers(len(places))]
+        goal = tip + random.choice([0.1, 0.5, 2.0]) * random.standard_normal(3)
+        if kind == 1:
+            goal = one
+        elif kind == 2:
+            goal = tip + random.uniform(1.0, 3.0) * (one - tip)
+        elif kind == 3:
+            goal = 0.5 * (one + other)
+        elif kind == 4:
+            at_limit = np.where(random.random(robot.dof) < 0.5, robot.q_lower, robot.q_upper)
+            some = (random.random(robot.dof) < 0.4) & np.isfinite(at_limit)
+            pressed = iiwa_dnn.Configuration(robot, np.where(some, at_limit, start.q))
+            goal = tip + 1.5 * (pressed.position - tip)
+        yield iiwa_dnn.Target(goal, start.rotation)
+
+
+def drive(case: Case, seed: int, times: list[float]) -> Drive:
+    """Drive an arm among hostile targets, and ask it back; times of the steps [s] are appended."""
+    robot, avoidance, limits, orientation, policy, dt, hostile, _ = case
     scheme = iiwa_dnn.DoubleIndicator(orientation=orientation, extra_limits=(*limits, avoidance))
     controller = iiwa_dnn.Controller(robot, scheme, dt=dt, policy=policy)
-    controller.warm_up()
     start = iiwa_dnn.Configuration(robot, robot.start_posture())
+    home = iiwa_dnn.Target(start.position, start.rotation)
+    targets = hostile_targets(case, seed)
+    target = next(targets)
+    hold = max(1, int(0.4 / dt))
     q = start.q
     path = [q]
-    hostile = int(6.0 / dt)
+    ok = []
     left = np.inf
     for k in range(hostile + int(BACK / dt)):
-        if k < hostile and k % max(1, int(0.4 / dt)) == 0:
-            goal = start.position + random.choice([0.1, 0.5, 2.0]) * random.standard_normal(3)
-        elif k >= hostile:
-            goal = start.position
+        if k == hostile:
+            target = home
+        elif k < hostile and k % hold == 0:
+            target = next(targets)
         began = time.perf_counter()
-        command = controller.step(q, k * dt, iiwa_dnn.Target(goal, start.rotation))
+        command = controller.step(q, k * dt, target)
         times.append(time.perf_counter() - began)
+        left = float(np.linalg.norm(command.placement[9:] - start.position))
+        if k >= hostile and left < ARRIVED:
+            break
         q = q + dt * command.dq
         path.append(q)
-        left = float(np.linalg.norm(iiwa_dnn.Configuration(robot, q).position - start.position))
-        if k >= hostile and left < 1e-3:
+        ok.append(command.ok)
+    return Drive(np.array(path), np.array(ok), left)
+
+
+class Toward(iiwa_dnn.Task):
+    """Joint velocities towards a posture that may be changed in motion."""
+
+    tracks = False
+    row_weight = 0.1
+
+    def __init__(self, robot: iiwa_dnn.Robot) -> None:
+        """Begin without a posture."""
+        self.rows = robot.dof
+        self.posture: Vector = np.zeros(robot.dof)
+
+    def equations(self, step: iiwa_dnn.Step) -> tuple[Matrix, Vector]:
+        """Return the identity, and 20 1/s times what is left."""
+        return np.eye(self.rows), 20.0 * (self.posture - step.q)
+
+
+def way_back(path: Matrix) -> list[Vector]:
+    """Return postures `TURN` apart from the end of a path (k, n) [rad] to its start, no loops."""
+    here = len(path) - 1
+    postures = []
+    while here > 0:
+        near = np.abs(path[: here + 1] - path[here]).max(axis=1) < TURN
+        here = min(int(near.argmax()), here - 1)
+        postures.append(path[here])
+    return postures
+
+
+def lead_back(case: Case, path: Matrix) -> float:
+    """Lead an arm back along a path (k, n) [rad] that it came by; largest angle that is left."""
+    robot, avoidance, limits, _, _, dt, _, _ = case
+    start = iiwa_dnn.Configuration(robot, path[0])
+    target = iiwa_dnn.Target(start.position, start.rotation)  # no task asks for it
+    task = Toward(robot)
+    parts = [iiwa_dnn.JointLimits(), *limits, avoidance]
+    scheme = iiwa_dnn.Scheme([iiwa_dnn.KineticEnergy()], [task], parts)
+    controller = iiwa_dnn.Controller(robot, scheme, dt=dt, policy="relax")
+    q = path[-1]
+    t = len(path) * dt
+    for posture in way_back(path):
+        task.posture = posture
+        for _ in range(int(PATIENCE / dt)):
+            if np.abs(posture - q).max() < TURN:
+                break
+            q = q + dt * controller.step(q, t, target).dq
+            t += dt
+        else:
             break
-    return np.array(path), left
+    return float(np.abs(path[0] - q).max())
 
 
-def main(steps: int = 100_000, first: int = 0) -> int:
+def reach_of(robot: iiwa_dnn.Robot) -> float:
+    """Bound the distance of any point of an arm from any of its joints' axes [m]."""
+    lengths = [np.linalg.norm(place.translation) for place in robot.model.jointPlacements]
+    return float(np.sum(lengths)) + 0.3
+
+
+class Verdict(NamedTuple):
+    """What coal says of a path: the least distance [m], and steps that broke the promise."""
+
+    least: float
+    broken: int
+
+
+def judge_distances(case: Case, judge: Judge, driven: Drive) -> Verdict:
+    """Judge the distances of a path, at its samples and half-way between.
+
+    Between two distances that are computed, others are left out where none of the arm's points has
+    gone so far, nor an obstacle, that the distance can be below the promised one. Below it, a
+    moving obstacle has broken no promise if the step said so and the arm itself did not come
+    nearer.
+    """
+    path = driven.path
+    dt = case.dt
+    doubled = np.empty((2 * len(path) - 1, path.shape[1]))
+    doubled[::2] = path
+    doubled[1::2] = 0.5 * (path[1:] + path[:-1])
+    clock = 0.5 * dt * np.arange(len(doubled))
+    reach = reach_of(case.robot)
+    fastest = max(obstacle.speed for obstacle in case.avoidance.obstacles)
+    least = np.inf
+    broken = 0
+    i = 0
+    while i < len(doubled):
+        distance = judge.distance(doubled[i], clock[i])
+        least = min(least, distance) if not case.moving else least
+        if distance < DISTANCE - SLACK:
+            excused = case.moving and i > 0 and not driven.ok[(i - 1) // 2]
+            if excused:
+                stood = judge.distance(doubled[i - 1], clock[i])
+                excused = distance >= stood - SLACK
+            broken += not excused
+        spare = distance - DISTANCE
+        ahead = doubled[i + 1 : i + 2001]
+        taken = reach * np.abs(ahead - doubled[i]).sum(axis=1)
+        taken += fastest * np.abs(clock[i + 1 : i + 2001] - clock[i])
+        near = np.flatnonzero(taken > max(spare, 0.0))
+        i += 1 + (int(near[0]) if near.size else len(ahead))
+    return Verdict(least, broken)
+
+
+def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
     """Drive until so many steps are done; print what was broken, and the times of a step."""
     times: list[float] = []
+    spent = Counter[str]()
+    counts = Counter[str]()
     least = np.inf
-    broken = stranded = runs = 0
     seed = first
-    while len(times) < steps:
+    done = 0
+    while done < steps:
         seed += 1
         case = draw_case(seed)
-        judge = Judge(case.robot, case.avoidance)
-        if judge.distance(case.robot.start_posture(), 0.0) < DISTANCE + 1e-3:
-            continue
-        path, left = drive(case, seed, times)
-        runs += 1
-        halves = 0.5 * (path[1:] + path[:-1])
-        near = min(judge.distance(q, 0.0) for q in np.vstack([path, halves]))
         robot = case.robot
+        judge = Judge(robot, case.avoidance)
+        if judge.distance(robot.start_posture(), 0.0) < DISTANCE + 1e-3:
+            continue
+        driven = drive(case, seed, times)
+        found = judge_distances(case, judge, driven)
         jerk = case.limits[1].limit if len(case.limits) > 1 else np.inf
         kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
-        wrong = breaches(path, case.dt, *kinds)
-        broken += bool(wrong) or near < DISTANCE - SLACK
-        stranded += left > 1e-2
-        least = min(least, near)
-        if wrong or left > 1e-2 or near < DISTANCE - SLACK:
+        wrong = breaches(driven.path, case.dt, *kinds)
+        done += len(driven.ok)
+        spent[robot.name] += len(driven.ok)
+        least = min(least, found.least)
+        counts["runs"] += 1
+        counts["with moving obstacles"] += case.moving
+        counts["limits broken"] += len(wrong)
+        counts["distances broken"] += found.broken
+        about = f"seed {seed}, {robot.name}, {case.dt:.2g} s"
+        if wrong or found.broken:
             print(
-                f"seed {seed}: {near:.6f} m, {wrong[:2]}, {left:.3f} m from the start", flush=True
+                f"{about}: {wrong[:2]}, {found.broken} distances, {found.least:.7f} m", flush=True
             )
+        covered = judge.distance(robot.start_posture(), HOSTILE) < DISTANCE + 1e-3
+        if driven.left > 1e-2 and not covered:
+            counts["tips not back"] += 1
+            angle = lead_back(case, driven.path)
+            what = "led back" if angle < 2.0 * TURN else "with moving" if case.moving else "traps"
+            counts[what] += 1
+            print(f"{about}: {driven.left:.3f} m left, then {angle:.3f} rad: {what}", flush=True)
+        if counts["runs"] % report == 0:
+            print(f"{done:,} steps, {dict(counts)}, least {least:.7f} m", flush=True)
     median, p99, slow, longest = 1e6 * np.percentile(times, [50.0, 99.0, 99.9, 100.0])
-    print(f"{len(times):,} steps, {runs} runs: {broken} broken, {stranded} not back in {BACK:g} s")
-    print(f"least distance {least:.7f} m, promised {DISTANCE} m")
+    print(f"{done:,} steps, {dict(counts)}, by arm {dict(spent)}")
+    print(f"least distance from a still obstacle {least:.7f} m, promised {DISTANCE} m")
     print(f"a step: {median:.0f} us, p99 {p99:.0f}, p99.9 {slow:.0f}, longest {longest:.0f}")
-    return int(broken > 0)
+    return int(counts["limits broken"] + counts["distances broken"] + counts["traps"] > 0)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""A circle in physics at rising gains, beside acceleration and jerk limits: ``-m benchmarks.gains``.
+"""A circle in physics at rising gains, with acceleration and jerk limits and without.
 
-MuJoCo's arm has encoders with noise. The table has the largest distance of the tip from the circle
-in the second half of the run, with the reference's clock as the policy has left it.
+``python -m benchmarks.gains`` prints the largest distance of the tip from the circle in the second
+half of the run, the reference's clock as the policy has left it. MuJoCo's arm has noisy encoders.
 """
 
 import sys

@@ -16,7 +16,8 @@ import numpy as np
 
 Task = Mapping[str, Any]
 """urdf, tip or f tips, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4) or
-(steps + 1, f, 4, 4), dt apart; `soft` where the tasks of frames are not to be hard."""
+(steps + 1, f, 4, 4), dt apart; `soft` where the tasks of frames are not to be hard; `hold`, the
+number of steps after which the loop begins anew, at q0."""
 
 Loop = tuple[Callable[[int], object], Callable[[], Any]]
 """``step(k)``, which is timed, and ``posture()``, the joint positions (n,) [rad] after it."""
@@ -40,12 +41,15 @@ def serve(make: Callable[[Task, str], Loop]) -> None:
     for k in range(20):
         step(k)
         posture()
+    hold = int(task.get("hold", 0))
     step, posture = make(task, sys.argv[2])
     for line in sys.stdin:
         first, last = map(int, line.split())
         times = []
         q = []
         for k in range(first, last):
+            if hold and k % hold == 0:
+                step, posture = make(task, sys.argv[2])
             began = time.perf_counter_ns()
             step(k)
             times.append(1e-3 * (time.perf_counter_ns() - began))

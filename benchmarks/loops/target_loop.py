@@ -7,14 +7,21 @@ import iiwa_dnn
 
 
 def make(task: Task, variant: str) -> Loop:
-    """Make the loop; the variants are ``raw`` and ``filtered``."""
+    """Make the loop; the variants are ``raw`` and ``filtered``.
+
+    ``default`` has no limits on acceleration or jerk, ``acceleration`` those on acceleration alone.
+    """
     robot = iiwa_dnn.load_robot(str(task["urdf"]), tip=str(task["tip"])).with_limits(
         lower=task["lower"],
         upper=task["upper"],
         velocity=task["velocity"],
         acceleration=task["acceleration"],
     )
-    limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(float(task["jerk"])))
+    limits: tuple[iiwa_dnn.Limit, ...] = ()
+    if variant != "default":
+        limits = (iiwa_dnn.AccelerationLimits(),)
+    if variant in ("raw", "filtered"):
+        limits = (*limits, iiwa_dnn.JerkLimits(float(task["jerk"])))
     scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
     q = np.array(task["q0"])
     dt = float(task["dt"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,11 @@ from iiwa_dnn import (
     DoubleIndicator,
     HalfSpace,
     JerkLimits,
+    JointLimits,
+    KineticEnergy,
     Limit,
+    PositionTask,
+    Scheme,
     Sphere,
     Target,
     load_robot,
@@ -139,6 +145,38 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
         target = Target(start.position + [-0.1, 0.0, 0.0], start.rotation)
         q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
     assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+
+
+TWO_LINKS = """<robot name="two_links"><link name="base"/><link name="one"/>
+<link name="two"><collision><origin xyz="0.6 0 0"/><geometry><sphere radius="0.01"/></geometry>
+</collision></link><link name="tip"/>
+<joint name="j1" type="revolute"><parent link="base"/><child link="one"/><axis xyz="0 0 1"/>
+<limit lower="-4" upper="4" velocity="3" effort="1"/></joint>
+<joint name="j2" type="revolute"><parent link="one"/><child link="two"/><axis xyz="0 0 1"/>
+<origin xyz="1 0 0"/><limit lower="-4" upper="4" velocity="3" effort="1"/></joint>
+<joint name="j3" type="fixed"><parent link="two"/><child link="tip"/><origin xyz="0.6 0 0"/></joint>
+</robot>"""
+
+
+def test_a_folded_arm_that_cannot_retreat_says_so(tmp_path: Path) -> None:
+    # Folded, no joint moves the tip along the arm: the row became 0 dq <= 0, and the tip swung
+    # nearer by 0.3 mm within a step that was called solved.
+    file = tmp_path / "two_links.urdf"
+    file.write_text(TWO_LINKS, encoding="utf-8")
+    robot = load_robot(file)
+    conf = Configuration(robot, [0.0, np.pi])
+    ball = Sphere(conf.position - [2.0 + 0.01 + 0.02 + 1e-6, 0.0, 0.0], 2.0)
+    avoidance = CollisionAvoidance([ball], distance=0.02, self_collision=False)
+    scene = avoidance.scene(robot)
+    scheme = Scheme([KineticEnergy()], [PositionTask()], [JointLimits(), avoidance])
+    nearer = 0
+    for goal in ([-0.1, 0.3, 0.0], [0.1, -0.2, 0.0], [0.0, 0.02, 0.0]):
+        controller = Controller(robot, scheme, dt=1e-2)
+        command = controller.step(conf.q, 0.0, Target(conf.position + goal, conf.rotation))
+        q = conf.q + 1e-2 * command.dq
+        nearer += scene.nearest(q[None], np.zeros(1))[0][0] < 0.02
+        assert not command.ok
+    assert nearer > 0
 
 
 def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
