@@ -7,8 +7,9 @@ joints' true positions, so that no disturbance breaks a limit.
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.control.relaxed import Yielding, nearest_within
 from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp.layout import qp_views
 
 TOLERANCE = 1e-12
 """A command beyond its bound by no more [rad/s] is clipped and not counted: that is rounding."""
@@ -17,16 +18,16 @@ ROW_TOLERANCE = 1e-9
 """Inequality rows that are broken by no more are left alone: the network's own tolerance."""
 
 
-def clip_command(qp: QP, dq: Vector, solver: DNNSolver) -> tuple[Vector, NDArray[np.int8]]:
+def clip_command(qp: QP, dq: Vector, yielding: Yielding) -> tuple[Vector, NDArray[np.int8]]:
     """Clip joint velocities to the bounds and inequality rows of a program.
 
     A velocity that is no number becomes the bound nearest to rest. Beyond an inequality row the
-    nearest velocity within all limits is taken, the solution of a quadratic program.
+    nearest velocity within all limits is taken; if there is none, the bounds nearest to rest.
 
     Args:
         qp: The program at the joints' true positions; its first variables are the joints.
         dq: Joint velocities [rad/s], (n,).
-        solver: The network for that program, its warm start kept from call to call.
+        yielding: How the network settles.
 
     Returns:
         The velocities within the limits [rad/s], (n,), and 1 for each joint that was clipped.
@@ -39,8 +40,8 @@ def clip_command(qp: QP, dq: Vector, solver: DNNSolver) -> tuple[Vector, NDArray
     # Rows on slack variables are the scheme's own affair.
     of_joints = ~qp.G[:, n:].any(axis=1)
     if (rows @ clipped > qp.h + ROW_TOLERANCE)[of_joints].any():
-        nearest = QP(np.eye(n), -clipped, G=rows[of_joints], h=qp.h[of_joints], lb=lb, ub=ub)
-        solution = solver.solve(nearest)
-        clipped = solution.x if solution.found else np.clip(np.zeros(n), lb, ub)
+        of_limits = QP(np.eye(n), np.zeros(n), G=rows[of_joints], h=qp.h[of_joints], lb=lb, ub=ub)
+        if not nearest_within(qp_views(of_limits.data, *of_limits.sizes), clipped, yielding):
+            clipped = np.clip(np.zeros(n), lb, ub)
     changed = ~(np.abs(dq - clipped) <= TOLERANCE)
     return clipped, changed.astype(np.int8)

@@ -77,6 +77,9 @@ to rest, an arm pulled beyond its reach ends up exactly stretched, and finds bac
 FULL = 0.1
 """Task velocity [m/s] below which the drift of the damping is less, so that a target is reached."""
 
+FASTEST = 1e3
+"""Task velocity [m/s] to which a larger one is cut: no arm is so quick."""
+
 RETREAT = 0.9
 """Largest part of what the bounds let a row be that it may ask for where the task yields."""
 
@@ -340,12 +343,13 @@ def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -
     n = qp.q.size
     weights = yielding.weights
     damping = _damping(qp.A, weights)
+    shrink = _shrink(qp.b)
     pull = np.zeros(n)
     asked = 0.0
     held = 0
     for j in range(qp.b.size):
-        rhs = weights[j] * weights[j] * qp.b[j]
-        asked += rhs * qp.b[j]
+        rhs = weights[j] * weights[j] * qp.b[j] * shrink
+        asked += rhs * qp.b[j] * shrink
         for i in range(n):
             pull[i] += rhs * qp.A[j, i]
             for k in range(n):
@@ -369,6 +373,15 @@ def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -
             lowest = _lowest(soft, j)
             soft.h[j] = max(qp.h[j], RETREAT * lowest if lowest < 0.0 else lowest)
     return damping
+
+
+@compiled
+def _shrink(b: Vector) -> float:
+    """Compute the factor of task velocities b (p,) beside which rounding would hide the bounds."""
+    fastest = 0.0
+    for j in range(b.size):
+        fastest = max(fastest, abs(b[j]))
+    return FASTEST / fastest if fastest > FASTEST else 1.0
 
 
 @compiled
@@ -483,18 +496,20 @@ def inside(qp: QPViews, x: Vector) -> bool:
 
 
 @compiled
-def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> None:
+def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> bool:
     """Move x (n,) to the nearest point within the bounds and inequality rows of a program.
 
-    If the rows contradict the bounds, it is the nearest one within the bounds.
+    Returns:
+        False if the rows contradict the bounds: x is then the nearest point within the bounds.
     """
     if inside(qp, x):
-        return
+        return True
     data = np.zeros(data_size(x.size, qp.h.size, 0))
     if _nearest_within(qp, x, yielding, data):
-        return
+        return True
     for i in range(x.size):
         x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
+    return False
 
 
 @compiled

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.control.clipping import clip_command
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.estimation import JointEstimator
 from iiwa_dnn.control.filters import MovingAverage
-from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.simulation.noise import Disturbance, gaussian_noise
 
@@ -29,7 +29,6 @@ class SignalChain:
         window = min(disturbance.filter_window, steps)
         self._average = MovingAverage(window)
         self._known = MovingAverage(window)
-        self._clipper = DNNSolver()
 
     @property
     def misleads(self) -> bool:
@@ -58,7 +57,7 @@ class SignalChain:
         return reading if self._estimator is None else self._estimator.update(reading)
 
     def act(
-        self, k: int, velocity: Vector, qp: QP, solver: DNNSolver
+        self, k: int, velocity: Vector, qp: QP, controller: Controller
     ) -> tuple[Vector, NDArray[np.int8]]:
         """Return the command that the plant gets at step k, and the joints that were clipped.
 
@@ -66,19 +65,19 @@ class SignalChain:
             k: The step.
             velocity: The controller's answer [rad/s], (n,).
             qp: The program at the joints' true positions, whose limits the command keeps.
-            solver: The controller's network, for noise that enters there.
+            controller: The controller: noise may enter at its network.
         """
         command = velocity if self._estimator is None else velocity - self._estimator.bias
         known = command
         if self._noise_at("velocity"):
             command = command + self._noise[k]
         elif self._noise_at("network"):
-            solver.disturb(self._noise[k])
+            controller.solver.disturb(self._noise[k])
         if self._added is not None:
             command = command + self._added[k]
         if self._disturbance.filter_window > 1:
             command = self._average(command)
-        command, clipped = clip_command(qp, command, self._clipper)
+        command, clipped = clip_command(qp, command, controller.control_step.yielding)
         if self._estimator is not None:
             # The joints get the average, clipped: the estimator is told of its known part.
             known = self._known(known)

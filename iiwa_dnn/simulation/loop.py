@@ -193,7 +193,7 @@ class Loop:
         qp = command.qp
         if self._misled:
             qp = self.controller.program_at(self.q, command.targets, t)
-        return self._chain.act(k, velocity, qp, self.controller.solver)
+        return self._chain.act(k, velocity, qp, self.controller)
 
     def _moved(
         self,

@@ -8,8 +8,23 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import linprog
 
 from iiwa_dnn.control.clipping import ROW_TOLERANCE, clip_command
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Solution, Status
+from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.networks.integrators.base import ANSWER
+from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.qp import QP
+
+
+def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
+    """What a controller knows of how its network settles."""
+    return Yielding(
+        np.zeros(0),
+        np.zeros(0),
+        np.zeros(0),
+        np.array([tol, budget, 1e8]),
+        np.zeros((0, 2), np.int64),
+        1e-3,
+        ANSWER.address(settle),
+    )
 
 
 def limited(G: object = None, h: object = None, n: int = 3) -> QP:
@@ -21,13 +36,13 @@ def limited(G: object = None, h: object = None, n: int = 3) -> QP:
 def test_a_command_within_the_limits_is_left_alone() -> None:
     qp = limited(G=[[1.0, 1.0, 0.0]], h=[1.0])
     dq = np.array([0.5, 0.5, -3.0])
-    clipped, which = clip_command(qp, dq, DNNSolver())
+    clipped, which = clip_command(qp, dq, settling())
     assert_array_equal(clipped, dq)
     assert_array_equal(which, [0, 0, 0])
 
 
 def test_each_joint_is_clipped_to_its_own_bound_and_counted() -> None:
-    clipped, which = clip_command(limited(), np.array([1.5, -0.5, -9.0]), DNNSolver())
+    clipped, which = clip_command(limited(), np.array([1.5, -0.5, -9.0]), settling())
     assert_array_equal(clipped, [1.0, -0.5, -3.0])
     assert_array_equal(which, [1, 0, 1])
     assert which.dtype == np.int8
@@ -37,14 +52,14 @@ def test_no_number_becomes_the_bound_nearest_to_rest() -> None:
     qp = limited()
     qp.lb[1] = 0.5
     qp.ub[2] = -0.25
-    clipped, which = clip_command(qp, np.full(3, np.nan), DNNSolver())
+    clipped, which = clip_command(qp, np.full(3, np.nan), settling())
     assert_array_equal(clipped, [0.0, 0.5, -0.25])
     assert_array_equal(which, [1, 1, 1])
 
 
 @pytest.mark.parametrize(("excess", "count"), [(5e-13, 0), (5e-12, 1)])
 def test_rounding_beyond_a_bound_is_not_counted(excess: float, count: int) -> None:
-    clipped, which = clip_command(limited(), np.array([1.0 + excess, 0.0, 0.0]), DNNSolver())
+    clipped, which = clip_command(limited(), np.array([1.0 + excess, 0.0, 0.0]), settling())
     assert clipped[0] == 1.0
     assert_array_equal(which, [count, 0, 0])
 
@@ -53,7 +68,7 @@ def test_rounding_beyond_a_bound_is_not_counted(excess: float, count: int) -> No
 def test_a_row_is_kept_to_the_networks_tolerance(excess: float, count: int) -> None:
     qp = limited(G=[[0.0, 1.0, 0.0]], h=[0.5])
     dq = np.array([0.0, 0.5 + excess, 0.0])
-    clipped, which = clip_command(qp, dq, DNNSolver(tol=1e-12))
+    clipped, which = clip_command(qp, dq, settling(1e-12))
     assert_array_equal(which, [0, count, 0])
     assert clipped[1] == (pytest.approx(0.5, abs=1e-11) if count else dq[1])
 
@@ -65,7 +80,7 @@ def test_beyond_rows_the_velocity_is_the_nearest() -> None:
     for _ in range(20):
         qp = limited(G=rng.normal(size=(2, 4)), h=rng.uniform(0.1, 0.5, 2), n=4)
         dq = 2.0 * rng.normal(size=4)
-        clipped, which = clip_command(qp, dq, DNNSolver())
+        clipped, which = clip_command(qp, dq, settling())
         away = np.clip(dq, qp.lb, qp.ub) - clipped
         assert (qp.G @ clipped <= qp.h + 1e-9).all()
         assert ((qp.lb - 1e-9 <= clipped) & (clipped <= qp.ub + 1e-9)).all()
@@ -79,28 +94,24 @@ def test_beyond_rows_the_velocity_is_the_nearest() -> None:
 def test_rows_on_slack_variables_are_left_to_the_scheme() -> None:
     # Three joints, one slack variable: the first row is softened by it, the second is not.
     qp = limited(G=[[1.0, 0.0, 0.0, -1.0], [0.0, 1.0, 0.0, 0.0]], h=[0.1, 0.1], n=4)
-    clipped, which = clip_command(qp, np.array([0.9, 0.9, 0.9]), DNNSolver())
+    clipped, which = clip_command(qp, np.array([0.9, 0.9, 0.9]), settling())
     assert_allclose(clipped, [0.9, 0.1, 0.9], rtol=0, atol=1e-8)
     assert which[1] == 1
-    clipped, which = clip_command(qp, np.array([0.9, 0.05, 0.9]), DNNSolver())
+    clipped, which = clip_command(qp, np.array([0.9, 0.05, 0.9]), settling())
     assert_array_equal(clipped, [0.9, 0.05, 0.9])
     assert_array_equal(which, [0, 0, 0])
 
 
 def test_where_the_network_finds_nothing_the_command_is_the_bound_nearest_to_rest() -> None:
-    class Lost(DNNSolver):
-        def solve(self, qp: QP) -> Solution:
-            return super().solve(qp)._replace(status=Status.NOT_SETTLED)
-
     qp = limited(G=[[1.0, 1.0, 1.0]], h=[0.5])
     qp.lb[2] = 0.25
-    clipped, which = clip_command(qp, np.ones(3), Lost())
+    clipped, which = clip_command(qp, np.ones(3), settling(budget=0.0))
     assert_array_equal(clipped, [0.0, 0.0, 0.25])
     assert_array_equal(which, [1, 1, 1])
 
 
 def test_a_row_broken_by_its_tolerance_and_no_more_is_left_alone() -> None:
     dq = np.array([0.0, ROW_TOLERANCE, 0.0])
-    clipped, which = clip_command(limited(G=[[0.0, 1.0, 0.0]], h=[0.0]), dq, DNNSolver(tol=1e-12))
+    clipped, which = clip_command(limited(G=[[0.0, 1.0, 0.0]], h=[0.0]), dq, settling(1e-12))
     assert_array_equal(clipped, dq)
     assert_array_equal(which, [0, 0, 0])

@@ -463,6 +463,19 @@ def test_the_share_of_a_wide_task_is_as_exact_as_of_a_small_one() -> None:
     assert largest_fraction(free).fraction == 1.0
 
 
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_a_target_that_is_out_of_all_proportion_is_gone_towards(policy: policies.Policy) -> None:
+    # At 1e9 m rounding was above the tolerance, and the arm stopped.
+    for far in (1e3, 1e6, 1e9):
+        start = paper_start()
+        target = Target(start.position + [far, 0.0, 0.0], start.rotation, [0.01, 0.0, 0.0])
+        command = Controller(paper_robot(), DoubleIndicator(), policy=policy).step(
+            PAPER_Q0, 0.0, target
+        )
+        assert command.action in (Action.SLOW, Action.RELAX)
+        assert (start.jacobian[0] @ command.dq) > 0.1
+
+
 def test_the_codes_in_a_record_stay_what_they_are() -> None:
     codes = {action.name.lower(): int(action) for action in Action}
     assert codes == {"none": 0, "fallback": 1, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
