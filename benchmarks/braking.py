@@ -44,6 +44,12 @@ BACK = 20.0
 ARRIVED = 1e-3
 """Distance of the tip from its start at which it is back [m]."""
 
+LINK = 0.55
+"""Distance of the last link's points from its joint at most [m]."""
+
+AHEAD = (16, 2000)
+"""Samples for which it is looked whether a distance has to be computed again."""
+
 TURN = 0.02
 PATIENCE = 3.0
 """Way of a joint to the next posture when an arm is led back [rad], and the time for it [s]."""
@@ -247,10 +253,11 @@ def lead_back(case: Case, path: Matrix) -> float:
     return float(np.abs(path[0] - q).max())
 
 
-def reach_of(robot: iiwa_dnn.Robot) -> float:
-    """Bound the distance of any point of an arm from any of its joints' axes [m]."""
-    lengths = [np.linalg.norm(place.translation) for place in robot.model.jointPlacements]
-    return float(np.sum(lengths)) + 0.3
+def reach_of(robot: iiwa_dnn.Robot) -> Vector:
+    """Bound the distance of the points that each joint of an arm moves from its axis, (n,) [m]."""
+    lengths = [np.linalg.norm(place.translation) for place in robot.model.jointPlacements[2:]]
+    reach: Vector = np.cumsum([LINK, *lengths[::-1]])[::-1]
+    return reach
 
 
 class Verdict(NamedTuple):
@@ -288,12 +295,14 @@ def judge_distances(case: Case, judge: Judge, driven: Drive) -> Verdict:
                 stood = judge.distance(doubled[i - 1], clock[i])
                 excused = distance >= stood - SLACK
             broken += not excused
-        spare = distance - DISTANCE
-        ahead = doubled[i + 1 : i + 2001]
-        taken = reach * np.abs(ahead - doubled[i]).sum(axis=1)
-        taken += fastest * np.abs(clock[i + 1 : i + 2001] - clock[i])
-        near = np.flatnonzero(taken > max(spare, 0.0))
-        i += 1 + (int(near[0]) if near.size else len(ahead))
+        spare = max(distance - DISTANCE, 0.0)
+        for count in AHEAD:
+            ahead = slice(i + 1, i + 1 + count)
+            taken = np.abs(doubled[ahead] - doubled[i]) @ reach
+            near = np.flatnonzero(taken + fastest * (clock[ahead] - clock[i]) > spare)
+            if near.size:
+                break
+        i += 1 + (int(near[0]) if near.size else len(taken))
     return Verdict(least, broken)
 
 

@@ -315,11 +315,10 @@ class Controller:
         targets = layout.targets(row)
         checks.finite_array("q", state.past[Q], (layout.dof,))
         checks.finite_array("target", targets, targets.shape)
-        if policy == "raise" and halted is None and self.mode == "converged":
+        goes_on = halted is None and self.mode == "converged"
+        if policy == "raise" and goes_on:
             self._raise_unless_solved(QP.from_data(layout.view(row, "program"), layout.sizes), step)
-        action = Action.STOP
-        if halted is None and self.mode == "converged":
-            action = step.actions[policy]
+        action = step.actions[policy] if goes_on else Action.STOP
         n, m, p = layout.sizes
         network = self._warm_state(step)
         if network is None or not is_projection(self.solver.network):
@@ -332,9 +331,9 @@ class Controller:
             network,
             step.yielding,
             int(action),
-            state.yields,
+            state.yields and goes_on,
         )
-        state.yields = taken in (Action.SLOW, Action.RELAX)
+        state.yields = goes_on and taken in (Action.SLOW, Action.RELAX, Action.STOP)
         if halted is not None:
             layout.view(row, "blocking")[:] = halted
         if step.program.accelerates:

@@ -23,7 +23,7 @@ class ControllerState:
         following: The same for the next step, (5, n).
         delay: Time by which the reference's clock is behind [s].
         begun: Whether a first step was taken.
-        yields: Whether the task yielded at the last step.
+        yields: Whether the task yielded at the last step, or the arm stopped.
         halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
             step brakes; None: it did not.
     """

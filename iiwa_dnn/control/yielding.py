@@ -120,6 +120,9 @@ def _yield_at_once(
             taken = _relax(views, qp, q, yielding, state, CREEP, yields)
     elif action != STOP:
         taken = _relax(views, qp, q, yielding, state, 1.0, yields)
+    elif yields and _answered(views, qp, yielding, state):
+        _clear_blocking(views)
+        taken = NONE
     if taken == NOTHING:
         _stop(views, qp)
         taken = STOP
@@ -147,8 +150,12 @@ def _note_crossed(views: RowViews, qp: QPViews) -> bool:
 
 
 @compiled
-def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding) -> None:
-    """Note what stands in the way of the task as it is, or which limits contradict each other."""
+def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding, q: Vector) -> bool:
+    """Note what stands in the way of the task as it is, or which limits contradict each other.
+
+    Returns:
+        Whether the program at joint positions q (dof,) has a solution.
+    """
     n = qp.q.size
     m = qp.h.size
     point = np.empty(2 * n + 2 + m + qp.b.size)
@@ -156,8 +163,9 @@ def _name_blocking(views: RowViews, qp: QPViews, yielding: Yielding) -> None:
     note_blocking(point, n, m, 1, views.blocking)
     if not factor >= 0.0:
         limits = np.empty(2 * n + m + held_rows(yielding.weights))
-        if not enter_violation(yielding.violation, qp, yielding, views.past[Q], limits):
+        if not enter_violation(yielding.violation, qp, yielding, q, limits):
             note_blocking(limits, n, m, 0, views.blocking)
+    return factor >= FEASIBLE
 
 
 @compiled
@@ -395,11 +403,8 @@ def approach(
     """
     n = qp.q.size
     dof = instant.q.size
-    if action == STOP:
-        _stop(views, qp)
-        braked = views.point[:dof]
-        _follow(instant, braked, _braking_command(qp, instant, yielding, braked))
-        return STOP
+    if action == STOP and not yields:
+        return _halt(views, qp, instant, yielding)
     held = held_rows(yielding.weights)
     wanted = np.empty(2 * n + qp.h.size + held)
     found = enter_violation(yielding.violation, qp, yielding, instant.q, wanted)
@@ -407,6 +412,8 @@ def approach(
     if found and _fits(views, qp, instant, yielding, state, wanted):
         _clear_blocking(views)
         return NONE if yields else FALLBACK
+    if action == STOP:
+        return _halt(views, qp, instant, yielding)
     if not found:
         for i in range(n):
             wanted[i] = 0.0
@@ -426,6 +433,15 @@ def approach(
     fraction = 1.0 if action == RELAX else max(_attained(qp, yielding.weights, x), CREEP)
     _take(views, qp, x, fraction)
     return action
+
+
+@compiled
+def _halt(views: RowViews, qp: QPViews, instant: Instant, yielding: Yielding) -> int:
+    """Take the next command of a motion to rest as the answer; return `STOP`."""
+    _stop(views, qp)
+    braked = views.point[: instant.q.size]
+    _follow(instant, braked, _braking_command(qp, instant, yielding, braked))
+    return STOP
 
 
 @compiled
@@ -578,8 +594,10 @@ def yield_step(
     _clear_blocking(views)
     if not _is_finite(views, qp) or _note_crossed(views, qp):
         action = STOP
-    elif action == STOP and views.decision[2] == NOT_SETTLED:
-        _name_blocking(views, qp, yielding)
+        yields = False
+    elif action == STOP and (yields or views.decision[2] == NOT_SETTLED):
+        # Once stopped, the arm goes on where the task has a solution again.
+        yields = _name_blocking(views, qp, yielding, past[Q]) and yields
     if yielding.approach != 0:
         instant = instant_of(arrays, past, following)
         taken: int = enter_approach(

@@ -156,3 +156,24 @@ def test_a_limit_of_ones_own_gives_way_to_acceleration() -> None:
         path.append(q)
     assert judged(np.array(path), jerk=np.inf) == []
     assert (command.dq == 0.0).all()
+
+
+@pytest.mark.parametrize("limits", [(), LIMITS[:1]], ids=["none", "acceleration"])
+def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
+    limits: tuple[Limit, ...],
+) -> None:
+    start = paper_start()
+    scheme = DoubleIndicator(extra_limits=limits)
+    controller = Controller(paper_robot(), scheme, policy="stop")
+    far = Target(start.position + [0.5, 0.0, 0.0], start.rotation)
+    for k in range(3):
+        command = controller.step(start.q, 1e-3 * k, far)
+        assert command.action is Action.STOP
+        assert not command.dq.any()
+        assert "against joint" in repr(command)
+    near = Target(start.position + [1e-5, 0.0, 0.0], start.rotation)
+    again = [controller.step(start.q, 3e-3, near), controller.step(start.q, 4e-3, near)]
+    for command in again:
+        assert command.ok
+        velocity = start.jacobian[:3] @ command.dq
+        np.testing.assert_allclose(velocity, [10.2e-5, 0.0, 0.0], atol=1e-8)

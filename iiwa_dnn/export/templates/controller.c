@@ -95,7 +95,8 @@ int controller_step(struct controller *c, const double *q, const double *target,
     if (!solved) {
         action = yield_step(c->row, &arrays, c->past, c->following, c->state, &yielding, POLICY,
             c->yields != 0);
-        c->yields = action == CONTROLLER_SLOW || action == CONTROLLER_RELAX;
+        c->yields =
+            action == CONTROLLER_SLOW || action == CONTROLLER_RELAX || action == CONTROLLER_STOP;
     }
     if (action != 0) {
         c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);
