@@ -9,7 +9,6 @@ loop begins each of them at the start posture, and has arrived once the tip stay
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -127,7 +126,7 @@ def bench_arrivals(arguments: Sequence[str] | None = None, prog: str = "arrivals
     """Count arrivals and print a table; ``--steps`` is the number of poses; returns 0."""
     count, pythons = read_arguments(prog, bench_arrivals.__doc__, 60, arguments)
     loops = [*OWN, *(loop for loop in LOOPS if loop.name in _PEERS)]
-    cells: list[list[Any]] = []
+    cells: list[list[str]] = []
     absent: set[str] = set()
     for name in ROBOTS:
         robot = iiwa_dnn.load_robot(name)
@@ -137,7 +136,7 @@ def bench_arrivals(arguments: Sequence[str] | None = None, prog: str = "arrivals
         best = max((np.isfinite(found).sum() for found in times.values()), default=0)
         for loop, found in times.items():
             arrived = np.isfinite(found)
-            failed = np.flatnonzero(~arrived)[:12].tolist()
+            failed = " ".join(map(str, np.flatnonzero(~arrived)[:12]))
             cells.append([name, loop, f"{arrived.sum()} of {best}", *summary(found), failed])
     head = ["arm", "loop", "arrivals of the best", "near", "far", "median s", "longest s", "failed"]
     print(markdown_table(head, cells))

@@ -68,7 +68,9 @@ def collision_rows(
         pair = pair_of(scene.pairs, k)
         contact = contact_of(pair, ends, scene.points)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
-        taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
+        taken = 0.0
+        if scene.damper.braked == 0.0:
+            taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
         limits[k] = _approach_limit(scene.damper, pair, contact, taken, step.rate)
         slacks[k] = limits[k] - fastest
     row = 0

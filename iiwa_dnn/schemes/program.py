@@ -28,11 +28,13 @@ from iiwa_dnn.schemes.acceleration import (
     lower_limits,
     with_squared_gains,
 )
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.filling import fill
 from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import COST, LIMIT, TASK, Cost, Limit, Part, Task
+from iiwa_dnn.schemes.scene import BRAKED
 from iiwa_dnn.schemes.step import Step, StepViews
 
 if TYPE_CHECKING:
@@ -188,6 +190,9 @@ class StepProgram:
         first = _Head(n, m, p, robot.dof, len(entries), tip)
         self.table: Table = np.array([first, *entries], dtype=np.int64)
         self.constants: Vector = np.concatenate(arrays)
+        if self.rate_limits is not None and not self.accelerates:
+            for start, _ in self.constants_of(CollisionAvoidance):
+                self.constants[start + BRAKED] = 1.0
 
     @cached_property
     def compiled_blocks(self) -> tuple[Block, ...]:

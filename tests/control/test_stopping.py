@@ -147,6 +147,25 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
     assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
 
 
+def test_an_arm_with_a_long_period_goes_back_as_near_as_it_began() -> None:
+    # The rows keep off by what a step at full speed could take, 10 cm here, though no such speed
+    # is reached within it: once it had left its start, the arm did not come back.
+    robot = ROBOT.with_limits(velocity=5.0)
+    start = Configuration(robot, robot.start_posture())
+    ball = Sphere(start.position + [0.25, 0.0, 0.0], 0.1)
+    avoidance = CollisionAvoidance([ball], self_collision=False)
+    scene = avoidance.scene(robot)
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
+    controller = Controller(robot, scheme, dt=1.6e-2)
+    q = start.q
+    for k in range(500):
+        away = -0.3 if k < 150 else 0.0
+        target = Target(start.position + [away, 0.0, 0.0], start.rotation)
+        q = q + 1.6e-2 * controller.step(q, 1.6e-2 * k, target).dq
+        assert scene.nearest(q[None], np.zeros(1))[0][0] >= 0.02
+    assert np.linalg.norm(Configuration(robot, q).position - start.position) < 1e-3
+
+
 TWO_LINKS = """<robot name="two_links"><link name="base"/><link name="one"/>
 <link name="two"><collision><origin xyz="0.6 0 0"/><geometry><sphere radius="0.01"/></geometry>
 </collision></link><link name="tip"/>
