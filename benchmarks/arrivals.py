@@ -21,7 +21,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.results.markdown import markdown_table
 
 ROBOTS = ("iiwa7", "panda")
-HOLD = 15.0
+HOLD = 10.0
 """Time for each pose [s]."""
 
 DT = 1e-2

@@ -4,13 +4,15 @@ Arms among random obstacles, still and moving, with random control periods and l
 targets that jump behind, into and past what is in the way and beyond the joints' limits, and in the
 end back to their start. coal judges the distances, at every step and half-way between steps; finite
 differences judge the limits. Where an arm is not back in time, it is led back along the path that
-it came by: if it can go there, its state was no trap, and the tip's own way ended in a minimum.
+it came by: if it comes to its start, its state was no trap, and the tip's own way ended in a local
+minimum. An obstacle that has moved may bar that path; then a state is a trap if no posture nearby
+can be had.
 """
 
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -230,8 +232,12 @@ def way_back(path: Matrix) -> list[Vector]:
     return postures
 
 
-def lead_back(case: Case, path: Matrix) -> float:
-    """Lead an arm back along a path (k, n) [rad] that it came by; largest angle that is left."""
+def lead(case: Case, path: Matrix, postures: Iterable[Vector]) -> Vector:
+    """Lead an arm from the end of a path (k, n) [rad] from posture to posture.
+
+    Returns:
+        Where it ends, at the last posture or at one that it does not reach, (n,).
+    """
     robot, avoidance, limits, _, _, dt, _, _ = case
     start = iiwa_dnn.Configuration(robot, path[0])
     target = iiwa_dnn.Target(start.position, start.rotation)  # no task asks for it
@@ -241,7 +247,7 @@ def lead_back(case: Case, path: Matrix) -> float:
     controller = iiwa_dnn.Controller(robot, scheme, dt=dt, policy="relax")
     q = path[-1]
     t = len(path) * dt
-    for posture in way_back(path):
+    for posture in postures:
         task.posture = posture
         for _ in range(int(PATIENCE / dt)):
             if np.abs(posture - q).max() < TURN:
@@ -250,7 +256,26 @@ def lead_back(case: Case, path: Matrix) -> float:
             t += dt
         else:
             break
-    return float(np.abs(path[0] - q).max())
+    return q
+
+
+def name_stop(case: Case, path: Matrix) -> str:
+    """Name why a tip is not back at the end of a path (k, n) [rad].
+
+    The arm is led back along the path, which an obstacle that has moved may bar meanwhile, and if
+    it does not come to its start, to a hundred postures about its own.
+    """
+    q = lead(case, path, way_back(path))
+    if np.abs(path[0] - q).max() < 2.0 * TURN:
+        return "minima"
+    random = np.random.default_rng(0)
+    robot = case.robot
+    for _ in range(100):
+        aside = path[-1] + random.uniform(-0.2, 0.2, robot.dof)
+        q = lead(case, path, [np.clip(aside, robot.q_lower, robot.q_upper)])
+        if np.abs(q - path[-1]).max() > 0.1:
+            return "barred ways"
+    return "traps"
 
 
 def reach_of(robot: iiwa_dnn.Robot) -> Vector:
@@ -341,10 +366,9 @@ def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
         covered = judge.distance(robot.start_posture(), HOSTILE) < DISTANCE + 1e-3
         if driven.left > 1e-2 and not covered:
             counts["tips not back"] += 1
-            angle = lead_back(case, driven.path)
-            what = "led back" if angle < 2.0 * TURN else "with moving" if case.moving else "traps"
+            what = name_stop(case, driven.path)
             counts[what] += 1
-            print(f"{about}: {driven.left:.3f} m left, then {angle:.3f} rad: {what}", flush=True)
+            print(f"{about}: {driven.left:.3f} m left, of the {what}", flush=True)
         if counts["runs"] % report == 0:
             print(f"{done:,} steps, {dict(counts)}, least {least:.7f} m", flush=True)
     median, p99, slow, longest = 1e6 * np.percentile(times, [50.0, 99.0, 99.9, 100.0])

@@ -5,7 +5,7 @@ goes on a straight line towards the velocity that the softened program asks for.
 are avoided too, a command is given only if it is stoppable (`iiwa_dnn.control.stopping`); if not,
 one nearer to the braking motion in hand is, and in the end that motion itself.
 
-After the step's own program, every way through `yield_step` ends after `ATTEMPTS` - 1 programs of
+A step ends after `ATTEMPTS` programs: its own or one more for a stopped arm, the others of
 `relaxed.BUDGET` linear systems.
 """
 
@@ -418,11 +418,7 @@ def approach(
         for i in range(n):
             wanted[i] = 0.0
     x = wanted[:n].copy()
-    if held == 0:
-        _step_towards(qp, instant, yielding, x[:dof])
-    else:  # joints that follow others have to go with them
-        _step_straight(qp, instant, yielding, x[:dof])
-    nearest_within(qp, x, yielding)
+    _step_within(qp, instant, yielding, x, held > 0)
     rest = 0.0
     if yielding.stop != 0:
         rest = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
@@ -476,6 +472,22 @@ def _fits(
 
 
 @compiled
+def _step_within(
+    qp: QPViews, instant: Instant, yielding: Yielding, x: Vector, together: bool
+) -> None:
+    """Replace the wanted velocity x (n,) by the next command within the limits on the way to it.
+
+    Joints that follow others have to go with them, `together`, on a straight line.
+    """
+    dof = instant.q.size
+    if together:
+        _step_straight(qp, instant, yielding, x[:dof])
+    else:
+        _step_towards(qp, instant, yielding, x[:dof])
+    nearest_within(qp, x, yielding)
+
+
+@compiled
 def _step_towards(qp: QPViews, instant: Instant, yielding: Yielding, dq: Vector) -> None:
     """Replace the wanted velocity dq (dof,) by the next command of joints that hurry to it.
 
@@ -522,8 +534,7 @@ def _slow_down(
     """
     dof = instant.q.size
     straight = wanted[: x.size].copy()
-    _step_straight(qp, instant, yielding, straight[:dof])
-    nearest_within(qp, straight, yielding)
+    _step_within(qp, instant, yielding, straight, True)
     braking_command = np.empty(dof)
     left = _braking_command(qp, instant, yielding, braking_command)
     for share in TOWARDS:
