@@ -44,12 +44,12 @@ def test_the_own_loop_arrives_at_a_near_pose() -> None:
 
 def test_the_judge_leaves_no_sample_out_that_is_too_near() -> None:
     start = ROBOT.start_posture()
-    tip = iiwa_dnn.Configuration(ROBOT, start).position
-    ball = iiwa_dnn.Sphere(tip + [0.0, 0.25, 0.0], 0.08)
-    avoidance = iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=DISTANCE)
-    case = Case(ROBOT, avoidance, (), "none", "relax", 1e-3, 100, False)
     turn = np.zeros(7)
     turn[0] = -1.2
+    on_the_way = iiwa_dnn.Configuration(ROBOT, start + 0.5 * turn).position
+    ball = iiwa_dnn.Sphere(on_the_way, 0.08)
+    avoidance = iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=DISTANCE)
+    case = Case(ROBOT, avoidance, (), "none", "relax", 1e-3, 100, False)
     path = start + np.linspace(0.0, 1.0, 300)[:, np.newaxis] * turn
     judge = Judge(ROBOT, avoidance)
     doubled = np.vstack([path, 0.5 * (path[1:] + path[:-1])])
