@@ -13,7 +13,6 @@ from iiwa_dnn.networks.batch import solve_batch
 from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.qp import QP
 from iiwa_dnn.qp.compiling import WATCH
-from iiwa_dnn.qp.proof import prove
 from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Waypoints
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import AccelerationLimits, CollisionAvoidance, DoubleIndicator
@@ -45,7 +44,7 @@ def run(options: WarmUpOptions) -> int:
             simulate(slow, scheme, reference, q0, dt=1e-2, duration=0.1)
         bar.update()
         qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=np.ones(1))
-        prove(qp, solve_problem(qp))
+        solve_problem(qp)
         solve_batch(qp.P, qp.q, A=qp.A, b=qp.b)
         bar.update()
     if not options.quiet:

@@ -32,7 +32,6 @@ class Recorder:
 
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
-        layout: Columns of the commands' rows.
         last_step: Step at which the run ended early; None: it has not.
         diverged: Whether it ended since the plant diverged.
     """
@@ -49,7 +48,6 @@ class Recorder:
             settings: Settings of the run, with its inequality rows.
         """
         program = controller.program
-        self.layout: RowLayout = controller.layout
         self._controller = controller
         self._settings = settings
         self._steps = steps
@@ -60,13 +58,17 @@ class Recorder:
         self.last_step: int | None = None
         self.diverged = False
         self._names = LimitNames(program, controller.dt)
-        self._tells_kinds = program.rate_limits is not None
         self._done = 0
         self._series = 0
         self.arrays: dict[str, NDArray[Any]] = {}
         for name in COLUMNS.keys() - OPTIONAL - _OF_THE_CHECK:
             self._array(name)
         self.arrays["q"][0] = q0
+
+    @property
+    def layout(self) -> RowLayout:
+        """Columns of the commands' rows."""
+        return self._controller.layout
 
     def observe(self, k: int, outcome: Outcome) -> None:
         """Take in the outcome of step k."""
@@ -165,7 +167,7 @@ class Recorder:
             residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
-        if self._tells_kinds:
+        if self._controller.program.rate_limits is not None:
             self._add_kinds(k, outcome.commands[0])
         resolution = outcome.commands[0].resolution
         if resolution is None:
