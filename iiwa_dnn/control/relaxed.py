@@ -83,6 +83,9 @@ FASTEST = 1e3
 RETREAT = 0.9
 """Largest part of what the bounds let a row be that it may ask for where the task yields."""
 
+TRIES = 3
+"""Parts that are tried, down to none, where several rows ask for more than all can have."""
+
 REACHED = 1e-9
 """Residual of the task rows below which a point counts as on them."""
 
@@ -316,8 +319,7 @@ def _least_violation(
     held = held_rows(yielding.weights)
     soft = qp_views(data, n, m, held)
     damping = _write_softened(qp, yielding, q, soft)
-    state = np.zeros(3 * n + m + held)
-    if not settled(soft, yielding, state, point):
+    if not _settled_in_retreat(qp, yielding, soft, point):
         return False
     # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
     exact = point[:n].copy()
@@ -325,6 +327,32 @@ def _least_violation(
         for i in range(n):
             point[i] = exact[i]
     return True
+
+
+@compiled
+def _settled_in_retreat(qp: QPViews, yielding: Yielding, soft: QPViews, point: Vector) -> bool:
+    """Settle the softened program, its elastic rows asking for as much as can be had together."""
+    n = qp.q.size
+    for tried in range(TRIES):
+        share = RETREAT * (1.0 - tried / (TRIES - 1.0))
+        asks = _limit_retreat(qp, yielding, soft, share)
+        if settled(soft, yielding, np.zeros(3 * n + qp.h.size + soft.b.size), point):
+            return True
+        if not asks:
+            return False
+    return False
+
+
+@compiled
+def _limit_retreat(qp: QPViews, yielding: Yielding, soft: QPViews, share: float) -> bool:
+    """Let elastic rows ask for a share of what the bounds let them be; tell if any asks for it."""
+    asks = False
+    for j in range(qp.h.size):
+        if yielding.elastic[j] > 0.0:
+            lowest = _lowest(soft, j)
+            soft.h[j] = max(qp.h[j], share * lowest if lowest < 0.0 else lowest)
+            asks |= soft.h[j] < 0.0
+    return asks
 
 
 @compiled
@@ -339,7 +367,7 @@ def held_rows(weights: Vector) -> int:
 
 @compiled
 def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -> float:
-    """Write the softened program of a step; return the square of the damping, lambda."""
+    """Write the softened program but for elastic rows; return the damping's square, lambda."""
     n = qp.q.size
     weights = yielding.weights
     damping = _damping(qp.A, weights)
@@ -368,10 +396,6 @@ def _write_softened(qp: QPViews, yielding: Yielding, q: Vector, soft: QPViews) -
         soft.P[i, i] += damping
         soft.q[i] = wish * qp.q[i] + damping * drift * qp.q[i] - pull[i]
     _copy_rows(qp, soft)
-    for j in range(qp.h.size):
-        if yielding.elastic[j] > 0.0:
-            lowest = _lowest(soft, j)
-            soft.h[j] = max(qp.h[j], RETREAT * lowest if lowest < 0.0 else lowest)
     return damping
 
 

@@ -19,7 +19,9 @@ distances: a pair at the distance d, with the gradient g of the distance and the
 .. math::  d + g \cdot \Delta q - \tfrac12 B - \max(0,\; \omega \ell - \eta) - v_o T
 
 by inequality (1) of docs/collisions.md. Along the motion :math:`g \cdot \Delta q` has its least
-value at rest, or where the sum of its terms changes sign.
+value at rest, or where the sum of its terms changes sign. Where the joints go straight on, their
+way up to any time is :math:`\lambda \Delta q` with :math:`0 \le \lambda \le 1`, and B at most
+:math:`\lambda^2 B`: the difference, concave in :math:`\lambda`, is least at an end.
 """
 
 import math
@@ -44,6 +46,9 @@ GROWTH = 1.1
 
 SLACK = 1e-9
 """Relative excess of a limit that is rounding."""
+
+ROUNDING = 1e-12
+"""Part of a velocity that is rounding."""
 
 
 class Instant(NamedTuple):
@@ -244,6 +249,25 @@ def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: f
 
 
 @compiled
+def is_straight(motion: Motion) -> bool:
+    """Test whether the joints go straight on to where they rest: b points along the velocity."""
+    along = 0.0
+    square = 0.0
+    for i in range(motion.first.size):
+        along += motion.bend[i] * motion.first[i]
+        square += motion.first[i] * motion.first[i]
+    if square == 0.0:
+        return False
+    factor = along / square
+    lacking = 0.0
+    largest = 0.0
+    for i in range(motion.first.size):
+        lacking = max(lacking, abs(motion.bend[i] - factor * motion.first[i]))
+        largest = max(largest, abs(motion.first[i]))
+    return factor >= 0.0 and lacking <= ROUNDING * largest
+
+
+@compiled
 def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> bool:
     """Test whether joints at q (n,) [rad] keep position and velocity limits on a motion to rest."""
     n = q.size
@@ -323,6 +347,7 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     scene = scene_views(constants, n)
     ends = np.empty(scene.ends.shape)
     place_ends(scene, instant.placements, ends)
+    straight = is_straight(motion)
     of_first, of_bend = sums(motion, motion.periods)
     travel = np.empty(n)
     for i in range(n):
@@ -338,15 +363,15 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
         normal = contact.normal
         change = np.inf
         at = 2 * int(pair.second)
+        lacking = 0.5 * bounds.second_order
         for end in (point_of(ends, at), point_of(ends, at + 1)):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
             height = dot(difference(end, contact.second), normal)
-            change = min(change, height + _least_rise(motion, rates, dt))
-        change -= 0.5 * bounds.second_order
+            change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
         if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
             _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)
-            rise = _least_rise(motion, rates, dt)
-            change = max(change, rise - 0.5 * _seen_second_order(bounds, contact.core))
+            lacking = 0.5 * _seen_second_order(bounds, contact.core)
+            change = max(change, _least_rise(motion, rates, dt, lacking, straight))
         if left + change < min(scene.damper.least, left):
             return False
     return True
@@ -364,15 +389,26 @@ def _write_rates(
 
 
 @compiled
-def _least_rise(motion: Motion, rates: Vector, dt: float) -> float:
-    """Compute the least way of a point on a motion to rest, by its rates (n,) for each joint."""
+def _least_rise(motion: Motion, rates: Vector, dt: float, lacking: float, straight: bool) -> float:
+    """Bound the way of a point on a motion to rest from below.
+
+    Args:
+        motion: The motion.
+        rates: Rate of the point for each joint, (n,) [m/rad].
+        dt: Control period [s].
+        lacking: Bound on what the whole way lacks to be linear in the joints' [m].
+        straight: `is_straight` of the motion.
+    """
     x = 0.0
     b = 0.0
     for j in range(rates.size):
         x += rates[j] * motion.first[j]
         b += rates[j] * motion.bend[j]
+    if straight:
+        of_first, of_bend = sums(motion, motion.periods)
+        return min(0.0, dt * (x * of_first + b * of_bend) - lacking)
     least, _ = extremes(motion, x, b, dt)
-    return least
+    return least - lacking
 
 
 @compiled

@@ -56,10 +56,10 @@ from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
-ATTEMPTS = 13
+ATTEMPTS = 15
 """Programs at most: the step's own with a budget of its own, five passes of the scaled one, then
-three times the step's own from its last state and from a cold start, and the softened one or that
-of the nearest command."""
+three times the step's own from its last state and from a cold start, and the softened one, with
+each part of `relaxed.TRIES`, or that of the nearest command."""
 
 NONE = int(Action.NONE)
 FALLBACK = int(Action.FALLBACK)

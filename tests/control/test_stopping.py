@@ -131,6 +131,27 @@ def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
     assert breaches(path, 4e-3, *robot, jerk) == []
 
 
+@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[Limit, ...]) -> None:
+    # A capsule that had come to a resting arm kept it there for good.
+    start = Configuration(ROBOT, ROBOT.start_posture())
+    balls = [Sphere(start.position + [x, 0.0, z], 0.1) for x, z in ((0.3, 0.0), (0.28, -0.12))]
+    bare = CollisionAvoidance(balls, distance=0.02, self_collision=False)
+    scene = bare.scene(ROBOT)
+    near = float(scene.nearest(start.q[None], np.zeros(1))[0][0])
+    avoidance = CollisionAvoidance(balls, distance=near + 5e-3, self_collision=False)
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
+    controller = Controller(ROBOT, scheme, dt=4e-3)
+    target = Target(start.position - [0.2, 0.0, 0.0], start.rotation)
+    q = start.q
+    path = [q]
+    for k in range(1000):
+        q = q + 4e-3 * controller.step(q, 4e-3 * k, target).dq
+        path.append(q)
+    assert scene.nearest(np.array(path), np.zeros(len(path)))[0].min() >= near - 1e-9
+    assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+
+
 def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
     # With acceleration limits an arm 10 um above the distance never moved again.
     start = Configuration(ROBOT, ROBOT.start_posture())

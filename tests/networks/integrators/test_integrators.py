@@ -196,7 +196,9 @@ def test_a_subclass_that_changes_nothing_stays_compiled() -> None:
     assert DNNSolver(Subclass()).compiled_answer(sizes, 1e-4) is not None
 
 
-@pytest.mark.parametrize("network", [ProjectionNetwork(), ProjectionNetwork(1e-4, False)], ids=repr)
+@pytest.mark.parametrize(
+    "network", [ProjectionNetwork(), ProjectionNetwork(rho=1e-4, primal_projection=False)], ids=repr
+)
 @pytest.mark.parametrize("integrator", [ExplicitEuler(), ImplicitEuler()], ids=repr)
 def test_a_state_or_a_point_of_another_size_is_refused(
     network: ProjectionNetwork, integrator: Integrator
