@@ -332,11 +332,13 @@ def _least_violation(
 @compiled
 def _settled_in_retreat(qp: QPViews, yielding: Yielding, soft: QPViews, point: Vector) -> bool:
     """Settle the softened program, its elastic rows asking for as much as can be had together."""
-    n = qp.q.size
+    state = np.zeros(3 * qp.q.size + qp.h.size + soft.b.size)
     for tried in range(TRIES):
         share = RETREAT * (1.0 - tried / (TRIES - 1.0))
         asks = _limit_retreat(qp, yielding, soft, share)
-        if settled(soft, yielding, np.zeros(3 * n + qp.h.size + soft.b.size), point):
+        for i in range(state.size):
+            state[i] = 0.0
+        if settled(soft, yielding, state, point):
             return True
         if not asks:
             return False
@@ -351,7 +353,8 @@ def _limit_retreat(qp: QPViews, yielding: Yielding, soft: QPViews, share: float)
         if yielding.elastic[j] > 0.0:
             lowest = _lowest(soft, j)
             soft.h[j] = max(qp.h[j], share * lowest if lowest < 0.0 else lowest)
-            asks |= soft.h[j] < 0.0
+            if soft.h[j] < 0.0:
+                asks = True
     return asks
 
 

@@ -39,6 +39,7 @@ def far() -> Target:
     return Target(start.position + SIDEWAYS, start.rotation)
 
 
+@pytest.mark.filterwarnings("ignore:a gain of 10.2")  # nothing is closed in a loop here
 @pytest.mark.parametrize("limits", [(A, None), (None, J), (A, J)], ids=["A", "J", "A and J"])
 def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
     limits: tuple[float | None, float | None],

@@ -229,7 +229,7 @@ def test_integrators_and_networks_name_themselves() -> None:
     }  # fmt: skip
     assert ImplicitEuler(step=np.float64(0.5)).settings()["step"] == 0.5
     assert AdaptiveRungeKutta().settings()["name"] == "AdaptiveRungeKutta"
-    network = ProjectionNetwork(np.float64(1e-4), primal_projection=False)
+    network = ProjectionNetwork(rho=np.float64(1e-4), primal_projection=False)
     assert json.loads(json.dumps(network.settings())) == {
         "name": "ProjectionNetwork", "rho": 1e-4, "primal_projection": False,
     }  # fmt: skip
