@@ -250,7 +250,10 @@ def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: f
 
 @compiled
 def is_straight(motion: Motion) -> bool:
-    """Test whether the joints go straight on to where they rest: b points along the velocity."""
+    """Test whether the joints go straight on to where they rest.
+
+    Their velocities keep direction and sign where b is c times the first one with c >= -3.
+    """
     along = 0.0
     square = 0.0
     for i in range(motion.first.size):
@@ -264,7 +267,7 @@ def is_straight(motion: Motion) -> bool:
     for i in range(motion.first.size):
         lacking = max(lacking, abs(motion.bend[i] - factor * motion.first[i]))
         largest = max(largest, abs(motion.first[i]))
-    return factor >= 0.0 and lacking <= ROUNDING * largest
+    return factor >= -3.0 and lacking <= ROUNDING * largest
 
 
 @compiled
