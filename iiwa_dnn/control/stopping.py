@@ -184,6 +184,9 @@ def within_rates(x: float, before: float, periods: float, accel: float, jerk: fl
         return False
     if abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)) * u * u > most:
         return False
+    # The last one, from which the joint is at rest for good.
+    if abs(x * (3.0 - 2.0 * u) + b * (1.0 - u)) * u * u > most:
+        return False
     most = accel * (1.0 + SLACK)
     if abs(next_velocity(x, before, periods, True) - x) > most:
         return False

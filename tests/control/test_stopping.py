@@ -58,8 +58,10 @@ def way_to_rest(x: np.ndarray, before: np.ndarray, limits: np.ndarray, dt: float
 def test_a_motion_to_rest_keeps_acceleration_and_jerk(jerk: float, dt: float) -> None:
     random = np.random.default_rng(3)
     limits = np.concatenate([np.full(9, 3.0), np.full(3, 10.0), np.full(3, jerk)])
-    for _ in range(200):
-        x = random.uniform(-2.0, 2.0, 3)
+    for k in range(400):
+        # Slow ones too: the last step to rest, of one period or two, was above the jerk limit.
+        largest = 2.0 if k < 200 else 3.0 * min(10.0, jerk * dt) * dt
+        x = random.uniform(-largest, largest, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, jerk * dt) * dt
         path = way_to_rest(x, before, limits, dt)
         assert not path[-1].any()
