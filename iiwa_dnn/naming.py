@@ -1,4 +1,4 @@
-"""What a limit in the way is called, in the same words in commands, errors, reports and pages."""
+"""Names of limits, the same in commands, errors, records, reports and pages."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

@@ -110,8 +110,11 @@ class Recorder:
         ):
             if values.any():
                 self._array(name, m=values.shape[1])[steps] = values
+        tells_kinds = self._controller.program.rate_limits is not None
         for k, outcome in enumerate(outcomes, steps.start):
             self._add_incident(k, outcome)
+            if tells_kinds:
+                self._add_kinds(k, outcome.commands[0])
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return rows
@@ -167,8 +170,6 @@ class Recorder:
             residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
-        if self._controller.program.rate_limits is not None:
-            self._add_kinds(k, outcome.commands[0])
         resolution = outcome.commands[0].resolution
         if resolution is None:
             return
