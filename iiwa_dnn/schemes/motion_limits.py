@@ -51,6 +51,12 @@ MARGIN = 0.2
 ROUNDING = 2e-14
 """Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
 
+EASE = 0.5
+"""Share of its way to a position limit that a joint all but at rest may cover in a period."""
+
+REST = 0.25
+"""Where a joint that is pressed against a limit comes to rest, like `MARGIN`, and just inside."""
+
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
@@ -300,6 +306,13 @@ def _jerk_bounds(
     limit = accel - jerk * dt
     upper = _ceiling(lb, ub, above - margin, last, dt, (jerk, limit))
     lower = -_ceiling(-ub, -lb, below - margin, -last, dt, (jerk, limit))
+    if lower < upper and max(abs(last), abs(last - before)) < unit:
+        # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
+        # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
+        rest = REST * unit * dt
+        eased = max(min(upper, max(EASE * (above - rest) / dt, lb)), lower)
+        lower = min(max(lower, min(-EASE * (below - rest) / dt, ub)), eased)
+        upper = eased
     return lower, upper
 
 

@@ -230,6 +230,24 @@ def test_after_every_bound_some_commands_lead_to_rest() -> None:
     assert binding >= 5
 
 
+@pytest.mark.parametrize("speed", [1e-5, 1e-2, 1.0])
+@pytest.mark.parametrize(("jerk", "dt"), [(INF, 1e-3), (500.0, 1e-3), (20.0, 1e-2)])
+def test_a_joint_pressed_against_its_limit_comes_to_rest(
+    speed: float, jerk: float, dt: float
+) -> None:
+    last = before = 0.0
+    q = -5.0 * speed
+    commands = []
+    for _ in range(int(9.0 / dt)):
+        lb, ub = joint_bounds(last, before, -q, INF, (speed, 10.0, jerk), dt)
+        before = last
+        last = min(max(speed, lb), ub)
+        q += dt * last
+        commands.append(last)
+    assert -1e-5 < q <= 0.0
+    assert np.abs(commands[-50:]).max() < 1e-12
+
+
 @pytest.mark.parametrize("jerk", [INF, 200.0])
 def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
     dt, A = 1e-3, 8.0
