@@ -118,14 +118,14 @@ def compare(qp: QP, priorities: Vector, tol: float = 1e-9) -> Compared:
     A = qp.A.copy()
     b = qp.b.copy()
     expected = lexicographic(qp, priorities)
-    cascade = Cascade(priorities, qp.sizes, DNNSolver(tol=tol))
+    cascade = Cascade(priorities, qp.sizes, tol)
     cascade.resolve(qp)
     found = DNNSolver(tol=tol).solve(qp)
     if expected is None:
         return Compared(np.nan, np.zeros(0), found.found)
     gaps = []
     for level, residual in zip(cascade.levels, expected, strict=True):
-        attained = np.linalg.norm((A @ found.x - b)[level.rows[0]])
+        attained = np.linalg.norm((A @ found.x - b)[level.own])
         gaps += [np.linalg.norm(level.missing) - residual, attained - residual]
     return Compared(float(np.abs(gaps).max()), expected, found.found)
 

@@ -20,24 +20,61 @@ A. Escande, N. Mansard, P.-B. Wieber, "Hierarchical quadratic programming: fast 
 humanoid-robot motion generation", Int. J. Robotics Research 33 (2014).
 """
 
+import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.networks.integrators.base import ANSWER, enter_answer
+from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.layout import Sizes
+from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.layout import QPViews, Sizes, compiled, qp_views
+from iiwa_dnn.qp.residuals import within
 
 FINEST = 1e-12
 """Tolerance that a level aims at: a lower one may amplify its error by its multipliers. The step's
 own tolerance is what it has to reach."""
 
+BUDGET = 400
+"""Linear systems of a try, at most; far from singular poses it takes about ten."""
+
+SCALE = 2.0**14
+"""Factor of a level's cost in a second try: near a singular pose the cost is as flat as the square
+of a small singular value, and a step of the network has to be long beside that."""
+
 SMALLEST = 1e-9
-"""Singular value of a level's rows below which their direction is left to the levels below [1]."""
+"""Length of what the levels above leave of a row below which it is left to the levels below [1]."""
 
 HELD = 1e-11
 """Multiplier above which a limit holds for all levels below."""
+
+
+class Priorities(NamedTuple):
+    """What compiled code needs of the levels, and their programs and answers, overwritten.
+
+    Attributes:
+        numbers: Number of each level, (levels,), ascending, from 1.
+        rows: That of each equality row, 0 for none, (p,).
+        data: Program of each level, `QP.data`, (levels, size); of n variables, m inequality and
+            `held_rows` equality rows.
+        x: Its answer, (levels, n).
+        missing: What the answer lacks, b - A x, (levels, p); zero for the rows of other levels.
+        settings: Constants with which the network settles, ``[tol, budget, long step]``, (3,).
+        tol: The step's own tolerance.
+        answer: Address of the function that settles the network, `ANSWER`.
+    """
+
+    numbers: Vector
+    rows: Vector
+    data: Matrix
+    x: Matrix
+    missing: Matrix
+    settings: Vector
+    tol: float
+    answer: int
 
 
 @dataclass(frozen=True)
@@ -46,18 +83,16 @@ class Level:
 
     Attributes:
         priority: Number of the level, from 1.
-        rows: Which rows of A are the level's, (p,), and which are those above, (p,).
+        own: Which rows of A are the level's, (p,).
         sizes: ``(n, m, p)`` of its programs.
-        solver: The network that settles them, with its own warm start.
         data: The program, `QP.data`, (size,).
         x: Its answer, (n,).
-        missing: What the answer lacks, b - A x of its own rows, (rows,).
+        missing: What the answer lacks, b - A x, (p,); zero for the rows of other levels.
     """
 
     priority: int
-    rows: tuple[NDArray[np.bool_], NDArray[np.bool_]]
+    own: NDArray[np.bool_]
     sizes: Sizes
-    solver: DNNSolver
     data: Vector
     x: Vector
     missing: Vector
@@ -67,82 +102,287 @@ class Cascade:
     """Levels of a scheme whose tasks have priorities.
 
     Attributes:
+        priorities: What compiled code needs of them.
         levels: The levels, first to last; none where no task has a priority.
     """
 
-    def __init__(self, priorities: NDArray[np.int64], sizes: Sizes, solver: DNNSolver) -> None:
-        """Lay the levels out; `priorities` (p,) is each equality row's, 0 for none."""
-        self.levels: list[Level] = []
-        self._tol = solver.tol
-        n, m, _ = sizes
-        for priority in sorted(set(priorities.tolist()) - {0}):
-            own = priorities == priority
-            above = priorities < priority
-            p = int(above.sum())
-            p = min(n, p + m) if self.levels else p
-            data = np.zeros((n + m + p) * (n + 1) + 2 * n)
-            x = np.zeros(n)
-            network = DNNSolver(solver.network, FINEST, solver.settler)
-            self.levels.append(
-                Level(priority, (own, above), (n, m, p), network, data, x, np.zeros(own.sum()))
-            )
+    def __init__(self, rows: NDArray[np.int64], sizes: Sizes, tol: float) -> None:
+        """Lay the levels out.
 
-    def resolve(self, qp: QP) -> None:
-        """Replace the rows A x = b of a program, level by level, by what can be attained.
-
-        They become rows of the same meaning and length one, as many as are independent, and zeros.
-        A bound with a multiplier in some level becomes an equality, lb = ub, and an inequality row
-        a row of A: levels below cannot leave it. Otherwise a single face would be all that is left
-        to them, and rounding would decide whether a point is on it.
+        Args:
+            rows: Priority of each equality row, (p,), 0 for none.
+            sizes: ``(n, m, p)`` of the step's programs.
+            tol: Tolerance of their residuals.
         """
-        lb = qp.lb.copy()
-        ub = qp.ub.copy()
-        x: Vector = np.zeros(qp.q.size)
-        held = np.zeros(qp.h.size, dtype=bool)
-        freedom = np.eye(x.size)
-        for level in self.levels:
-            own, above = level.rows
-            program = QP.from_data(level.data, level.sizes)
-            if level is self.levels[0]:
-                program.A[:] = qp.A[above]
-                program.b[:] = qp.b[above]
-            else:
-                rows = np.where(lb < ub, np.concatenate([qp.A[above], qp.G[held]]), 0.0)
-                _independent(rows, program.A)
-                program.b[:] = program.A @ x
-                freedom = np.diag(1.0 * (lb < ub)) - program.A.T @ program.A
-            left, sizes, right = _decomposed(qp.A[own] @ freedom)
-            E = left * sizes @ right
-            program.P[:] = E.T @ E
-            program.q[:] = -E.T @ (qp.b[own] - qp.A[own] @ x + E @ x)
-            program.G[:] = qp.G
-            program.h[:] = qp.h
-            program.lb[:] = lb
-            program.ub[:] = ub
-            solution = level.solver.solve(program)
-            level.x[:] = x = solution.x
-            level.missing[:] = qp.b[own] - qp.A[own] @ x
-            if not solution.residuals.largest <= self._tol:  # nor has the step: the policy decides
-                return
-            bound = np.abs(solution.z_box) > HELD
-            lb[bound] = ub[bound] = x[bound]
-            held |= solution.z > HELD
-        if self.levels:
-            qp.lb[:] = lb
-            qp.ub[:] = ub
-            _independent(np.where(lb < ub, qp.A, 0.0), qp.A)
-            qp.b[:] = qp.A @ x
+        numbers = np.unique(rows[rows > 0])
+        n, m, p = sizes
+        count = len(numbers)
+        own_sizes = (n, m, held_rows(n, m, p))
+        self.priorities = Priorities(
+            numbers.astype(np.float64),
+            rows.astype(np.float64),
+            np.zeros((count, sum(own_sizes) * (n + 1) + 2 * n)),
+            np.zeros((count, n)),
+            np.zeros((count, p)),
+            np.array([FINEST, BUDGET, ImplicitEuler().long_step]),
+            tol,
+            ANSWER.address(settle) if count else 0,
+        )
+        self.levels = [
+            Level(number, rows == number, own_sizes, *arrays)
+            for number, *arrays in zip(numbers.tolist(), *self.priorities[2:5], strict=True)
+        ]
+
+    def resolve(self, qp: QP) -> bool:
+        """Replace the rows A x = b of a program by what can be attained (`resolve`)."""
+        if not self.levels:
+            return True
+        return bool(resolve_program(qp.data, *qp.sizes, self.priorities))
 
 
-def _decomposed(A: Matrix) -> tuple[Matrix, Vector, Matrix]:
-    """Decompose A (p, n) into singular vectors and values, without the smallest of them."""
-    left, sizes, right = np.linalg.svd(A, full_matrices=False)
-    count = int((sizes > SMALLEST).sum())
-    return left[:, :count], sizes[:count], right[:count]
+@compiled
+def held_rows(n: int, m: int, p: int) -> int:
+    """Count the equality rows of a level's programs, of which those that are not needed are 0."""
+    return min(n, p + m)
 
 
-def _independent(A: Matrix, out: Matrix) -> None:
-    """Write orthonormal rows that span those of A (p, n), and zero rows, into `out`."""
-    directions = _decomposed(A)[2]
-    out[:] = 0.0
-    out[: len(directions)] = directions
+@compiled
+def resolve_program(data: Vector, n: int, m: int, p: int, priorities: Priorities) -> bool:
+    """Do what `resolve` does to a program `QP.data` (size,) of these sizes."""
+    return resolve(qp_views(data, n, m, p), priorities)
+
+
+@compiled
+def resolve(qp: QPViews, priorities: Priorities) -> bool:
+    """Replace the rows A x = b of a program, level by level, by what can be attained.
+
+    They become rows of the same meaning and length one, as many as are independent, and zeros.
+    A bound with a multiplier in some level becomes an equality, lb = ub, and an inequality row
+    a row of A: levels below cannot leave it. Otherwise a single face would be all that is left
+    to them, and rounding would decide whether a point is on it.
+
+    Args:
+        qp: The program, overwritten.
+        priorities: The levels, whose programs and answers are overwritten.
+
+    Returns:
+        False if a level has no answer; the rows stay as they were then.
+    """
+    n = qp.q.size
+    m = qp.h.size
+    p = held_rows(n, m, qp.b.size)
+    lb = qp.lb.copy()
+    ub = qp.ub.copy()
+    held = np.zeros(m)
+    x = np.zeros(n)
+    state = np.empty(3 * n + m + p)
+    point = np.empty(2 * n + m + p)
+    for k in range(priorities.numbers.size):
+        program = qp_views(priorities.data[k], n, m, p)
+        _write_limits(qp, lb, ub, program)
+        _write_held(qp, priorities, k, held, x, program)
+        _write_cost(qp, priorities, k, x, program)
+        settled = _settled(program, priorities, 1.0, FINEST, state, point)
+        if not settled:
+            settled = _settled(program, priorities, SCALE, priorities.tol, state, point)
+        _note_answer(qp, priorities, k, point)
+        if not settled:
+            return False
+        for i in range(n):
+            x[i] = point[i]
+            if abs(point[n + p + m + i]) > HELD:
+                lb[i] = x[i]
+                ub[i] = x[i]
+        for j in range(m):
+            if point[n + p + j] > HELD:
+                held[j] = 1.0
+    rows = np.empty((qp.b.size, n))
+    for j in range(qp.b.size):
+        for i in range(n):
+            rows[j, i] = qp.A[j, i] if lb[i] < ub[i] else 0.0
+    write_orthonormal(rows, qp.A)
+    for i in range(n):
+        qp.lb[i] = lb[i]
+        qp.ub[i] = ub[i]
+    for j in range(qp.b.size):
+        qp.b[j] = row_dot(qp.A, j, x)
+    return True
+
+
+@compiled
+def _write_limits(qp: QPViews, lb: Vector, ub: Vector, program: QPViews) -> None:
+    """Write the limits of a level: those of the step, with the bounds that are held by now."""
+    for i in range(qp.q.size):
+        program.lb[i] = lb[i]
+        program.ub[i] = ub[i]
+    for j in range(qp.h.size):
+        program.h[j] = qp.h[j]
+        for i in range(qp.q.size):
+            program.G[j, i] = qp.G[j, i]
+
+
+@compiled
+def _write_held(
+    qp: QPViews, priorities: Priorities, k: int, held: Vector, x: Vector, program: QPViews
+) -> None:
+    """Write the equality rows of level k: the levels above and the inequality rows that are held.
+
+    Those of the first level are the rows without a priority, as they are.
+    """
+    n = qp.q.size
+    p = qp.b.size
+    number = priorities.numbers[k]
+    if k == 0:
+        used = 0
+        for j in range(p):
+            if priorities.rows[j] == 0:
+                program.b[used] = qp.b[j]
+                for i in range(n):
+                    program.A[used, i] = qp.A[j, i]
+                used += 1
+        for j in range(used, program.b.size):
+            program.b[j] = 0.0
+            for i in range(n):
+                program.A[j, i] = 0.0
+        return
+    rows = np.zeros((p + held.size, n))
+    for i in range(n):
+        if program.lb[i] < program.ub[i]:
+            for j in range(p):
+                if priorities.rows[j] < number:
+                    rows[j, i] = qp.A[j, i]
+            for j in range(held.size):
+                rows[p + j, i] = held[j] * qp.G[j, i]
+    write_orthonormal(rows, program.A)
+    for j in range(program.b.size):
+        program.b[j] = row_dot(program.A, j, x)
+
+
+@compiled
+def _write_cost(qp: QPViews, priorities: Priorities, k: int, x: Vector, program: QPViews) -> None:
+    """Write the cost of level k, from the answer x (n,) of the level above.
+
+    With E its rows in the freedom that is left, 1/2 |E (y - x) - (b - A x)|^2 of the answer y.
+    """
+    n = qp.q.size
+    p = qp.b.size
+    E = np.zeros((p, n))
+    number = priorities.numbers[k]
+    for j in range(p):
+        if priorities.rows[j] == number:
+            for i in range(n):
+                E[j, i] = qp.A[j, i]
+    if k > 0:
+        for j in range(p):
+            for i in range(n):
+                if not program.lb[i] < program.ub[i]:
+                    E[j, i] = 0.0
+            for r in range(program.b.size):
+                _subtract(E, j, program.A, r)
+    basis = np.empty((n, n))
+    rest = E.copy()
+    write_orthonormal(rest, basis)
+    # What is left of a row has no direction of its own: it is rounding.
+    for j in range(p):
+        for i in range(n):
+            E[j, i] -= rest[j, i]
+    for i in range(n):
+        program.q[i] = 0.0
+        for c in range(n):
+            program.P[i, c] = 0.0
+    for j in range(p):
+        if priorities.rows[j] == number:
+            wanted = qp.b[j] - row_dot(qp.A, j, x) + row_dot(E, j, x)
+            for i in range(n):
+                program.q[i] -= E[j, i] * wanted
+                for c in range(n):
+                    program.P[i, c] += E[j, i] * E[j, c]
+
+
+@compiled
+def _settled(
+    program: QPViews,
+    priorities: Priorities,
+    scale: float,
+    tol: float,
+    state: Vector,
+    point: Vector,
+) -> bool:
+    """Settle the network on a level's program with its cost times a power of two.
+
+    Returns:
+        Whether `point` (size,) = [x | y | z | z_box] answers the program as it is within `tol`.
+    """
+    for i in range(state.size):
+        state[i] = 0.0
+    _scale_cost(program, scale)
+    settings = priorities.settings
+    _, _, primal, dual, gap = enter_answer(priorities.answer, program, 0, settings, state, point)
+    _scale_cost(program, 1.0 / scale)
+    for i in range(program.q.size, point.size):
+        point[i] /= scale
+    return within(primal, dual / scale, gap / scale, tol)
+
+
+@compiled
+def _scale_cost(program: QPViews, factor: float) -> None:
+    """Multiply the cost of a program."""
+    for i in range(program.q.size):
+        program.q[i] *= factor
+        for c in range(program.q.size):
+            program.P[i, c] *= factor
+
+
+@compiled
+def _note_answer(qp: QPViews, priorities: Priorities, k: int, point: Vector) -> None:
+    """Note the answer of level k, which begins `point`, and what it lacks."""
+    for i in range(qp.q.size):
+        priorities.x[k, i] = point[i]
+    for j in range(qp.b.size):
+        priorities.missing[k, j] = 0.0
+        if priorities.rows[j] == priorities.numbers[k]:
+            priorities.missing[k, j] = qp.b[j] - row_dot(qp.A, j, priorities.x[k])
+
+
+@compiled
+def write_orthonormal(rows: Matrix, out: Matrix) -> None:
+    """Write orthonormal rows that span given ones, as many as there are, and zero rows after them.
+
+    By Gram-Schmidt with the longest row first, each made orthogonal twice.
+
+    Args:
+        rows: The rows, (k, n); what is left of them is shorter than `SMALLEST`.
+        out: The orthonormal ones, (l, n), l at least the rank.
+    """
+    n = rows.shape[1]
+    for r in range(out.shape[0]):
+        longest = SMALLEST
+        chosen = -1
+        for j in range(rows.shape[0]):
+            length = math.sqrt(row_dot(rows, j, rows[j]))
+            if length > longest:
+                longest = length
+                chosen = j
+        for i in range(n):
+            out[r, i] = rows[chosen, i] / longest if chosen >= 0 else 0.0
+        if chosen < 0:
+            continue
+        for before in range(r):
+            _subtract(out, r, out, before)
+        length = math.sqrt(row_dot(out, r, out[r]))
+        for i in range(n):
+            out[r, i] /= length
+        for j in range(rows.shape[0]):
+            _subtract(rows, j, out, r)
+
+
+@compiled
+def _subtract(rows: Matrix, j: int, basis: Matrix, r: int) -> None:
+    """Take the part along row r of a basis (l, n), of length one or zero, off row j of rows (k, n).
+
+    Twice, as the first time leaves what rounding has made of it.
+    """
+    for _ in range(2):
+        along = row_dot(rows, j, basis[r])
+        for i in range(rows.shape[1]):
+            rows[j, i] -= along * basis[r, i]

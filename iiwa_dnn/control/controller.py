@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.cascade import Cascade, Level
+from iiwa_dnn.control.cascade import Cascade, Level, Priorities
 from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.paths import (
     References,
@@ -402,7 +402,7 @@ class Controller:
                 program = ForeignProgram(self.robot, self.scheme, self._state.past[Q])
             references = by_frame(self.reference, self.robot.tip)
             step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
-            derived = (step, Cascade(program.priorities, program.sizes, self.solver))
+            derived = (step, Cascade(program.priorities, program.sizes, self.solver.tol))
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = derived
         return derived
@@ -442,6 +442,11 @@ class Controller:
     def levels(self) -> list[Level]:
         """Levels of the tasks with priorities, as the last command has left them."""
         return self._laid_out()[1].levels
+
+    @property
+    def priorities(self) -> Priorities:
+        """What compiled code needs of those levels."""
+        return self._laid_out()[1].priorities
 
     def halt(self, command: Command) -> None:
         """Brake at every step from now on, where the arm cannot stop at once."""

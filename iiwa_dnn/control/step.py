@@ -61,6 +61,7 @@ class ControlStep:
         version: Version of the solver's parameters.
         arrays: Arrays that stay the same from step to step.
         has_network: Whether the network is compiled.
+        samples: Whether all references are compiled.
         begin: Stage at which the compiled step begins: `SAMPLE` if all references are compiled
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
@@ -91,7 +92,8 @@ class ControlStep:
         names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
-        self.begin = SAMPLE if self._add_paths(references) else WRITE
+        self.samples = self._add_paths(references)
+        self.begin = SAMPLE if self.samples else WRITE
         if not program.is_compiled:
             self.begin = ANSWER
         self.arrays = program.arrays(dt)

@@ -7,11 +7,12 @@ from importlib.metadata import version
 from importlib.resources import files
 from typing import Any, NamedTuple
 
+from iiwa_dnn.control.cascade import Priorities, resolve_program
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import BUDGET, Yielding
-from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep, control_step, sample_targets
+from iiwa_dnn.control.step import ANSWER, ControlStep, control_step, sample_targets
 from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
@@ -20,6 +21,7 @@ from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Tuple, Value
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
 from iiwa_dnn.qp.layout import Sizes, qp_views
 from iiwa_dnn.qp.proof import prove_point
+from iiwa_dnn.schemes.foreign import ForeignProgram
 from iiwa_dnn.schemes.program import ProgramArrays, write_program
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -75,7 +77,7 @@ def code_of(controller: Controller) -> Code:
     targets = _array("targets", len(program.target_frames), TARGET_SIZE)
     data = _array("data", program.data_size)
     t = Value(DOUBLE, "t")
-    arguments = [row, arrays, _array("q", dof), past, following, network, clock, integer(WRITE)]
+    arguments = [row, arrays, _array("q", dof), past, following, network, clock, integer(ANSWER)]
     translator.function(control_step, arguments)
     yielding = _yielding(translator, step)
     further = [integer(_action(controller)), Value(BOOL, "yields")]
@@ -83,7 +85,7 @@ def code_of(controller: Controller) -> Code:
     translator.function(write_program, [data, arrays, past, targets, t])
     if step.yielding.stop:
         translator.function(guard_step, [arrays, past, following, yielding])
-    has_reference = step.begin == SAMPLE
+    has_reference = step.samples
     if has_reference:
         translator.function(sample_targets, [arrays, t, targets])
     frames = len(program.target_frames)
@@ -107,7 +109,7 @@ def code_of(controller: Controller) -> Code:
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
-        "systems": _own_budget(step) + (ATTEMPTS - 1) * BUDGET,
+        "systems": _own_budget(step) + (ATTEMPTS - 1) * BUDGET + _levels_budget(controller),
         "size": _DOUBLE * (sum(sizes.values()) + 5 * dof + 3),
         "actions": _actions(),
         "policy": _action(controller).value,
@@ -118,6 +120,7 @@ def code_of(controller: Controller) -> Code:
         "point_size": 2 * n + m + p,
         "active_size": n + m,
         "at_targets": columns["targets"].start,
+        **_levels(translator, controller),
         "code": translator.text(),
         "bound_code": _bound(program.sizes, program.data_size),
         "kinematics": kinematics_code(robot, program.kinematics.frame_ids),
@@ -142,12 +145,10 @@ def check(controller: Controller, step: ControlStep) -> None:
     program = step.program
     if program.accelerates:
         raise InvalidInputError("scheme", "is of the acceleration level, which is not exported")
-    if program.priorities.any():
-        raise InvalidInputError("scheme", "has tasks with priorities, which are not exported")
     for block in getattr(program, "numpy_blocks", ()):
         name = type(block.part).__name__
         raise InvalidInputError("scheme", f"{name} is written with numpy, which is not exported")
-    if step.begin == ANSWER:
+    if isinstance(program, ForeignProgram):
         raise InvalidInputError("scheme", "is no Scheme of parts that are compiled")
     if program.needs_inertia:
         raise InvalidInputError("scheme", "has a cost of the inertia matrix, which is not exported")
@@ -180,6 +181,12 @@ def _own_budget(step: ControlStep) -> int:
     return int(budget)
 
 
+def _levels_budget(controller: Controller) -> int:
+    """Return the largest number of linear systems that the levels of priority may take."""
+    own = controller.priorities
+    return 2 * own.numbers.size * int(own.settings[OWN_BUDGET])
+
+
 def _action(controller: Controller) -> Action:
     """Return the action that a controller's policy asks for at a step without a solution."""
     if controller.mode == "continuous":
@@ -200,6 +207,36 @@ def _yielding(translator: Translator, step: ControlStep) -> Value:
         *(Value(Known("int", address)) for address in own[-5:]),
     ]
     return Value(translator.named_tuple(Yielding, values), "yielding", pointer=True)
+
+
+def _levels(translator: Translator, controller: Controller) -> dict[str, str]:
+    """Translate the levels of priority; texts for the places of their call, empty without any."""
+    own = controller.priorities
+    count = own.numbers.size
+    if not count:
+        return {"levels_function": "", "resolve": ""}
+    n, m, p = controller.program.sizes
+    values = [
+        translator.table("level_numbers", own.numbers),
+        translator.table("level_of_rows", own.rows),
+        _array("data", *own.data.shape),
+        _array("x", *own.x.shape),
+        _array("missing", *own.missing.shape),
+        translator.table("level_settings", own.settings),
+        Value(DOUBLE, "tol"),
+        Value(Known("int", own.answer)),
+    ]
+    levels = Value(translator.named_tuple(Priorities, values), "priorities", pointer=True)
+    data = _array("data", controller.program.data_size)
+    translator.function(resolve_program, [data, *map(integer, (n, m, p)), levels])
+    text = (files("iiwa_dnn.export") / "templates" / "levels.c").read_text(encoding="utf-8")
+    sizes = {"data": own.data.size, "x": own.x.size, "missing": own.missing.size}
+    for name, size in {**sizes, "n": n, "m": m, "p": p}.items():
+        text = text.replace(f"@{name}@", str(size))
+    return {
+        "levels_function": text.replace("@tol@", repr(own.tol)),
+        "resolve": "    resolve_levels(c->row);\n",
+    }
 
 
 def _array(name: str, *shape: int) -> Value:

@@ -65,7 +65,7 @@ def test_levels_of_conflicting_tasks_are_those_of_another_solver() -> None:
         expected = lexicographic(qp, priorities)
         if expected is None:
             continue
-        cascade = Cascade(priorities, qp.sizes, DNNSolver(tol=1e-10))
+        cascade = Cascade(priorities, qp.sizes, 1e-10)
         cascade.resolve(qp)
         for level, residual in zip(cascade.levels, expected, strict=True):
             assert np.linalg.norm(level.missing) == pytest.approx(residual, abs=1e-8)

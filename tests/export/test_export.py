@@ -232,10 +232,6 @@ def _accelerates() -> Controller:
     return drawing(scheme)[0]
 
 
-def _with_priorities() -> Controller:
-    return drawing(with_parts((iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.0}, priority=1),)))[0]
-
-
 def _with_own_part() -> Controller:
     base = DoubleIndicator()
     costs = [*base.costs, iiwa_dnn.Manipulability()]
@@ -257,7 +253,6 @@ def _with_other_network() -> Controller:
     ("make", "words"),
     [
         (_accelerates, "acceleration level"),
-        (_with_priorities, "priorities"),
         (_with_own_part, "Manipulability is written with numpy"),
         (_among_moving, "obstacles that move"),
         (lambda: drawing(DoubleIndicator(kinetic="inertia"))[0], "inertia matrix"),

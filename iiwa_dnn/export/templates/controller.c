@@ -14,7 +14,7 @@
 #define AT_DECISION @at_decision@
 #define AT_DQ @at_dq@
 #define POLICY @policy@
-#define WRITE 1
+#define ANSWER 2
 
 /* The size that the header states. */
 typedef char controller_size[sizeof(struct controller) == CONTROLLER_SIZE ? 1 : -1];
@@ -48,6 +48,7 @@ static struct yielding controller_yielding(void)
     return yielding;
 }
 
+@levels_function@
 static bool all_finite(const double *values, int count)
 {
     double sum = 0.0;
@@ -81,16 +82,16 @@ int controller_step(struct controller *c, const double *q, const double *target,
     for (int i = 0; i < 18 * CONTROLLER_FRAMES; i++) {
         c->row[AT_TARGETS + i] = target[i];
     }
-    if (c->yields) {
-        for (int i = 0; i < CONTROLLER_DOF; i++) {
-            c->past[i] = q[i];
-        }
-        write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
+    for (int i = 0; i < CONTROLLER_DOF; i++) {
+        c->past[i] = q[i];
+    }
+    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
+@resolve@    if (c->yields) {
         for (int i = 0; i < 3; i++) {
             c->row[AT_DECISION + i] = 0.0;
         }
     } else {
-        solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, WRITE)@guard@;
+        solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, ANSWER)@guard@;
     }
     if (!solved) {
         action = yield_step(c->row, &arrays, c->past, c->following, c->state, &yielding, POLICY,
