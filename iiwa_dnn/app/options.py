@@ -22,6 +22,7 @@ from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
 
 Check = Literal["proxqp", "osqp", "both", "proof", "none"]
+PlantName = Literal["ideal", "franka"]
 SHELLS = ("bash", "zsh", "tcsh")
 
 # Options whose default, None or (), the help need not show.
@@ -97,6 +98,8 @@ class TrackOptions(RunOptions):
     noise_at: NoiseEntry = "velocity"  # quantity that the noise is added to
     filter_window: int = 1  # number of samples in the moving average of the joint velocity
     plots: bool = True  # draw the figures
+    plant: PlantName = "ideal"  # arm that moves: an ideal one, or a robot through its own client
+    host: str = ""  # address of the robot's controller
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """``track``: an arm draws a path; also the functions that all commands with an arm use."""
 
+import signal
 import sys
 import warnings
 from collections.abc import Callable
@@ -12,7 +13,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
-from iiwa_dnn.app.options import Check, TrackOptions
+from iiwa_dnn.app.options import Check, PlantName, TrackOptions
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
@@ -42,7 +43,7 @@ from iiwa_dnn.schemes import (
     Limit,
     Scheme,
 )
-from iiwa_dnn.simulation import Plant, Simulation
+from iiwa_dnn.simulation import FrankaPlant, Plant, RealPlant, Simulation
 from iiwa_dnn.studies import paper
 
 CHECKS: dict[Check, tuple[str, ...]] = {
@@ -52,6 +53,11 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "proof": ("proof",),
     "none": (),
 }
+
+PLANTS: dict[PlantName, Callable[[TrackOptions], RealPlant]] = {
+    "franka": lambda o: FrankaPlant(o.host),
+}
+"""Real arms by name, made from all options."""
 
 # The options of each path, and the function that makes the path from all options.
 _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
@@ -106,6 +112,7 @@ _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp, both or proof"),
     "push_at": (lambda o: not o.push, "--push"),
     "push_for": (lambda o: not o.push, "--push"),
+    "host": (lambda o: o.plant not in PLANTS, "--plant franka"),
 }
 
 More = Callable[[Record, Path], list[Path]]
@@ -114,7 +121,28 @@ Last = Callable[[Record, Path], None] | None
 
 def run(options: TrackOptions) -> int:
     """Draw the path, check every step, write the run, and return the exit code."""
-    return draw(options, simulation(options, *arm(options)))
+    if options.plant not in PLANTS:
+        return draw(options, simulation(options, *arm(options)))
+    plant = PLANTS[options.plant](options)
+    options = for_real_arm(options, plant)
+    return draw(options, simulation(options, *arm(options), plant))
+
+
+def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
+    """Return the options with what was left to their defaults as a real arm needs it.
+
+    The start is the measured posture, the control period the robot's, and acceleration and jerk
+    limits are the robot's.
+    """
+    own: dict[str, Any] = {
+        "q0": tuple(plant.posture.tolist()),
+        "dt": plant.period,
+        "acceleration_limit": "robot",
+        "jerk_limit": "robot",
+    }
+    default = type(options)
+    left = {name: own[name] for name in own if getattr(options, name) == getattr(default, name)}
+    return replace(options, **left)
 
 
 def simulation(
@@ -253,6 +281,8 @@ def draw(
     metrics = save_run(record, folder, plots=options.plots, more=more)
     if last is not None:
         last(record, folder)
+    if simulation.interrupt is not None:
+        signal.raise_signal(simulation.interrupt)
     reasons = failures(record)
     if not options.quiet:
         shown = [settings_lines(metrics)] if options.verbose else []

@@ -23,7 +23,7 @@ from iiwa_dnn.control.paths import (
     warn_if_unstable,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import LAST, ControllerState, Q
+from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
 from iiwa_dnn.control.yielding import guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
@@ -448,11 +448,33 @@ class Controller:
         """What compiled code needs of those levels."""
         return self._laid_out()[1].priorities
 
-    def halt(self, command: Command) -> None:
-        """Brake at every step from now on, where the arm cannot stop at once."""
+    def halt(self, command: Command | None = None) -> None:
+        """Brake at every step from now on.
+
+        Args:
+            command: The command at which a policy stopped an arm that may be able to stop at once;
+                None: it stops for another reason than a limit.
+        """
         step, _ = self._laid_out()
-        if self._state.halted is None and (step.yields or step.program.accelerates):
+        if self._state.halted is not None:
+            return
+        if command is None:
+            n, m, _ = step.layout.sizes
+            self._state.halted = np.zeros(n + m)
+        elif step.yields or step.program.accelerates:
             self._state.halted = step.layout.view(command.row, "blocking").copy()
+
+    def resume(self, commands: Matrix) -> None:
+        """Go on from commands that a robot has put in the place of those that came too late.
+
+        Args:
+            commands: Last command and the one before it [rad/s], (2, n).
+        """
+        state = self._state
+        state.past[LAST : BEFORE + 1] = checks.finite_array(
+            "commands", commands, (2, self.robot.dof)
+        )
+        state.past[REST] = 0.0  # no braking motion of its own is in hand any more
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

@@ -9,9 +9,11 @@ from iiwa_dnn.simulation.noise import Disturbance as Disturbance
 from iiwa_dnn.simulation.noise import NoiseEntry as NoiseEntry
 from iiwa_dnn.simulation.noise import VelocityDisturbance as VelocityDisturbance
 from iiwa_dnn.simulation.noise import gaussian_noise as gaussian_noise
+from iiwa_dnn.simulation.plants import FrankaPlant as FrankaPlant
 from iiwa_dnn.simulation.plants import IdealPlant as IdealPlant
 from iiwa_dnn.simulation.plants import MujocoPlant as MujocoPlant
 from iiwa_dnn.simulation.plants import Plant as Plant
+from iiwa_dnn.simulation.plants import RealPlant as RealPlant
 from iiwa_dnn.simulation.retiming import Trajectory as Trajectory
 from iiwa_dnn.simulation.retiming import retime as retime
 from iiwa_dnn.simulation.runner import Simulation as Simulation

@@ -18,7 +18,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated
-from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.plants.base import Plant, RealPlant
 
 Levels = list[tuple[Vector, Vector]]
 """Program with its answer, and missing task velocity, of each level of priority."""
@@ -37,7 +37,8 @@ class Outcome(NamedTuple):
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
         levels: Levels of priority at each stage.
-        ends: Whether the run ends before this step: a policy stopped it, or the plant diverged.
+        ends: Whether the run ends before this step: a policy or the plant stopped it.
+        t: Time after the step by the plant's clock [s]; None for a plant without one.
     """
 
     commands: Sequence[Command]
@@ -50,13 +51,20 @@ class Outcome(NamedTuple):
     torque: Vector | None = None
     levels: Sequence[Levels] = ()
     ends: bool = False
+    t: float | None = None
 
 
 Observer = Callable[[int, Outcome], object]
 
+_LONGEST_BRAKING = 10.0
+"""Time after which a motion to rest is given up [s]."""
+
 
 class Loop:
     """A controller and the plant that it moves, one control period after the other.
+
+    A real plant has its own clock: a step is computed for the time that it shows. If commands came
+    too late, the controller goes on from what the robot has done in their place.
 
     Step k: the joints are read, the controller answers at that reading and time k dt (and at the
     stages between), noise and filter act on the velocity, and the plant follows the result for dt.
@@ -99,6 +107,7 @@ class Loop:
         accelerates = controller.program.accelerates
         self._alters = chain is not None and chain.alters and not accelerates
         self._plain = motion == "euler" and not (self._alters or accelerates)
+        self._real = plant if isinstance(plant, RealPlant) else None
         self._misled = not plant.exact or (chain is not None and chain.misleads)
 
     def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
@@ -110,6 +119,13 @@ class Loop:
             if outcome.ends:
                 return k - first + 1
         return steps
+
+    def brake(self) -> None:
+        """Bring a real arm to rest within the controller's limits; nobody observes it."""
+        self.controller.halt()
+        for k in range(round(_LONGEST_BRAKING / self.controller.dt)):
+            if self.step(k).ends:
+                break
 
     def step(self, k: int) -> Outcome:
         """Take step k.
@@ -124,6 +140,11 @@ class Loop:
         if self._misled:
             reading = plant.read()
             seen = reading if self._chain is None else self._chain.see(k, reading)
+        if self._real is not None:
+            t = self._real.time
+            substitutes = self._real.substitutes
+            if substitutes is not None:
+                controller.resume(substitutes)
         try:
             if not self._plain:
                 return self._general_step(k, t, seen)
@@ -209,16 +230,20 @@ class Loop:
         torque = None
         ends = False
         before = self.q
+        elapsed = self.controller.dt
+        t = None if self._real is None else self._real.time
         if action is Action.STOP:
             self.controller.halt(commands[0])
             ends = not commands[0].dq.any()
         if not ends:
             self.plant.move(dq)
-            ends = self.plant.diverged
-            torque = self.plant.torque
             self.q = self.plant.q
+            torque = self.plant.torque
+            ends = self.plant.fault is not None
+            if self._real is not None and t is not None and not ends:
+                elapsed = self._real.time - t
             # Of an arm with mass the mean velocity of the period.
-            dq = dq if self.plant.exact else (self.q - before) / self.controller.dt
+            dq = dq if self.plant.exact else (self.q - before) / elapsed
         if ends:
             dq = np.zeros_like(dq)
             self.q = before
@@ -231,6 +256,7 @@ class Loop:
             torque=torque,
             levels=levels,
             ends=ends,
+            t=None if t is None else t + elapsed,
         )
 
     def _corrected(self, q: Vector, t: float, observe: bool = True) -> dict[str, Target]:

@@ -24,7 +24,7 @@ from iiwa_dnn.simulation.loop import Outcome
 PATIENCE = 100
 """Consecutive second attempts after which a run warns."""
 
-_OF_THE_CHECK = {"solution_gap", "objective_gap", "reference_residual", "t"}
+_LATER = {"solution_gap", "objective_gap", "reference_residual", "t"}
 
 
 class Recorder:
@@ -33,7 +33,6 @@ class Recorder:
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
         last_step: Step at which the run ended early; None: it has not.
-        diverged: Whether it ended since the plant diverged.
     """
 
     def __init__(
@@ -56,12 +55,11 @@ class Recorder:
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
-        self.diverged = False
         self._names = LimitNames(program, controller.dt)
         self._done = 0
         self._series = 0
         self.arrays: dict[str, NDArray[Any]] = {}
-        for name in COLUMNS.keys() - OPTIONAL - _OF_THE_CHECK:
+        for name in COLUMNS.keys() - OPTIONAL - _LATER:
             self._array(name)
         self.arrays["q"][0] = q0
 
@@ -75,7 +73,6 @@ class Recorder:
         self._outcomes.append(outcome)
         if outcome.ends:
             self.last_step = k
-            self.diverged = outcome.action is not Action.STOP
         if outcome.action is not Action.NONE or self._series:
             self._count_fallbacks(k, outcome.action)
 
@@ -94,6 +91,8 @@ class Recorder:
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
+        if outcomes[-1].t is not None:
+            self._array("t")[steps.start + 1 : steps.stop + 1] = [each.t for each in outcomes]
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
         stages = len(rows) // count
@@ -119,14 +118,14 @@ class Recorder:
         self._done += count
         return rows
 
-    def finish(self, targets: Matrix) -> dict[str, NDArray[Any]]:
-        """Return the columns, cut to the steps that were taken.
-
-        Args:
-            targets: Targets at the end, (k, 18).
-        """
+    def finish(self) -> dict[str, NDArray[Any]]:
+        """Return the columns, cut to the steps that were taken."""
+        controller = self._controller
+        if "t" not in self.arrays:
+            self.arrays["t"] = controller.dt * np.arange(self._done + 1, dtype=np.float64)
         q = self.arrays["q"][self._done]
-        placement = self._controller.placement(q)
+        placement = controller.placement(q)
+        targets = controller.targets(self.arrays["t"][self._done] - controller.delay)
         self._add_samples(self._done, placement[np.newaxis], targets.reshape(1, -1))
         return cut(self.arrays, self._done)
 

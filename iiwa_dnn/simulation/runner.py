@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
+import signal
+import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -26,10 +29,10 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.judgement import Judgement
-from iiwa_dnn.simulation.loop import Loop
+from iiwa_dnn.simulation.loop import Loop, Observer
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import Disturbance, VelocityDisturbance
-from iiwa_dnn.simulation.plants import IdealPlant, Plant
+from iiwa_dnn.simulation.plants import IdealPlant, Plant, RealPlant
 from iiwa_dnn.simulation.recorder import Recorder
 
 COMPLETED = "completed"
@@ -39,6 +42,8 @@ BLOCK = 1000
 
 MAX_STEPS = 20_000_000
 """More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
+
+_INTERRUPTS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
@@ -50,6 +55,7 @@ class Simulation:
 
     Attributes:
         steps: Number of steps.
+        interrupt: Signal at which a real arm was brought to rest; None: there was none.
     """
 
     def __init__(
@@ -107,6 +113,7 @@ class Simulation:
         elif disturbances:
             problem = f"holds {', '.join(disturbances)} already"
             raise InvalidInputError("disturbance", problem, disturbance)
+        self.interrupt: signal.Signals | None = None
         self._plant = IdealPlant() if plant is None else plant
         checks.offers("plant", self._plant, "start", "read", "move", "packages", "settings")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
@@ -190,10 +197,14 @@ class Simulation:
         }
 
     def run(self, progress: Progress | None = None) -> Record:
-        """Take every step, or those until a policy stops or the plant diverges.
+        """Take every step, or those until a policy or the plant ends the run.
+
+        A real arm brakes at the end. At Ctrl-C or SIGTERM, noted in `interrupt`, it brakes at once,
+        and what it did is recorded all the same.
 
         Args:
-            progress: Called now and then with the number of steps done since the last call.
+            progress: Called now and then with the number of steps done since the last call; for a
+                real arm once, at the end.
 
         Raises:
             NoSolutionError: A step has no solution and the policy is ``raise``.
@@ -203,33 +214,67 @@ class Simulation:
         dt = controller.dt
         controller.reset()
         self._plant.start(controller.robot, self._q0, dt, self._seed)
+        if isinstance(self._plant, RealPlant):
+            controller.warm_up()
+            controller.compute(self._q0, 0.0)  # lays the step out, for which a robot does not wait
         loop = self._loop()
-        recorder = Recorder(self.steps, controller, self._q0, self._settings)
+        recorder = Recorder(self.steps, controller, loop.q, self._settings)
         stages = MOTIONS[self._motion].stages
         layout = recorder.layout
+        # A hand-over takes longer than a real arm's period.
+        block = self.steps if isinstance(self._plant, RealPlant) else BLOCK
         done = 0
         with Judgement(self._check, self.steps, stages, layout, controller.levels) as judgement:
             observers = (recorder.observe, judgement.observe)
             while done < self.steps and recorder.last_step is None:
-                taken = loop.run(min(BLOCK, self.steps - done), observers, done)
+                taken = self._move(loop, min(block, self.steps - done), observers, done)
                 judgement.submit(recorder.flush())
                 done += taken
                 if progress is not None:
                     progress(taken)
             agreement = judgement.finish()
-        targets = controller.targets(done * dt - controller.delay)
-        t: np.ndarray[Any, Any] = dt * np.arange(done + 1, dtype=np.float64)
-        columns = recorder.finish(targets)
+        columns = recorder.finish()
         return Record(
-            t=t,
             **columns,
             solution_gap=agreement.solution_gap,
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
             settings={**self._settings, "status": self._status(recorder)},
-            **collision_arrays(controller.scheme, controller.robot, columns["q"], t),
+            **collision_arrays(controller.scheme, controller.robot, columns["q"], columns["t"]),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )
+
+    def _move(self, loop: Loop, steps: int, observers: Sequence[Observer], first: int) -> int:
+        """Take steps of the loop, a real arm's with a motion to rest after them; return how many.
+
+        Signals let a real arm brake. Python's handlers run between two instructions, and an
+        exception there could lose a command.
+        """
+        plant = self._plant
+        if not isinstance(plant, RealPlant):
+            return loop.run(steps, observers, first)
+
+        def brake(number: int, frame: object) -> None:
+            self.interrupt = signal.Signals(number)
+            loop.controller.halt()
+
+        handlers = {}
+        if threading.current_thread() is threading.main_thread():
+            handlers = {each: signal.signal(each, brake) for each in _INTERRUPTS}
+        collects = gc.isenabled()
+        gc.disable()  # a collection among the outcomes of a run takes many periods
+        try:
+            try:
+                return loop.run(steps, observers, first)
+            finally:
+                if plant.fault is None:
+                    loop.brake()
+        finally:
+            plant.stop()
+            for each, handler in handlers.items():
+                signal.signal(each, handler)
+            if collects:
+                gc.enable()
 
     def _loop(self) -> Loop:
         """Make the loop of one run, its noise drawn."""
@@ -247,9 +292,11 @@ class Simulation:
         k = recorder.last_step
         if k is None:
             return COMPLETED
-        where = f"stopped at step {k} (t = {k * self._controller.dt:g} s)"
-        if recorder.diverged:
-            return f"{where}: the physics diverged"
+        where = f"stopped at step {k} (t = {recorder.arrays['t'][k]:g} s)"
+        if self._plant.fault is not None:
+            return f"{where}: {self._plant.fault}"
+        if self.interrupt is not None:
+            return f"{where}: {_INTERRUPTS[self.interrupt]}"
         return f"{where}: no solution{recorder.stop_reason(k)}"
 
 
@@ -280,7 +327,11 @@ def simulate(
         InvalidInputError: An argument is out of range; the message names it.
         NoSolutionError: A step has no solution and the policy is ``raise``.
     """
-    return Simulation(robot, scheme, reference, q0, **options).run(progress)
+    simulation = Simulation(robot, scheme, reference, q0, **options)
+    record = simulation.run(progress)
+    if simulation.interrupt is not None:
+        signal.raise_signal(simulation.interrupt)
+    return record
 
 
 def _reference_settings(reference: References | None) -> dict[str, Any]:

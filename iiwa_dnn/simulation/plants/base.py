@@ -1,9 +1,12 @@
-"""Plants: robots that move under velocity commands and show their joint angles by encoders."""
+"""Plants: robots that move under velocity commands and show their joint angles by encoders.
+
+A `RealPlant` is a robot in the world. It has a clock of its own and goes on without the loop.
+"""
 
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
-from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
 
 
@@ -48,10 +51,49 @@ class Plant(ABC):
         return None
 
     @property
-    def diverged(self) -> bool:
-        """True if the plant's state is not valid any more."""
-        return False
+    def fault(self) -> str | None:
+        """Reason for which the plant ended the run; None while it moves."""
+        return None
 
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         return {}
+
+
+class RealPlant(Plant):
+    """A robot that runs by a clock of its own and stands somewhere before a run begins.
+
+    `start` connects and refuses a start posture from which the robot is far; the motion begins at
+    the first `read`. `move` sends a command. `q`, `read` and `time` are those of the robot's next
+    state after it, for which they wait.
+
+    A lost connection or an error of the robot is no exception but a `fault`, after which nothing
+    moves and the last state stays.
+    """
+
+    @property
+    @abstractmethod
+    def period(self) -> float:
+        """Control period of the robot [s]; connects if need be."""
+
+    @property
+    @abstractmethod
+    def posture(self) -> Vector:
+        """Measured joint angles before the run [rad], (n,); connects if need be."""
+
+    @property
+    @abstractmethod
+    def time(self) -> float:
+        """Time since the motion began, by the robot's clock [s]."""
+
+    @property
+    @abstractmethod
+    def substitutes(self) -> Matrix | None:
+        """Last command and the one before, (2, n) [rad/s], as the robot itself has gone on.
+
+        None if it got every command in time.
+        """
+
+    @abstractmethod
+    def stop(self) -> None:
+        """Let the robot brake if it still moves, end the motion and release the robot."""

@@ -93,12 +93,12 @@ class MujocoPlant(Plant):
         return self._largest.copy()
 
     @property
-    def diverged(self) -> bool:
-        """True if MuJoCo has met a state that is too large and reset the arm, or the loop has."""
+    def fault(self) -> str | None:
+        """Say that MuJoCo has met a state that is too large and reset the arm, or the loop has."""
         kinds = self._mj.mjtWarning
         bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
         in_arm = any(self._data.warning[int(kind)].number > 0 for kind in bad)
-        return in_arm or self._torques.diverged
+        return "the physics diverged" if in_arm or self._torques.diverged else None
 
     def read(self) -> Vector:
         """Measure the joint angles [rad], (n,); every call is a new reading."""

@@ -1,0 +1,217 @@
+"""A Franka arm through libfranka: joint velocities at 1 kHz over its Franka Control Interface.
+
+Each state of the robot opens a cycle of 1 ms. A command that comes too late for its cycle is lost,
+and the robot goes on at constant acceleration. What it has commanded itself then comes back in
+`q_d`, `dq_d` and `ddq_d` of the next state.
+
+Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements.html, section
+"Packet handling".
+"""
+
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError, import_extra
+from iiwa_dnn.files import one_line
+from iiwa_dnn.qp.program import Matrix, Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.simulation.plants.base import RealPlant
+
+Feedback = Literal["commanded", "measured"]
+FEEDBACKS: tuple[Feedback, ...] = ("commanded", "measured")
+
+PERIOD = 1e-3
+"""Period of a control cycle [s]."""
+
+JOINTS = 7
+
+_NEAR = 0.01
+"""Distance from the measured joint angles up to which a run may begin [rad]."""
+
+_ROUNDING = 1e-5
+"""Difference of two velocities that are equal in single precision [rad/s]."""
+
+
+class FrankaPlant(RealPlant):
+    """A Franka arm that follows joint velocity commands.
+
+    Args:
+        host: Address of the robot's controller.
+        feedback: Joint angles that `read` returns: ``"commanded"``, the sum of the commands, has
+            neither noise nor delay; ``"measured"`` are the encoders'.
+
+    Raises:
+        InvalidInputError: The host is empty, or there is no such feedback.
+    """
+
+    packages: ClassVar[tuple[str, ...]] = ("pylibfranka",)
+
+    def __init__(self, host: str, feedback: Feedback = "commanded") -> None:
+        if not host:
+            raise InvalidInputError("host", "is needed: the address of the robot's controller")
+        self.host = host
+        checks.one_of("feedback", feedback, FEEDBACKS)
+        self.feedback = feedback
+        self._fault: str | None = None
+        self._franka: Any = None
+        self._robot: Any = None
+        self._control: Any = None
+        self._release()
+
+    def _release(self) -> None:
+        """Close the connection."""
+        self._control = None
+        self._robot = None
+        self._waits = False
+
+    def _connect(self) -> None:
+        """Connect to the robot and read its state, unless this was done before.
+
+        Raises:
+            MissingDependencyError: pylibfranka is not installed.
+            InvalidInputError: No robot answers, or it cannot move.
+        """
+        if self._robot is not None:
+            return
+        self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
+        try:
+            robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
+            self._state = robot.read_once()
+        except self._franka.FrankaException as error:
+            problem = f"{self.host}: {_in_words(error)}"
+            raise InvalidInputError("host", problem, self.host) from error
+        self._robot = robot
+        self._fault = None
+        self._commanded: Vector = np.array(self._state.q_d)
+        self._command: Vector = np.zeros(JOINTS)
+        self._substitutes: Matrix | None = None
+        self._time = 0.0
+        self._late = 0
+
+    @property
+    def period(self) -> float:
+        """Control period of the robot [s]."""
+        return PERIOD
+
+    @property
+    def posture(self) -> Vector:
+        """Measured joint angles before the run [rad], (7,); connects if need be."""
+        self._connect()
+        return np.array(self._state.q)
+
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
+        """Connect to the robot, which has to stand at joint angles `q0` (7,) [rad] already.
+
+        Raises:
+            MissingDependencyError: pylibfranka is not installed.
+            InvalidInputError: No robot answers, it stands elsewhere, or the robot of the run has
+                other joints or another control period.
+        """
+        if robot.dof != JOINTS:
+            raise InvalidInputError(
+                "robot", f"has {robot.dof} joints, a Franka arm {JOINTS}", robot
+            )
+        if abs(dt - PERIOD) > 1e-9 * PERIOD:
+            raise InvalidInputError("dt", f"must be the robot's {PERIOD:g} s, not {dt:g} s", dt)
+        away = np.abs(q0 - self.posture)
+        if not away.max() <= _NEAR:
+            joint = int(away.argmax())
+            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
+            raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
+
+    def _wait(self) -> None:
+        """Wait for the robot's next state, if a command was sent since the last one."""
+        if not self._waits:
+            return
+        self._waits = False
+        try:
+            self._state, duration = self._control.readOnce()
+        except self._franka.FrankaException as error:
+            self._fault = _in_words(error)
+            return
+        self._time += duration.to_sec()
+        self._commanded += PERIOD * self._command
+        last = np.array(self._state.dq_d)
+        self._substitutes = None
+        if np.abs(last - self._command).max() > _ROUNDING:
+            self._late += 1
+            before = last - PERIOD * np.array(self._state.ddq_d)
+            self._substitutes = np.array([last, before])
+            self._commanded = np.array(self._state.q_d)
+
+    @property
+    def q(self) -> Vector:
+        """Measured joint angles [rad], (7,), a copy."""
+        self._wait()
+        return np.array(self._state.q)
+
+    @property
+    def time(self) -> float:
+        """Time since the motion began, by the robot's clock [s]."""
+        self._wait()
+        return self._time
+
+    @property
+    def substitutes(self) -> Matrix | None:
+        """Last command and the one before, (2, 7) [rad/s], if the robot lost ours; else None."""
+        self._wait()
+        return self._substitutes
+
+    @property
+    def fault(self) -> str | None:
+        """Error of the robot or of the connection to it; None while there is none."""
+        return self._fault
+
+    def read(self) -> Vector:
+        """Return the commanded or the measured joint angles [rad], (7,); the first call begins."""
+        if self._control is None and self._fault is None:
+            self._begin()
+        self._wait()
+        return self._commanded.copy() if self.feedback == "commanded" else self.q
+
+    def _begin(self) -> None:
+        """Begin a motion of joint velocities, from rest."""
+        mode = self._franka.ControllerMode.JointImpedance
+        try:
+            self._control = self._robot.start_joint_velocity_control(mode)
+            self._state, _ = self._control.readOnce()
+        except self._franka.FrankaException as error:
+            self._fault = _in_words(error)
+        self._commanded = np.array(self._state.q_d)
+
+    def move(self, command: Vector) -> None:
+        """Send a velocity command (7,) [rad/s] for the cycle of the last state."""
+        if self._fault is not None:
+            return
+        self._wait()
+        self._command = np.array(command)
+        self._waits = True
+        self._send(self._franka.JointVelocities(self._command.tolist()))
+
+    def _send(self, command: Any) -> None:
+        """Send libfranka's `JointVelocities`."""
+        try:
+            self._control.writeOnce(command)
+        except self._franka.FrankaException as error:
+            self._fault = _in_words(error)
+
+    def stop(self) -> None:
+        """End the motion and close the connection; libfranka brakes an arm that still moves."""
+        if self._control is not None and self._fault is None:
+            self._wait()
+            last = self._franka.JointVelocities([0.0] * JOINTS)
+            last.motion_finished = True
+            self._send(last)
+        self._release()
+
+    def settings(self) -> dict[str, Any]:
+        """Return the plant's entries in the settings of a record."""
+        entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
+        return {"plant": entries | {"late_commands": self._late}}
+
+
+def _in_words(error: Exception) -> str:
+    """Return an error of libfranka in one line."""
+    return one_line(error).removeprefix("libfranka: ")
