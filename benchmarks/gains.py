@@ -11,7 +11,7 @@ import numpy as np
 
 import iiwa_dnn
 from iiwa_dnn.results.markdown import markdown_table
-from iiwa_dnn.schemes.motion_limits import largest_gain
+from iiwa_dnn.schemes.motion_limits import MotionLimits, largest_gain
 from iiwa_dnn.simulation.disturbances import Disturbances
 from iiwa_dnn.simulation.plants import MujocoPlant
 
@@ -63,8 +63,8 @@ def main() -> int:
         rows.append([name, *(f"{1e3 * stray(limits, gain):.2f}" for gain in GAINS)])
     print(markdown_table(["limits", *(f"{gain:g} 1/s" for gain in GAINS)], rows))
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(jerk=JERK)
-    numbers = [robot.limits.ravel(), robot.ddq_max, robot.dddq_max]
-    print(f"largest stable gain {largest_gain(np.concatenate(numbers), 1.0 / DT):.1f} 1/s")
+    limits = MotionLimits((iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits()))
+    print(f"largest stable gain {largest_gain(limits.constants(robot), 1.0 / DT):.1f} 1/s")
     return 0
 
 

@@ -85,7 +85,7 @@ from iiwa_dnn.schemes import (
     Step,
     Task,
 )
-from iiwa_dnn.simulation import MujocoPlant, Simulation, Trajectory, retime, simulate
+from iiwa_dnn.simulation import FrankaPlant, MujocoPlant, Simulation, Trajectory, retime, simulate
 
 __version__ = version("iiwa-dnn")
 
@@ -94,17 +94,17 @@ __all__ = [
     "BatchSolution", "Box", "Capsule", "CenterOfMassTask", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork", "ElbowAngleTask",
-    "ExplicitEuler", "FileError", "GradientNetwork", "HalfSpace", "Heart", "IiwaDnnError",
-    "ImplicitEuler", "InvalidInputError", "JerkLimits", "JointAcceleration", "JointCouplingTask",
-    "JointLimits", "JointTorque", "KineticEnergy", "Limit", "Line", "Lissajous", "Manipulability",
-    "MissingDependencyError", "MovingTarget", "MujocoPlant", "Network", "NoSolutionError",
-    "NotFoundError", "OnSurface", "OneLayerNetwork", "OrientationTask", "PoseTask", "PositionTask",
-    "PostureTask", "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record",
-    "Reference", "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme",
-    "SimplifiedDualNetwork", "Simulation", "Solution", "Sphere", "Status", "Step", "Still",
-    "Target", "Task", "Tilting", "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork",
-    "available_robots", "compute_metrics", "failures", "load_robot", "prove", "retime",
-    "robot_from_dh", "simulate", "solve_batch", "solve_problem",
+    "ExplicitEuler", "FileError", "FrankaPlant", "GradientNetwork", "HalfSpace", "Heart",
+    "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits", "JointAcceleration",
+    "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy", "Limit", "Line",
+    "Lissajous", "Manipulability", "MissingDependencyError", "MovingTarget", "MujocoPlant",
+    "Network", "NoSolutionError", "NotFoundError", "OnSurface", "OneLayerNetwork",
+    "OrientationTask", "PoseTask", "PositionTask", "PostureTask", "PrimalDualNetwork",
+    "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference", "RelativePoseTask",
+    "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork", "Simulation",
+    "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting", "TrackingSolver",
+    "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots", "compute_metrics", "failures",
+    "load_robot", "prove", "retime", "robot_from_dh", "simulate", "solve_batch", "solve_problem",
 ]  # fmt: skip
 
 _RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}

@@ -125,7 +125,8 @@ def run(options: TrackOptions) -> int:
         return draw(options, simulation(options, *arm(options)))
     plant = PLANTS[options.plant](options)
     options = for_real_arm(options, plant)
-    return draw(options, simulation(options, *arm(options), plant))
+    robot, q0 = arm(options)
+    return draw(options, simulation(options, plant.with_room(robot), q0, plant))
 
 
 def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:

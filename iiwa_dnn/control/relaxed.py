@@ -96,7 +96,7 @@ class Yielding(NamedTuple):
     Attributes:
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
         elastic: 1 for each inequality row that is followed as far as the joints can, (m,).
-        limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (5 dof,);
+        limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (6 dof,);
             empty where there are none.
         settings: Constants with which the network settles, ``[tol, budget, long step]``, (3,).
         scenes: Beginning and end, among the constants of all parts, of those of each scene that

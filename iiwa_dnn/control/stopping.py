@@ -130,7 +130,7 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float
     Args:
         x: Velocities of now [rad/s], (n,).
         before: Velocities of the period before [rad/s], (n,).
-        limits: Constants of the acceleration and jerk limits, (5 n,).
+        limits: Constants of the acceleration and jerk limits, (6 n,).
         dt: Control period [s].
 
     Returns:
@@ -165,9 +165,10 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float
 
 @compiled
 def has_jerk(limits: Vector) -> bool:
-    """Test whether the jerk of a joint is limited, by the constants (5 n,) of the limits."""
+    """Test whether the jerk of a joint is limited, by the constants (6 n,) of the limits."""
     count = 0
-    for i in range(4 * limits.size // 5, limits.size):
+    n = limits.size // 6
+    for i in range(4 * n, 5 * n):
         count += limits[i] < np.inf
     return count > 0
 
@@ -290,6 +291,31 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> 
             peak = (1.0 - u) * (1.0 - u) * (x * (1.0 + 2.0 * u) + b * u)
             if abs(peak) > limits[2 * n + i] * (1.0 + SLACK):
                 return False
+        if limits[5 * n + i] < limits[3 * n + i] and not keeps_ramp(motion, q, limits, dt, i):
+            return False
+    return True
+
+
+@compiled
+def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> bool:
+    """Test whether joint i of those at q (n,) [rad] has room to brake all along a motion to rest.
+
+    Its velocity limit shrinks towards its position limits: elsewhere it may brake harder than its
+    deceleration, there not later.
+    """
+    n = q.size
+    at = q[i]
+    before = motion.first[i]
+    x = before
+    for k in range(int(motion.periods)):
+        left = limits[n + i] - at if x > 0.0 else at - limits[i]
+        if x * x > 2.0 * limits[5 * n + i] * max(left, 0.0) * (1.0 + SLACK):
+            return False
+        at += dt * x
+        u = (k + 1.0) / motion.periods
+        x = before * (1.0 - u)
+        if motion.cubic:
+            x = (1.0 - u) * (1.0 - u) * (before * (1.0 + 2.0 * u) + motion.bend[i] * u)
     return True
 
 

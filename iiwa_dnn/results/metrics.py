@@ -66,20 +66,33 @@ def position_limit_excess(record: Record) -> FloatArray:
 
 def velocity_limit_excess(record: Record) -> FloatArray:
     """Compute the excess of each joint's speed over its limit [rad/s], (N, n); 0 below."""
-    excess: FloatArray = np.maximum(np.abs(record.dq) - limits(record, "dq_max"), 0.0)
+    excess: FloatArray = np.maximum(np.abs(_judged(record)) - limits(record, "dq_max"), 0.0)
     return excess
+
+
+def _judged(record: Record) -> FloatArray:
+    """Return the velocities that are judged (N, n) [rad/s]: a real arm's commands, else the motion.
+
+    Its encoders' differences are noise, and what its drives make of a command it judges itself.
+    """
+    return record.dq_solver if "plant" in record.settings else record.dq
 
 
 def rate_limit_excess(record: Record, order: int) -> FloatArray:
     """Compute the excess of each joint's acceleration or jerk over its limit, (N, n); 0 below.
 
     Finite differences of the commands, from rest, less the rounding that they carry on; the order
-    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
+    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3]. Where commands came too late for
+    a real arm, those after them go on from what the arm has done in their place.
     """
     dt = record.settings["dt"]
-    from_rest = np.vstack([np.zeros((order, record.dof)), record.dq])
+    commands = _judged(record)
+    from_rest = np.vstack([np.zeros((order, record.dof)), commands])
     rates = np.diff(from_rest, order, axis=0) / dt**order
-    rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
+    late = np.searchsorted(record.t[:-1], record.settings.get("plant", {}).get("late_s", ()))
+    for k in late:
+        rates[max(k - 1, 0) : k + order] = 0.0
+    rounding = 8.0 * np.finfo(float).eps * np.abs(commands).max(initial=1.0) * (2.0 / dt) ** order
     allowed = limits(record, RATES[order - 1]) + rounding
     excess: FloatArray = np.maximum(np.abs(rates) - allowed, 0.0)
     return excess

@@ -82,12 +82,14 @@ ARMS = {
 
 STARTS = {
     "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
+    "fr3": (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     "iiwa7_dual": (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
     **{name: arm.start for name, arm in ARMS.items() if arm.start},
 }
 """Known start postures by the robot's name [rad], each (n,)."""
 
-RATES: dict[str, tuple[tuple[float, ...], float | tuple[float, ...]]] = {
+RATES: dict[str, tuple[float | tuple[float, ...], float | tuple[float, ...]]] = {
+    "fr3": (9.999, 4999.999),
     "iiwa7": ((8.65, 5.44, 5.69, 11.01, 11.78, 13.76, 13.17), np.inf),
     "panda": (
         (15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0),
@@ -100,5 +102,6 @@ iiwa7: KUKA publishes none. These accelerations are `drake:acceleration` of
 iiwa_description/sdf/iiwa7_no_collision.sdf in github.com/RobotLocomotion/models; its README derives
 them from measured ones of an iiwa 14 (C. Larsen, master's thesis, Chalmers 2019, table 4) by the
 ratio of torque limits times inverse mass matrices. panda: kMaxJointAcceleration and kMaxJointJerk
-of include/franka/rate_limiting.h in libfranka 0.9.2, the last one for that arm.
+of include/franka/rate_limiting.h in libfranka 0.9.2, the last one for that arm. fr3: the same of
+libfranka 0.21, 10 rad/s^2 and 5000 rad/s^3 less its kLimitEps.
 """

@@ -95,9 +95,9 @@ def load_robot(
         mobile=mobile,
         urdf=urdf.text_of(root),
     )
-    if name in RATES and len(RATES[name][0]) == robot.dof:
+    if name in RATES and np.size(RATES[name][0]) in (1, robot.dof):
         robot = robot.with_limits(acceleration=RATES[name][0], jerk=RATES[name][1])
-    robot = replace(robot, mimics=_mimics(robot, joints))
+    robot = replace(robot, mimics=_mimics(robot, joints), ramps=_ramps(model, joints))
     if verify:
         from iiwa_dnn.robot.verification import verify_robot  # of an extra
 
@@ -192,6 +192,18 @@ def _mimics(robot: Robot, joints: _Joints) -> tuple[Mimic, ...]:
         multiplier = float(mimic.get("multiplier", 1.0))
         found.append(Mimic(name, leader, multiplier, float(mimic.get("offset", 0.0))))
     return tuple(found)
+
+
+def _ramps(model: pin.Model, joints: _Joints) -> Array:
+    """Read Franka's element of velocity limits that shrink towards position limits, (2, n)."""
+    ramps = np.zeros((2, model.nv))
+    ramps[1] = np.inf
+    for i, name in enumerate(tuple(model.names)[1:]):
+        ramp = joints[name].find("position_based_velocity_limits")
+        if ramp is not None:
+            names = ("velocity_offset", "deceleration_limit")
+            ramps[:, i] = [float(ramp.get(each, "nan")) for each in names]
+    return ramps
 
 
 def _limits(path: Path, model: pin.Model, joints: _Joints) -> tuple[Array, Array, Array]:

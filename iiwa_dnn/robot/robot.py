@@ -58,6 +58,9 @@ class Robot:
         mobile: Whether the first three joints are a mobile base, which the file does not have.
         mimics: Joints between base and tip that follow others; schemes hold them to it.
         urdf: Text of the URDF as it was read: includes, xacro and MJCF expanded.
+        ramps: Offset o [rad/s] and deceleration D [rad/s^2] of velocity limits that shrink to
+            sqrt(2 D d) - o at a distance d from a position limit, (2, n); D is inf where a joint
+            has none.
         tip_id: Pinocchio's index of the tip frame.
         limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
@@ -80,6 +83,7 @@ class Robot:
     mobile: bool = False
     mimics: tuple[Mimic, ...] = ()
     urdf: str | None = None
+    ramps: checks.Array = field(default_factory=lambda: np.array([[0.0], [np.inf]]))
     tip_id: int = field(init=False)
     limits: checks.Array = field(init=False)
 
@@ -93,6 +97,12 @@ class Robot:
         object.__setattr__(self, "tip_id", tip_id)
         for name in _LIMITS:
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
+        ramps: checks.Array = np.array(np.broadcast_to(self.ramps, (2, self.dof)), dtype=float)
+        if not ((ramps[0] >= 0.0) & (ramps[1] > 0.0)).all():
+            problem = "must have offsets of at least 0 and decelerations above 0"
+            raise InvalidInputError("ramps", problem, self.ramps)
+        ramps.setflags(write=False)
+        object.__setattr__(self, "ramps", ramps)
         object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
         for i in np.flatnonzero(self.q_lower >= self.q_upper):
             lower, upper = self.limits[:2, i]

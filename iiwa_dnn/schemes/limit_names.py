@@ -31,7 +31,7 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self._settings = program.settings()
         self._dt = dt
-        self._limits = np.vstack([program.robot.limits, np.full((2, program.robot.dof), np.inf)])
+        self._limits = np.vstack([program.robot.limits, np.full((3, program.robot.dof), np.inf)])
         motion = program.rate_limits
         if motion is not None and not program.accelerates:
             self._limits = motion.constants(program.robot).reshape(self._limits.shape)
@@ -68,7 +68,7 @@ def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, 
         value: The bound [rad/s].
         sign: 1 for an upper bound, -1 for a lower one.
         past: Joint positions [rad], last command and the one before [rad/s], (3, n).
-        limits: Lower and upper position limits, velocity, acceleration and jerk limits, (5, n).
+        limits: `MotionLimits.constants`, (6, n).
         i: The joint.
         dt: Control period [s].
     """
@@ -77,7 +77,7 @@ def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, 
     before = past[2, i]
     velocity = limits[2, i]
     close = _CLOSE * velocity
-    rates = (velocity, limits[3, i], limits[4, i])
+    rates = (velocity, limits[3, i], limits[4, i], limits[5, i])
     if rates[1] == np.inf and rates[2] == np.inf:
         return VELOCITY if abs(value) >= velocity - close else POSITION
     above = limits[1, i] - q
@@ -89,9 +89,9 @@ def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, 
             above = np.inf
             below = np.inf
         elif kind == VELOCITY:
-            rates = (np.inf, rates[1], rates[2])
+            rates = (np.inf, *rates[1:])
         else:
-            rates = (np.inf, np.inf, rates[2])
+            rates = (np.inf, np.inf, rates[2], np.inf)
         if not abs(_side(sign, last, before, above, below, rates, dt) - value) <= close:
             return kind
     return JERK
@@ -103,7 +103,7 @@ def _side(
     before: float,
     above: float,
     below: float,
-    rates: tuple[float, float, float],
+    rates: tuple[float, float, float, float],
     dt: float,
 ) -> float:
     """Compute `joint_bounds` on one side."""

@@ -1,5 +1,6 @@
 """Limits: bounds and inequality rows that no policy ever relaxes."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,12 +20,29 @@ def joint_limits(
     """Tighten the bounds to those of `JointLimits`, whose constants these are."""
     dof = step.q.size
     gain = min(constants[0], step.rate)
+    limits = constants[1:].reshape(5, dof)
     for i in range(dof):
-        lower = constants[1 + i]
-        upper = constants[1 + dof + i]
-        fastest = constants[1 + 2 * dof + i]
-        lb[i] = max(lb[i], min(max(gain * (lower - step.q[i]), -fastest), fastest))
-        ub[i] = min(ub[i], min(max(gain * (upper - step.q[i]), -fastest), fastest))
+        above = limits[1, i] - step.q[i]
+        below = step.q[i] - limits[0, i]
+        fastest = limits[2, i]
+        up = min(fastest, ramp_speed(above, limits[3, i], limits[4, i]))
+        down = min(fastest, ramp_speed(below, limits[3, i], limits[4, i]))
+        lb[i] = max(lb[i], min(max(-gain * below, -down), up))
+        ub[i] = min(ub[i], min(max(gain * above, -down), up))
+
+
+@compiled
+def ramp_speed(distance: float, offset: float, deceleration: float) -> float:
+    """Compute the speed that a ramp allows at a distance from a position limit [rad/s].
+
+    Args:
+        distance: The distance [rad].
+        offset: Offset of the ramp [rad/s].
+        deceleration: Deceleration along the ramp [rad/s^2]; inf for a joint without one.
+    """
+    if not deceleration < np.inf:
+        return np.inf
+    return max(math.sqrt(2.0 * deceleration * max(distance, 0.0)) - offset, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,9 +58,11 @@ class JointLimits(Limit):
     steps of dt it never passes it as long as :math:`\kappa\,dt \le 1`; a larger :math:`\kappa` is
     cut to 1 / dt. Outside a limit the formula can ask for more than the velocity limit allows and
     then has lb > ub: both bounds are clipped to the velocity limit, so that the arm comes back as
-    fast as it may.
+    fast as it may. Where the robot has ramps (`Robot.ramps`), as a Franka arm has, its velocity
+    limit shrinks to :math:`\sqrt{2 D d} - o` at a distance d from the position limit.
 
-    Source: equation (6) of the paper.
+    Source: equation (6) of the paper; the ramps are `getUpperJointVelocityLimits` in
+    src/joint_velocity_limits.cpp of libfranka.
 
     Attributes:
         gain: The paper's kappa [1/s], above 0.
@@ -55,5 +75,5 @@ class JointLimits(Limit):
         checks.positive("gain", self.gain)
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the gain and the rows of `Robot.limits`, (1 + 3 n,)."""
-        return np.concatenate([[self.gain], robot.limits.ravel()])
+        """Return the gain and the rows of `Robot.limits` and of `Robot.ramps`, (1 + 5 n,)."""
+        return np.concatenate([[self.gain], robot.limits.ravel(), robot.ramps.ravel()])

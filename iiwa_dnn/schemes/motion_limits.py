@@ -25,6 +25,10 @@ brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J
 A / (8 dt) and dq_max / (8 dt^2). Samples are above that way by `MARGIN` at most, which is kept free
 at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
 
+**Ramps.** Where velocity limits shrink towards position limits (`Robot.ramps`), a command leaves
+room to brake at a deceleration B below that of the ramp, D, to a point before the position limit
+(`braking_room`). It can, since it may brake harder.
+
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
 third order is derived in docs/limits.md.
@@ -56,6 +60,9 @@ EASE = 0.5
 
 REST = 0.25
 """Where a joint that is pressed against a limit comes to rest, like `MARGIN`, and just inside."""
+
+TANGENT = 1.0
+"""Speed at which the parabola of braking touches a ramp [rad/s]."""
 
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
@@ -142,12 +149,12 @@ def motion_limits(
     """
     if not step.rate < np.inf:
         return
-    limits = constants.reshape(5, step.q.size)
+    limits = constants.reshape(6, step.q.size)
     dt = 1.0 / step.rate
     for i in range(step.q.size):
         above = limits[1, i] - step.q[i]
         below = step.q[i] - limits[0, i]
-        rates = (limits[2, i], limits[3, i], limits[4, i])
+        rates = (limits[2, i], limits[3, i], limits[4, i], limits[5, i])
         lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, dt)
         lb[i] = min(max(lb[i], lower), upper)
         ub[i] = min(max(ub[i], lower), upper)
@@ -165,7 +172,9 @@ class MotionLimits(Limit):
     limits: tuple[_RateLimits, ...] = ()
 
     def constants(self, robot: Robot) -> Vector:
-        """Return position, velocity, acceleration and jerk limits, (5 n,).
+        """Return position, velocity, acceleration and jerk limits, and decelerations, (6 n,).
+
+        The positions are those at which a joint that brakes at the deceleration has to rest.
 
         Raises:
             InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
@@ -175,21 +184,51 @@ class MotionLimits(Limit):
         for limit in self.limits:
             row = rates[int(isinstance(limit, JerkLimits))]
             np.minimum(row, limit.of(robot), out=row)
-        constants: Vector = np.concatenate([robot.limits.ravel(), rates.ravel()])
+        braking, room = braking_room(robot.ramps, rates[0])
+        lower, upper, fastest = robot.limits
+        rows = [lower + room, upper - room, fastest, *rates, braking]
+        constants: Vector = np.concatenate(rows)
         check_ranges(constants, np.inf)
         return constants
+
+
+def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
+    r"""Compute the deceleration and the distance before a position limit that keep a ramp.
+
+    A joint that rests at the distance K before the limit, from the velocity v at the deceleration
+    B, has the distance :math:`K + v^2 / (2 B)` from it. The ramp asks for
+    :math:`(v + o)^2 / (2 D)`, which is at most that for every v where
+    :math:`K = o^2 / (2 (D - B))`.
+
+    Args:
+        ramps: `Robot.ramps`: offset o [rad/s] and deceleration D [rad/s^2], (2, n).
+        acceleration: Largest acceleration [rad/s^2], (n,).
+
+    Returns:
+        B [rad/s^2], (n,); it is the ramp's tangent at `TANGENT` if the acceleration allows that.
+        K [rad], (n,).
+    """
+    offset, deceleration = ramps
+    has_ramp = deceleration < np.inf
+    tangent = np.where(has_ramp, deceleration, 0.0) * TANGENT / (offset + TANGENT)
+    braking = np.where(has_ramp, np.minimum(acceleration, tangent), acceleration)
+    room = np.zeros(braking.size)
+    spare = deceleration[has_ramp] - braking[has_ramp]
+    # Without an offset the ramp is a parabola itself.
+    room[has_ramp] = offset[has_ramp] ** 2 / np.maximum(2.0 * spare, np.finfo(float).tiny)
+    return braking, room
 
 
 def check_ranges(constants: Vector, rate: float) -> None:
     """Raise InvalidInputError if a joint's range is too short to turn round in.
 
     Args:
-        constants: `MotionLimits.constants`, (5 n,).
+        constants: `MotionLimits.constants`, (6 n,).
         rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
     """
-    lower, upper, fastest, acceleration, jerk = constants.reshape(5, -1)
-    usable = np.minimum(jerk, rate * np.minimum(acceleration, rate * fastest) / SHARE)
-    steepest = np.minimum(acceleration, np.sqrt(2.0 * usable * fastest))
+    lower, upper, fastest, _, jerk, braking = constants.reshape(6, -1)
+    usable = np.minimum(jerk, rate * np.minimum(braking, rate * fastest) / SHARE)
+    steepest = np.minimum(braking, np.sqrt(2.0 * usable * fastest))
     short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
     if short.any():
         i = int(np.flatnonzero(short)[0])
@@ -206,10 +245,10 @@ def largest_gain(constants: Vector, rate: float) -> float:
     from one limit to the other (docs/limits.md).
 
     Args:
-        constants: `MotionLimits.constants`, (5 n,).
+        constants: `MotionLimits.constants`, (6 n,).
         rate: Control periods a second [1/s].
     """
-    _, _, fastest, acceleration, jerk = constants.reshape(5, -1)
+    _, _, fastest, acceleration, jerk, _ = constants.reshape(6, -1)
     with np.errstate(invalid="ignore"):  # a joint without limits
         delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
     return float(1.0 / (delay.max() + 1.0 / rate))
@@ -228,7 +267,7 @@ def joint_bounds(
     before: float,
     above: float,
     below: float,
-    rates: tuple[float, float, float],
+    rates: tuple[float, float, float, float],
     dt: float,
 ) -> tuple[float, float]:
     """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
@@ -240,10 +279,11 @@ def joint_bounds(
         before: Command before it [rad/s].
         above: Distance to the upper position limit [rad].
         below: Distance to the lower position limit [rad].
-        rates: Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3]; inf for none.
+        rates: Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3], inf for none;
+            and the deceleration for which there is room before the position limits [rad/s^2].
         dt: Control period [s].
     """
-    _, accel, jerk = rates
+    _, accel, jerk, _ = rates
     if jerk < np.inf:
         lower, upper = _jerk_bounds(last, before, above, below, rates, dt)
     elif accel < np.inf:
@@ -264,13 +304,13 @@ def joint_bounds(
 
 @compiled
 def _acceleration_bounds(
-    last: float, above: float, below: float, rates: tuple[float, float, float], dt: float
+    last: float, above: float, below: float, rates: tuple[float, float, float, float], dt: float
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
-    fastest, accel, _ = rates
-    unit = accel * dt
-    first = last - unit
-    final = last + unit
+    fastest, accel, _, deceleration = rates
+    first = last - accel * dt
+    final = last + accel * dt
+    unit = deceleration * dt
     above -= min(max(above, 0.0), ROUNDING)
     below -= min(max(below, 0.0), ROUNDING)
     # Outside of the range the way back is no quicker than the velocity limit.
@@ -285,17 +325,17 @@ def _jerk_bounds(
     before: float,
     above: float,
     below: float,
-    rates: tuple[float, float, float],
+    rates: tuple[float, float, float, float],
     dt: float,
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
-    fastest, accel, jerk = rates
+    fastest, accel, jerk, deceleration = rates
     # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
     middle = 2.0 * last - before
     change = jerk * dt * dt
     first = min(max(last - accel * dt, middle - change), middle + change)
     final = min(max(last + accel * dt, middle - change), middle + change)
-    jerk = min(jerk, min(accel / dt, fastest / (dt * dt)) / SHARE)
+    jerk = min(jerk, min(deceleration / dt, fastest / (dt * dt)) / SHARE)
     unit = jerk * dt * dt
     lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
     ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
@@ -303,7 +343,7 @@ def _jerk_bounds(
         lb = 0.5 * (lb + ub)
         ub = lb
     margin = MARGIN * unit * dt
-    limit = accel - jerk * dt
+    limit = deceleration - jerk * dt
     upper = _ceiling(lb, ub, above - margin, last, dt, (jerk, limit))
     lower = -_ceiling(-ub, -lb, below - margin, -last, dt, (jerk, limit))
     if lower < upper and max(abs(last), abs(last - before)) < unit:

@@ -122,10 +122,12 @@ class Loop:
 
     def brake(self) -> None:
         """Bring a real arm to rest within the controller's limits; nobody observes it."""
+        delay = self.controller.delay
         self.controller.halt()
         for k in range(round(_LONGEST_BRAKING / self.controller.dt)):
             if self.step(k).ends:
                 break
+        self.controller.delay = delay  # that of the run, which ended before
 
     def step(self, k: int) -> Outcome:
         """Take step k.

@@ -165,7 +165,7 @@ class Simulation:
         limits = program.rate_limits
         rates: list[Vector] = []
         if limits is not None:
-            rates = list(limits.constants(robot)[3 * robot.dof :].reshape(2, -1))
+            rates = list(limits.constants(robot).reshape(6, -1)[3:5])
         return {
             "dt": controller.dt,
             "duration": duration,
@@ -239,7 +239,11 @@ class Simulation:
             solution_gap=agreement.solution_gap,
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
-            settings={**self._settings, "status": self._status(recorder)},
+            settings={
+                **self._settings,
+                **self._plant.settings(),
+                "status": self._status(recorder),
+            },
             **collision_arrays(controller.scheme, controller.robot, columns["q"], columns["t"]),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )

@@ -45,7 +45,7 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     last = before = room = wish = 0.0
     mode, left = 0, 0
     for k in range(len(out)):
-        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J), dt)
+        lb, ub = joint_bounds(last, before, upper - q, q + upper, (V, A, J, A), dt)
         room = min(room, ub - lb)
         if left == 0:
             mode, left = int(4.0 * draws[k, 0]), 1 + int(400.0 * draws[k, 1])
@@ -110,7 +110,7 @@ def test_outside_a_short_range_a_joint_does_not_come_back_beyond_its_other_side(
     dt, limits = 1e-2, (2.0, 5.0, INF)
     q, last = 0.3, 0.0  # above a range of 1 mrad
     for _ in range(300):
-        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, limits, dt)
+        lb, ub = joint_bounds(last, 0.0, -q, q + 1e-3, (*limits, limits[1]), dt)
         assert lb <= ub
         last = lb
         q += dt * last
@@ -135,7 +135,9 @@ def test_a_range_that_is_not_refused_is_long_enough(
     # 1.1e-4 rad were accepted at 20 rad/s^2, 1e5 rad/s^3 and 10 ms, and left by 1.5e-4 rad.
     while True:
         try:
-            check_ranges(np.array([-upper, upper, speed, acceleration, jerk]), 1.0 / dt)
+            check_ranges(
+                np.array([-upper, upper, speed, acceleration, jerk, acceleration]), 1.0 / dt
+            )
             break
         except InvalidInputError:
             upper *= 1.02
@@ -177,7 +179,7 @@ def test_approach_is_the_inverse_of_braking_step_by_step(room: float) -> None:
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
 def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> None:
     dt, A, V = 1e-2, 5.0, 2.0
-    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF), dt)
+    lb, ub = joint_bounds(last, 0.0, above, INF, (V, A, INF, A), dt)
     at_most = min(V, last + A * dt)
     assert lb == pytest.approx(max(-V, last - A * dt))
     if stopping_room(last - A * dt, A * dt) * dt > above:
@@ -219,10 +221,10 @@ def test_after_every_bound_some_commands_lead_to_rest() -> None:
     for _ in range(25):
         q, last, before = -rng.uniform(0.3, 1.2), 0.0, 0.0
         for _ in range(int(rng.integers(10, 80))):
-            lb, ub = joint_bounds(last, before, -q, INF, limits, dt)
+            lb, ub = joint_bounds(last, before, -q, INF, (*limits, limits[1]), dt)
             v = ub if rng.random() < 0.9 else lb
             q, last, before = q + dt * v, v, last
-        lb, ub = joint_bounds(last, before, -q, INF, limits, dt)
+        lb, ub = joint_bounds(last, before, -q, INF, (*limits, limits[1]), dt)
         assert plan_to_rest(q + dt * ub, ub, last, dt, limits)
         reach = limits[2] * dt**2
         if lb < ub < min(2.0 * last - before + reach, last + limits[1] * dt) - 1e-9:
@@ -239,7 +241,7 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(
     q = -5.0 * speed
     commands = []
     for _ in range(int(9.0 / dt)):
-        lb, ub = joint_bounds(last, before, -q, INF, (speed, 10.0, jerk), dt)
+        lb, ub = joint_bounds(last, before, -q, INF, (speed, 10.0, jerk, 10.0), dt)
         before = last
         last = min(max(speed, lb), ub)
         q += dt * last
@@ -254,7 +256,7 @@ def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
     for start in (-1.3, 0.004, 1.7):
         last, before, q, spent = start, start, 0.0, 0.0
         for _ in range(2000):
-            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, (2.0, A, jerk), dt)
+            lb, ub = joint_bounds(last, before, 50.0 - q, 50.0 + q, (2.0, A, jerk, A), dt)
             last, before = braking(last, lb, ub, jerk, dt), last
             assert last * start >= -1e-15  # it does not turn round
             q, spent = q + dt * last, spent + dt
@@ -274,7 +276,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
         wish = min(max(-gain * (q + noise[k]), -V), V)
         change = min(max(wish - wished, -A * dt), A * dt)
         wished = wish
-        lb, ub = joint_bounds(last, before, 1e3, 1e3, limits, dt)
+        lb, ub = joint_bounds(last, before, 1e3, 1e3, (V, A, J, A), dt)
         v = wish + braking(last - wish + change, lb - wish, ub - wish, J, dt)
         before, last = last, min(max(v, lb), ub)
         q += dt * last
@@ -289,7 +291,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 @pytest.mark.parametrize("dt", [1e-3, 4e-3])
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
     speed, acceleration, jerk = limits
-    gain = largest_gain(np.array([-1.0, 1.0, speed, acceleration, jerk]), 1.0 / dt)
+    gain = largest_gain(np.array([-1.0, 1.0, speed, acceleration, jerk, acceleration]), 1.0 / dt)
     calm = np.zeros(int(60.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):

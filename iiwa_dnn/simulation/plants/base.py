@@ -94,6 +94,10 @@ class RealPlant(Plant):
         None if it got every command in time.
         """
 
+    def with_room(self, robot: Robot) -> Robot:
+        """Return a robot with limits inside of which commands may also come too late."""
+        return robot
+
     @abstractmethod
     def stop(self) -> None:
         """Let the robot brake if it still moves, end the motion and release the robot."""

@@ -1,13 +1,18 @@
-"""A Franka arm through libfranka: joint velocities at 1 kHz over its Franka Control Interface.
+r"""A Franka arm through libfranka: joint velocities at 1 kHz over its Franka Control Interface.
 
 Each state of the robot opens a cycle of 1 ms. A command that comes too late for its cycle is lost,
 and the robot goes on at constant acceleration. What it has commanded itself then comes back in
 `q_d`, `dq_d` and `ddq_d` of the next state.
 
+In k lost cycles of the period dt a velocity grows by up to k dt A at the acceleration A, and a
+limit that shrinks at the deceleration D (`Robot.ramps`) by k dt D: `FrankaPlant.with_room` leaves
+room for both.
+
 Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements.html, section
 "Packet handling".
 """
 
+from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -16,7 +21,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Matrix, Vector
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.simulation.plants.base import RealPlant
 
 Feedback = Literal["commanded", "measured"]
@@ -30,6 +35,15 @@ JOINTS = 7
 _NEAR = 0.01
 """Distance from the measured joint angles up to which a run may begin [rad]."""
 
+_ROOM = 0.99
+"""Ratio to the robot's limits of acceleration and jerk; one that is reached counts as broken."""
+
+_TOLERANCE = 1e-3
+"""libfranka's kJointVelocityLimitsTolerance without lost cycles [rad/s]."""
+
+_OFF_AXIS = 2e-3
+"""Distance between the flange and the model's last axis that calibration may leave [m]."""
+
 _ROUNDING = 1e-5
 """Difference of two velocities that are equal in single precision [rad/s]."""
 
@@ -41,19 +55,21 @@ class FrankaPlant(RealPlant):
         host: Address of the robot's controller.
         feedback: Joint angles that `read` returns: ``"commanded"``, the sum of the commands, has
             neither noise nor delay; ``"measured"`` are the encoders'.
+        lost_cycles: Cycles that may be lost in a row without a limit being broken.
 
     Raises:
-        InvalidInputError: The host is empty, or there is no such feedback.
+        InvalidInputError: The host is empty, there is no such feedback, or the number is negative.
     """
 
     packages: ClassVar[tuple[str, ...]] = ("pylibfranka",)
 
-    def __init__(self, host: str, feedback: Feedback = "commanded") -> None:
+    def __init__(self, host: str, feedback: Feedback = "commanded", lost_cycles: int = 5) -> None:
         if not host:
             raise InvalidInputError("host", "is needed: the address of the robot's controller")
         self.host = host
         checks.one_of("feedback", feedback, FEEDBACKS)
         self.feedback = feedback
+        self.lost_cycles = checks.integer("lost_cycles", lost_cycles, 0)
         self._fault: str | None = None
         self._franka: Any = None
         self._robot: Any = None
@@ -84,11 +100,12 @@ class FrankaPlant(RealPlant):
             raise InvalidInputError("host", problem, self.host) from error
         self._robot = robot
         self._fault = None
-        self._commanded: Vector = np.array(self._state.q_d)
+        self._commanded: Vector = np.array(self._state.q)
+        self._offset: Vector = np.zeros(JOINTS)
         self._command: Vector = np.zeros(JOINTS)
         self._substitutes: Matrix | None = None
         self._time = 0.0
-        self._late = 0
+        self._late: list[float] = []
 
     @property
     def period(self) -> float:
@@ -100,6 +117,20 @@ class FrankaPlant(RealPlant):
         """Measured joint angles before the run [rad], (7,); connects if need be."""
         self._connect()
         return np.array(self._state.q)
+
+    def with_room(self, robot: Robot) -> Robot:
+        """Return a robot with limits that leave room for lost cycles and for rounding."""
+        acceleration = _ROOM * robot.ddq_max
+        lost = self.lost_cycles * PERIOD
+        offset, deceleration = robot.ramps
+        shrinking = np.where(deceleration < np.inf, deceleration, 0.0)
+        return replace(
+            robot,
+            dq_max=robot.dq_max - _TOLERANCE - lost * acceleration,
+            ddq_max=acceleration,
+            dddq_max=_ROOM * robot.dddq_max,
+            ramps=np.array([offset + _TOLERANCE + lost * (acceleration + shrinking), deceleration]),
+        )
 
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
         """Connect to the robot, which has to stand at joint angles `q0` (7,) [rad] already.
@@ -120,6 +151,19 @@ class FrankaPlant(RealPlant):
             joint = int(away.argmax())
             stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
             raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
+        self._commanded = np.array(q0)
+        self._check_model(robot)
+
+    def _check_model(self, robot: Robot) -> None:
+        """Raise InvalidInputError if the axis of the last joint misses the arm's own flange."""
+        flange = np.reshape(self._state.O_T_EE, (4, 4), "F") @ np.linalg.inv(
+            np.reshape(self._state.F_T_EE, (4, 4), "F")
+        )
+        joint = Configuration(robot, self._state.q).frame(robot.joint_names[-1])
+        off_axis = float(np.linalg.norm((joint.rotation.T @ (flange[:3, 3] - joint.position))[:2]))
+        if off_axis > _OFF_AXIS:
+            problem = f"is not that of the arm: its last joint is {off_axis:.3g} m from the flange"
+            raise InvalidInputError("robot", problem, robot)
 
     def _wait(self) -> None:
         """Wait for the robot's next state, if a command was sent since the last one."""
@@ -136,10 +180,10 @@ class FrankaPlant(RealPlant):
         last = np.array(self._state.dq_d)
         self._substitutes = None
         if np.abs(last - self._command).max() > _ROUNDING:
-            self._late += 1
+            self._late.append(self._time)
             before = last - PERIOD * np.array(self._state.ddq_d)
             self._substitutes = np.array([last, before])
-            self._commanded = np.array(self._state.q_d)
+            self._commanded = self._state.q_d + self._offset
 
     @property
     def q(self) -> Vector:
@@ -179,7 +223,7 @@ class FrankaPlant(RealPlant):
             self._state, _ = self._control.readOnce()
         except self._franka.FrankaException as error:
             self._fault = _in_words(error)
-        self._commanded = np.array(self._state.q_d)
+        self._offset = self._commanded - self._state.q_d
 
     def move(self, command: Vector) -> None:
         """Send a velocity command (7,) [rad/s] for the cycle of the last state."""
@@ -209,7 +253,7 @@ class FrankaPlant(RealPlant):
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
-        return {"plant": entries | {"late_commands": self._late}}
+        return {"plant": entries | {"late_s": list(self._late)}}
 
 
 def _in_words(error: Exception) -> str:

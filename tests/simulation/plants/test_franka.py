@@ -1,0 +1,143 @@
+"""A Franka arm as a plant: against a stand-in here, against an independent server elsewhere."""
+
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import iiwa_dnn
+from helpers_franka import Arm, module
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.references.base import Motion
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.schemes.motion_limits import braking_room
+
+ROBOT = iiwa_dnn.load_robot("fr3")
+START = ROBOT.start_posture()
+LIMITS = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+SCHEME = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=LIMITS)
+
+
+@pytest.fixture
+def arm(monkeypatch: pytest.MonkeyPatch) -> Arm:
+    flange = iiwa_dnn.Configuration(ROBOT, START).frame("link8").position
+    made = Arm(START.copy(), flange)
+    monkeypatch.setitem(sys.modules, "pylibfranka", module(made))
+    monkeypatch.setattr(
+        "iiwa_dnn.simulation.runner.version", lambda name: "0" if "libfranka" in name else "1"
+    )
+    return made
+
+
+class Jumping(iiwa_dnn.Reference):
+    """A pose somewhere in the joints' ranges, another one every 0.25 s."""
+
+    duration = np.inf
+    period = np.inf
+    name = "jumping"
+
+    def __init__(self, seed: int) -> None:
+        rng = np.random.default_rng(seed)
+        drawn = rng.uniform(ROBOT.q_lower, ROBOT.q_upper, (99, 7))
+        self.poses = [iiwa_dnn.Configuration(ROBOT, q) for q in drawn]
+
+    def motion(self, t: float) -> Motion:
+        pose = self.poses[int(t / 0.25)]
+        return Motion(pose.position, np.zeros(3), pose.rotation)
+
+
+def drive(plant: iiwa_dnn.FrankaPlant, reference: Any = None, **options: Any) -> iiwa_dnn.Record:
+    if reference is None:
+        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(ROBOT, START))
+    arguments = {"dt": 1e-3, "duration": 0.05, "check": iiwa_dnn.CrossCheck(()), **options}
+    robot = plant.with_room(ROBOT)
+    return iiwa_dnn.simulate(robot, SCHEME, reference, START, plant=plant, **arguments)
+
+
+def test_the_arm_follows_a_path_and_rests_at_its_end(arm: Arm) -> None:
+    record = drive(iiwa_dnn.FrankaPlant("127.0.0.1"), duration=0.3)
+    assert record.settings["status"] == "completed"
+    assert failures(record) == []
+    assert arm.finished
+    assert not arm.dq.any()
+    assert arm.broken == []
+    assert_allclose(record.position, record.position_desired, atol=2e-5)
+
+
+@pytest.mark.filterwarnings("ignore:the reference begins")
+@pytest.mark.parametrize("policy", ["slow", "relax"])
+def test_hostile_targets_and_lost_cycles_break_no_limit(arm: Arm, policy: str) -> None:
+    rng = np.random.default_rng(5)
+    steps = rng.choice(np.arange(1, 1500), 40, replace=False)
+    arm.lost = {int(k): int(rng.integers(1, 6)) for k in steps}
+    plant = iiwa_dnn.FrankaPlant("127.0.0.1")
+    record = drive(plant, Jumping(3), duration=1.5, policy=policy)
+    assert arm.broken == []
+    late = record.settings["plant"]["late_s"]
+    assert len(late) >= 30  # an arm that goes on as it was told has not lost anything
+    elapsed = np.diff(record.t)
+    assert_allclose(elapsed.sum(), 1e-3 * (1500 + sum(arm.lost.values()) - len(arm.lost)))
+    assert not [line for line in failures(record) if "limit broken" in line]
+
+
+@pytest.mark.filterwarnings("ignore:the reference begins")
+def test_without_room_lost_cycles_break_limits(arm: Arm) -> None:
+    arm.lost = dict.fromkeys(range(50, 1500, 50), 5)
+    plant = iiwa_dnn.FrankaPlant("127.0.0.1", lost_cycles=0)
+    drive(plant, Jumping(3), duration=1.5)
+    assert any("velocity" in line for line in arm.broken)
+
+
+def test_the_robots_error_ends_the_run_and_the_record_is_there(arm: Arm) -> None:
+    arm.fails = 20
+    record = drive(iiwa_dnn.FrankaPlant("127.0.0.1"))
+    assert record.steps == 20
+    first = 'Move command aborted! ["test_reflex"]'
+    assert record.settings["status"] == f"stopped at step 19 (t = 0.019 s): {first}"
+    assert first in failures(record)[0] or first in failures(record)[1]
+
+
+def test_measured_feedback_is_the_encoders(arm: Arm) -> None:
+    plant = iiwa_dnn.FrankaPlant("127.0.0.1", feedback="measured")
+    plant.start(ROBOT, START, 1e-3, 0)
+    arm.q = arm.q + 1e-3
+    plant.read()
+    plant.move(np.full(7, 0.001))
+    assert_allclose(plant.read(), arm.q, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ({"host": ""}, "host: is needed"),
+        ({"host": "192.0.2.1"}, "host: 192.0.2.1: Connection timeout"),
+        ({"q0": START + 0.1}, "the arm stands 0.1 rad from it"),
+        ({"dt": 2e-3}, "dt: must be the robot's 0.001 s, not 0.002 s"),
+        ({"robot": iiwa_dnn.load_robot("iiwa7")}, "robot: is not that of the arm"),
+        ({"lost_cycles": -1}, "lost_cycles"),
+    ],
+)
+def test_what_cannot_move_is_refused_in_one_line(
+    arm: Arm, change: dict[str, Any], line: str
+) -> None:
+    given = {"host": "127.0.0.1", "robot": ROBOT, "q0": START, "dt": 1e-3} | change
+
+    def start() -> None:
+        plant = iiwa_dnn.FrankaPlant(given["host"], lost_cycles=given.get("lost_cycles", 5))
+        plant.start(given["robot"], given["q0"], given["dt"], 0)
+
+    with pytest.raises(InvalidInputError, match=line) as caught:
+        start()
+    assert "\n" not in str(caught.value)
+
+
+def test_the_room_before_a_ramp_is_the_least_one() -> None:
+    acceleration = np.full(7, 10.0)
+    braking, room = braking_room(ROBOT.ramps, acceleration)
+    v = np.linspace(0.0, 5.0, 5001)[:, np.newaxis]
+    offset, deceleration = ROBOT.ramps
+    lacking = (v + offset) ** 2 / (2.0 * deceleration) - v**2 / (2.0 * braking)
+    assert_allclose(lacking.max(axis=0), room, rtol=1e-5)
+    assert (braking <= acceleration).all()
