@@ -121,12 +121,17 @@ class Loop:
         return steps
 
     def brake(self) -> None:
-        """Bring a real arm to rest within the controller's limits; nobody observes it."""
+        """Bring a real arm to rest within the controller's limits; nobody observes it.
+
+        It rests when it has got the command to: if that came too late, it still moves.
+        """
         delay = self.controller.delay
         self.controller.halt()
         for k in range(round(_LONGEST_BRAKING / self.controller.dt)):
             if self.step(k).ends:
-                break
+                self.plant.move(np.zeros_like(self.q))
+                if self._real is None or self._real.substitutes is None:
+                    break
         self.controller.delay = delay  # that of the run, which ended before
 
     def step(self, k: int) -> Outcome:

@@ -16,6 +16,7 @@ from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, import_extra
@@ -44,7 +45,7 @@ _TOLERANCE = 1e-3
 _OFF_AXIS = 2e-3
 """Distance between the flange and the model's last axis that calibration may leave [m]."""
 
-_ROUNDING = 1e-5
+_ROUNDING = 1e-6
 """Difference of two velocities that are equal in single precision [rad/s]."""
 
 
@@ -170,6 +171,7 @@ class FrankaPlant(RealPlant):
         if not self._waits:
             return
         self._waits = False
+        before = self._state
         try:
             self._state, duration = self._control.readOnce()
         except self._franka.FrankaException as error:
@@ -179,11 +181,20 @@ class FrankaPlant(RealPlant):
         self._commanded += PERIOD * self._command
         last = np.array(self._state.dq_d)
         self._substitutes = None
-        if np.abs(last - self._command).max() > _ROUNDING:
+        if _differ(last, self._command) and not self._is_old(before, duration):
             self._late.append(self._time)
-            before = last - PERIOD * np.array(self._state.ddq_d)
-            self._substitutes = np.array([last, before])
+            previous = last - PERIOD * np.array(self._state.ddq_d)
+            self._substitutes = np.array([last, previous])
             self._commanded = self._state.q_d + self._offset
+
+    def _is_old(self, before: Any, duration: Any) -> bool:
+        """Test whether the state shows the commands of the state before: one is on its way yet.
+
+        A robot that has lost a command does not stay at a velocity, but at an acceleration.
+        """
+        one = duration.to_sec() < 1.5 * PERIOD
+        stayed = not _differ(self._state.dq_d, before.dq_d)
+        return one and stayed and _differ(PERIOD * np.array(before.ddq_d), 0.0)
 
     @property
     def q(self) -> Vector:
@@ -254,6 +265,11 @@ class FrankaPlant(RealPlant):
         """Return the plant's entries in the settings of a record."""
         entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
         return {"plant": entries | {"late_s": list(self._late)}}
+
+
+def _differ(dq: ArrayLike, other: ArrayLike) -> bool:
+    """Test whether velocities (7,) [rad/s] differ by more than rounding."""
+    return bool(np.abs(np.subtract(dq, other)).max() > _ROUNDING)
 
 
 def _in_words(error: Exception) -> str:

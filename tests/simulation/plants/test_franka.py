@@ -49,11 +49,12 @@ class Jumping(iiwa_dnn.Reference):
 
 
 def drive(plant: iiwa_dnn.FrankaPlant, reference: Any = None, **options: Any) -> iiwa_dnn.Record:
+    start = options.pop("q0", START)
     if reference is None:
-        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(ROBOT, START))
+        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(ROBOT, start))
     arguments = {"dt": 1e-3, "duration": 0.05, "check": iiwa_dnn.CrossCheck(()), **options}
     robot = plant.with_room(ROBOT)
-    return iiwa_dnn.simulate(robot, SCHEME, reference, START, plant=plant, **arguments)
+    return iiwa_dnn.simulate(robot, SCHEME, reference, start, plant=plant, **arguments)
 
 
 def test_the_arm_follows_a_path_and_rests_at_its_end(arm: Arm) -> None:
@@ -97,6 +98,17 @@ def test_the_robots_error_ends_the_run_and_the_record_is_there(arm: Arm) -> None
     first = 'Move command aborted! ["test_reflex"]'
     assert record.settings["status"] == f"stopped at step 19 (t = 0.019 s): {first}"
     assert first in failures(record)[0] or first in failures(record)[1]
+
+
+def test_a_lost_last_command_does_not_leave_the_arm_in_motion(arm: Arm) -> None:
+    drive(iiwa_dnn.FrankaPlant("127.0.0.1"), duration=0.3)
+    count = arm.count
+    for lost in range(count - 4, count):
+        arm.count = 0
+        arm.lost = {lost: 3}
+        drive(iiwa_dnn.FrankaPlant("127.0.0.1"), duration=0.3, q0=arm.q)
+        assert not arm.dq.any()
+        assert arm.broken == []
 
 
 def test_measured_feedback_is_the_encoders(arm: Arm) -> None:

@@ -1,0 +1,91 @@
+"""Hostile targets on a Franka arm, or on a server that speaks its protocol: reflexes, lost cycles.
+
+A target jumps by up to 0.35 m and 1 rad every second, within the arm's reach or beyond it. A loop
+that sends nothing but zero, for 2 s before each run, shows what the machine loses by itself.
+"""
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+import iiwa_dnn
+from iiwa_dnn.references.base import Motion
+from iiwa_dnn.results.markdown import markdown_table
+
+JUMP = 0.35
+"""Largest jump of the target [m]."""
+
+TURN = 1.0
+"""Largest turn of the target between two jumps [rad]."""
+
+RUN = 20.0
+"""Length of one run [s]."""
+
+
+class Jumps(iiwa_dnn.Reference):
+    """A pose that jumps every second, from that of a start."""
+
+    name = "jumps"
+    period = np.inf
+    duration = np.inf
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        count = round(RUN) + 2
+        direction = rng.normal(size=(count, 3))
+        direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+        self.shifts = direction * rng.uniform(0.0, JUMP, (count, 1))
+        self.turns = [pin.exp3(rng.uniform(-TURN, TURN, 3)) for _ in range(count)]
+        self.shifts[0] = 0.0
+        self.turns[0] = np.eye(3)
+
+    def motion(self, t: float) -> Motion:
+        """Compute displacement and turn at time t [s]."""
+        k = int(t)
+        return Motion(self.shifts[k], np.zeros(3), self.turns[k])
+
+
+def bench_franka(arguments: Sequence[str], prog: str) -> int:
+    """Drive the arm at a host for so many seconds: HOST SECONDS."""
+    host = arguments[0] if arguments else "127.0.0.1"
+    seconds = float(arguments[1]) if len(arguments) > 1 else 600.0
+    rows = []
+    rng = np.random.default_rng(0)
+    robot = iiwa_dnn.load_robot("fr3")
+    for k in range(round(seconds / RUN)):
+        policy = ("slow", "relax")[k % 2]
+        row = [k, policy]
+        for reference in (None, Jumps(rng)):
+            plant = iiwa_dnn.FrankaPlant(host)
+            row += drive(plant, plant.with_room(robot), reference, policy)
+        rows.append(row)
+        print(*row, file=sys.stderr, flush=True)
+    head = ["run", "policy", "lost at rest", "end", "lost", "largest rate", "end"]
+    print(markdown_table(head, [[str(cell) for cell in row] for row in rows]))
+    return 0
+
+
+def drive(plant: Any, robot: Any, reference: Any, policy: Any) -> list[Any]:
+    """Return late commands of a run, ratio of its commands to the limits if they move, its end."""
+    start = iiwa_dnn.Configuration(robot, plant.posture)
+    path = iiwa_dnn.Still() if reference is None else reference
+    limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+    scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=limits)
+    record = iiwa_dnn.simulate(
+        robot,
+        scheme,
+        path.anchored(start),
+        start.q,
+        plant=plant,
+        dt=1e-3,
+        duration=2.0 if reference is None else RUN,
+        policy=policy,
+        check=iiwa_dnn.CrossCheck(()),
+    )
+    late = len(record.settings["plant"]["late_s"])
+    end = record.settings["status"]
+    if reference is None:
+        return [late, end]
+    return [late, f"{np.abs(record.dq_solver / robot.dq_max).max():.2f}", end]
