@@ -17,8 +17,12 @@ OFFSET = np.array([0.30, 0.20, 0.20, 0.30, 0.35, 0.35, 0.35])
 DECELERATION = np.array([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0])
 
 
-class FrankaException(Exception):  # noqa: N818
-    """The base of libfranka's errors."""
+class ControlException(RuntimeError):  # noqa: N818
+    """An error of libfranka; by pylibfranka none has a base class of its own."""
+
+
+class NetworkException(RuntimeError):  # noqa: N818
+    """An error of libfranka."""
 
 
 class JointVelocities:
@@ -76,7 +80,7 @@ class Arm:
 
     def readOnce(self) -> tuple[Any, Duration]:  # noqa: N802
         if self.fails is not None and self.count >= self.fails:
-            raise FrankaException('libfranka: Move command aborted!\n["test_reflex"]')
+            raise ControlException('libfranka: Move command aborted!\n["test_reflex"]')
         cycles, self.cycles = self.cycles, 0
         return self.state(), Duration(cycles)
 
@@ -118,11 +122,12 @@ def module(arm: Arm) -> Any:
 
     def connect(host: str, realtime: Any) -> Arm:
         if host != "127.0.0.1":
-            raise FrankaException("libfranka: Connection timeout")
+            raise NetworkException("libfranka: Connection timeout")
         return arm
 
     return SimpleNamespace(
-        FrankaException=FrankaException,
+        ControlException=ControlException,
+        NetworkException=NetworkException,
         JointVelocities=JointVelocities,
         Robot=connect,
         RealtimeConfig=SimpleNamespace(kIgnore=1),

@@ -36,8 +36,10 @@ JOINTS = 7
 _NEAR = 0.01
 """Distance from the measured joint angles up to which a run may begin [rad]."""
 
-_ROOM = 0.99
-"""Ratio to the robot's limits of acceleration and jerk; one that is reached counts as broken."""
+_ACCELERATION = 0.8
+_JERK = 0.25
+"""Ratios to the robot's limits. A late command may be dropped or, by franka-sim, be taken after all
+when the robot has gone on without it: in one of the two histories the next one reads as 3 J."""
 
 _TOLERANCE = 1e-3
 """libfranka's kJointVelocityLimitsTolerance without lost cycles [rad/s]."""
@@ -93,10 +95,13 @@ class FrankaPlant(RealPlant):
         if self._robot is not None:
             return
         self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
+        # Without a base class of their own.
+        kinds = [kind for name, kind in vars(self._franka).items() if name.endswith("Exception")]
+        self._errors: tuple[type[Exception], ...] = tuple(kinds)
         try:
             robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
             self._state = robot.read_once()
-        except self._franka.FrankaException as error:
+        except self._errors as error:
             problem = f"{self.host}: {_in_words(error)}"
             raise InvalidInputError("host", problem, self.host) from error
         self._robot = robot
@@ -121,7 +126,7 @@ class FrankaPlant(RealPlant):
 
     def with_room(self, robot: Robot) -> Robot:
         """Return a robot with limits that leave room for lost cycles and for rounding."""
-        acceleration = _ROOM * robot.ddq_max
+        acceleration = _ACCELERATION * robot.ddq_max
         lost = self.lost_cycles * PERIOD
         offset, deceleration = robot.ramps
         shrinking = np.where(deceleration < np.inf, deceleration, 0.0)
@@ -129,7 +134,7 @@ class FrankaPlant(RealPlant):
             robot,
             dq_max=robot.dq_max - _TOLERANCE - lost * acceleration,
             ddq_max=acceleration,
-            dddq_max=_ROOM * robot.dddq_max,
+            dddq_max=_JERK * robot.dddq_max,
             ramps=np.array([offset + _TOLERANCE + lost * (acceleration + shrinking), deceleration]),
         )
 
@@ -174,7 +179,7 @@ class FrankaPlant(RealPlant):
         before = self._state
         try:
             self._state, duration = self._control.readOnce()
-        except self._franka.FrankaException as error:
+        except self._errors as error:
             self._fault = _in_words(error)
             return
         self._time += duration.to_sec()
@@ -232,7 +237,7 @@ class FrankaPlant(RealPlant):
         try:
             self._control = self._robot.start_joint_velocity_control(mode)
             self._state, _ = self._control.readOnce()
-        except self._franka.FrankaException as error:
+        except self._errors as error:
             self._fault = _in_words(error)
         self._offset = self._commanded - self._state.q_d
 
@@ -249,7 +254,7 @@ class FrankaPlant(RealPlant):
         """Send libfranka's `JointVelocities`."""
         try:
             self._control.writeOnce(command)
-        except self._franka.FrankaException as error:
+        except self._errors as error:
             self._fault = _in_words(error)
 
     def stop(self) -> None:
