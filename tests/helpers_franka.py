@@ -18,7 +18,7 @@ DECELERATION = np.array([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0])
 
 
 class ControlException(RuntimeError):  # noqa: N818
-    """An error of libfranka; by pylibfranka none has a base class of its own."""
+    """An error of libfranka; pylibfranka's have no base class of their own."""
 
 
 class NetworkException(RuntimeError):  # noqa: N818
@@ -126,8 +126,7 @@ def module(arm: Arm) -> Any:
         return arm
 
     return SimpleNamespace(
-        ControlException=ControlException,
-        NetworkException=NetworkException,
+        FrankaException=Exception,
         JointVelocities=JointVelocities,
         Robot=connect,
         RealtimeConfig=SimpleNamespace(kIgnore=1),

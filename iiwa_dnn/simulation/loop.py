@@ -107,8 +107,12 @@ class Loop:
         accelerates = controller.program.accelerates
         self._alters = chain is not None and chain.alters and not accelerates
         self._plain = motion == "euler" and not (self._alters or accelerates)
-        self._real = plant if isinstance(plant, RealPlant) else None
         self._misled = not plant.exact or (chain is not None and chain.misleads)
+
+    @property
+    def _real(self) -> RealPlant | None:
+        """The plant, if it is a real arm."""
+        return self.plant if isinstance(self.plant, RealPlant) else None
 
     def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
         """Take steps until one of them ends the run; return how many were taken."""
@@ -142,16 +146,11 @@ class Loop:
         """
         controller = self.controller
         plant = self.plant
-        t = k * controller.dt
+        t = self._time(k)
         seen = self.q
         if self._misled:
             reading = plant.read()
             seen = reading if self._chain is None else self._chain.see(k, reading)
-        if self._real is not None:
-            t = self._real.time
-            substitutes = self._real.substitutes
-            if substitutes is not None:
-                controller.resume(substitutes)
         try:
             if not self._plain:
                 return self._general_step(k, t, seen)
@@ -171,6 +170,15 @@ class Loop:
         self.q = plant.q
         levels = self._taken_levels() if self._has_levels else ()
         return Outcome((command,), dq, dq, self.q, levels=levels)
+
+    def _time(self, k: int) -> float:
+        """Return the time of step k [s], after a real arm's controller knows of late commands."""
+        if self._real is None:
+            return k * self.controller.dt
+        substitutes = self._real.substitutes
+        if substitutes is not None:
+            self.controller.resume(substitutes)
+        return self._real.time
 
     def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
         """Take a step of several stages, of the acceleration level, or with an altered command."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -91,8 +91,7 @@ class Recorder:
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
-        if outcomes[-1].t is not None:
-            self._array("t")[steps.start + 1 : steps.stop + 1] = [each.t for each in outcomes]
+        self._add_times(steps.start, outcomes)
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
         stages = len(rows) // count
@@ -117,6 +116,12 @@ class Recorder:
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return rows
+
+    def _add_times(self, first: int, outcomes: Sequence[Outcome]) -> None:
+        """Note the times after the outcomes from a first step on, where the plant has a clock."""
+        if outcomes[-1].t is not None:
+            times = [each.t for each in outcomes]
+            self._array("t")[first + 1 : first + 1 + len(times)] = times
 
     def finish(self) -> dict[str, NDArray[Any]]:
         """Return the columns, cut to the steps that were taken."""

@@ -12,7 +12,7 @@ Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements
 "Packet handling".
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -51,6 +51,29 @@ _ROUNDING = 1e-6
 """Difference of two velocities that are equal in single precision [rad/s]."""
 
 
+@dataclass
+class _Motion:
+    """What is known of a motion of an arm, beside its last state.
+
+    Attributes:
+        commanded: Sum of the commands, from the measured start [rad], (7,).
+        offset: Difference of it to the robot's own sum [rad], (7,).
+        command: Last command [rad/s], (7,).
+        substitutes: `FrankaPlant.substitutes`, (2, 7).
+        waits: Whether the state that answers the last command is still to come.
+        time: Time since the motion began, by the robot's clock [s].
+        late: Times at which commands were found to have come too late [s].
+    """
+
+    commanded: Vector
+    offset: Vector = field(default_factory=lambda: np.zeros(JOINTS))
+    command: Vector = field(default_factory=lambda: np.zeros(JOINTS))
+    substitutes: Matrix | None = None
+    waits: bool = False
+    time: float = 0.0
+    late: list[float] = field(default_factory=list)
+
+
 class FrankaPlant(RealPlant):
     """A Franka arm that follows joint velocity commands.
 
@@ -83,7 +106,6 @@ class FrankaPlant(RealPlant):
         """Close the connection."""
         self._control = None
         self._robot = None
-        self._waits = False
 
     def _connect(self) -> None:
         """Connect to the robot and read its state, unless this was done before.
@@ -95,23 +117,15 @@ class FrankaPlant(RealPlant):
         if self._robot is not None:
             return
         self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
-        # Without a base class of their own.
-        kinds = [kind for name, kind in vars(self._franka).items() if name.endswith("Exception")]
-        self._errors: tuple[type[Exception], ...] = tuple(kinds)
         try:
             robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
             self._state = robot.read_once()
-        except self._errors as error:
+        except (RuntimeError, self._franka.FrankaException) as error:
             problem = f"{self.host}: {_in_words(error)}"
             raise InvalidInputError("host", problem, self.host) from error
         self._robot = robot
         self._fault = None
-        self._commanded: Vector = np.array(self._state.q)
-        self._offset: Vector = np.zeros(JOINTS)
-        self._command: Vector = np.zeros(JOINTS)
-        self._substitutes: Matrix | None = None
-        self._time = 0.0
-        self._late: list[float] = []
+        self._motion = _Motion(np.array(self._state.q))
 
     @property
     def period(self) -> float:
@@ -157,7 +171,7 @@ class FrankaPlant(RealPlant):
             joint = int(away.argmax())
             stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
             raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
-        self._commanded = np.array(q0)
+        self._motion.commanded = np.array(q0)
         self._check_model(robot)
 
     def _check_model(self, robot: Robot) -> None:
@@ -173,24 +187,24 @@ class FrankaPlant(RealPlant):
 
     def _wait(self) -> None:
         """Wait for the robot's next state, if a command was sent since the last one."""
-        if not self._waits:
+        if not self._motion.waits:
             return
-        self._waits = False
+        self._motion.waits = False
         before = self._state
         try:
             self._state, duration = self._control.readOnce()
-        except self._errors as error:
+        except (RuntimeError, self._franka.FrankaException) as error:
             self._fault = _in_words(error)
             return
-        self._time += duration.to_sec()
-        self._commanded += PERIOD * self._command
+        self._motion.time += duration.to_sec()
+        self._motion.commanded += PERIOD * self._motion.command
         last = np.array(self._state.dq_d)
-        self._substitutes = None
-        if _differ(last, self._command) and not self._is_old(before, duration):
-            self._late.append(self._time)
+        self._motion.substitutes = None
+        if _differ(last, self._motion.command) and not self._is_old(before, duration):
+            self._motion.late.append(self._motion.time)
             previous = last - PERIOD * np.array(self._state.ddq_d)
-            self._substitutes = np.array([last, previous])
-            self._commanded = self._state.q_d + self._offset
+            self._motion.substitutes = np.array([last, previous])
+            self._motion.commanded = self._state.q_d + self._motion.offset
 
     def _is_old(self, before: Any, duration: Any) -> bool:
         """Test whether the state shows the commands of the state before: one is on its way yet.
@@ -211,13 +225,13 @@ class FrankaPlant(RealPlant):
     def time(self) -> float:
         """Time since the motion began, by the robot's clock [s]."""
         self._wait()
-        return self._time
+        return self._motion.time
 
     @property
     def substitutes(self) -> Matrix | None:
         """Last command and the one before, (2, 7) [rad/s], if the robot lost ours; else None."""
         self._wait()
-        return self._substitutes
+        return self._motion.substitutes
 
     @property
     def fault(self) -> str | None:
@@ -229,7 +243,7 @@ class FrankaPlant(RealPlant):
         if self._control is None and self._fault is None:
             self._begin()
         self._wait()
-        return self._commanded.copy() if self.feedback == "commanded" else self.q
+        return self._motion.commanded.copy() if self.feedback == "commanded" else self.q
 
     def _begin(self) -> None:
         """Begin a motion of joint velocities, from rest."""
@@ -237,24 +251,24 @@ class FrankaPlant(RealPlant):
         try:
             self._control = self._robot.start_joint_velocity_control(mode)
             self._state, _ = self._control.readOnce()
-        except self._errors as error:
+        except (RuntimeError, self._franka.FrankaException) as error:
             self._fault = _in_words(error)
-        self._offset = self._commanded - self._state.q_d
+        self._motion.offset = self._motion.commanded - self._state.q_d
 
     def move(self, command: Vector) -> None:
         """Send a velocity command (7,) [rad/s] for the cycle of the last state."""
         if self._fault is not None:
             return
         self._wait()
-        self._command = np.array(command)
-        self._waits = True
-        self._send(self._franka.JointVelocities(self._command.tolist()))
+        self._motion.command = np.array(command)
+        self._motion.waits = True
+        self._send(self._franka.JointVelocities(self._motion.command.tolist()))
 
     def _send(self, command: Any) -> None:
         """Send libfranka's `JointVelocities`."""
         try:
             self._control.writeOnce(command)
-        except self._errors as error:
+        except (RuntimeError, self._franka.FrankaException) as error:
             self._fault = _in_words(error)
 
     def stop(self) -> None:
@@ -269,7 +283,7 @@ class FrankaPlant(RealPlant):
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
-        return {"plant": entries | {"late_s": list(self._late)}}
+        return {"plant": entries | {"late_s": list(self._motion.late)}}
 
 
 def _differ(dq: ArrayLike, other: ArrayLike) -> bool:

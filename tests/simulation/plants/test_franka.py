@@ -49,12 +49,11 @@ class Jumping(iiwa_dnn.Reference):
 
 
 def drive(plant: iiwa_dnn.FrankaPlant, reference: Any = None, **options: Any) -> iiwa_dnn.Record:
-    start = options.pop("q0", START)
     if reference is None:
-        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(ROBOT, start))
+        reference = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(ROBOT, START))
     arguments = {"dt": 1e-3, "duration": 0.05, "check": iiwa_dnn.CrossCheck(()), **options}
     robot = plant.with_room(ROBOT)
-    return iiwa_dnn.simulate(robot, SCHEME, reference, start, plant=plant, **arguments)
+    return iiwa_dnn.simulate(robot, SCHEME, reference, START, plant=plant, **arguments)
 
 
 def test_the_arm_follows_a_path_and_rests_at_its_end(arm: Arm) -> None:
@@ -105,8 +104,10 @@ def test_a_lost_last_command_does_not_leave_the_arm_in_motion(arm: Arm) -> None:
     count = arm.count
     for lost in range(count - 4, count):
         arm.count = 0
+        arm.q = START.copy()
+        arm.ddq = np.zeros(7)
         arm.lost = {lost: 3}
-        drive(iiwa_dnn.FrankaPlant("127.0.0.1"), duration=0.3, q0=arm.q)
+        drive(iiwa_dnn.FrankaPlant("127.0.0.1"), duration=0.3)
         assert not arm.dq.any()
         assert arm.broken == []
 
