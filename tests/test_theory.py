@@ -18,6 +18,8 @@ from iiwa_dnn import (
     DNNSolver,
     DoubleIndicator,
     ImplicitEuler,
+    Network,
+    OneLayerNetwork,
     ProjectionNetwork,
     Target,
     Waypoints,
@@ -61,6 +63,94 @@ def test_below_a_half_they_may() -> None:
     rest = np.array([-0.5, 0.0, 0.0])
     approach = step @ (network_rates(qp, rest + step, False) - network_rates(qp, rest, False))
     assert approach > 0.4
+
+
+def variational(qp: QP) -> tuple[Array, Array]:
+    """H and c of T(u) = H u + c for u = [x, y, z, u, l], the bounds as rows."""
+    n = qp.q.size
+    rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
+    none = np.zeros((len(rows), len(rows)))
+    constant = np.concatenate([qp.q, qp.b, qp.h, qp.ub, -qp.lb])
+    return np.block([[qp.P, rows.T], [-rows, none]]), constant
+
+
+def equilibrium(qp: QP) -> Array:
+    """The KKT point as a state of the paper's network."""
+    found = DNNSolver(tol=1e-12).solve(qp)
+    upper, lower = np.maximum(found.z_box, 0.0), np.maximum(-found.z_box, 0.0)
+    return np.concatenate([found.x, found.y, found.z, upper, lower])
+
+
+@pytest.mark.parametrize("dependent", [False, True], ids=["independent", "dependent"])
+@pytest.mark.parametrize(
+    "network", [ProjectionNetwork(), OneLayerNetwork(corrected=False)], ids=["paper", "one-layer"]
+)
+def test_with_the_primal_projection_there_is_a_lyapunov_function(
+    network: Network, dependent: bool
+) -> None:
+    """rho dV/dt <= -|x - r_x|_P^2 - |x - x*|_P^2 and V >= |u - u*|^2 / 2, anywhere in Omega."""
+    rng = np.random.default_rng(3)
+    for case in range(20):
+        qp, _ = known_qp(rng, 5, 3, case % 6, dependent=dependent, inequalities=case % 4)
+        size = network.state_size(qp)  # the one-layer network has no multipliers of bounds
+        H, constant = (array[..., :size] for array in variational(qp))
+        H = H[:size]
+        if isinstance(network, OneLayerNetwork):
+            alpha = network.share / np.linalg.norm(H, 2)
+            H, constant = alpha * H, alpha * constant
+        rest = equilibrium(qp)[:size]
+        lower = np.concatenate([qp.lb, np.full(3, -np.inf), np.zeros(size - 8)])
+        upper = np.concatenate([qp.ub, np.full(size - 5, np.inf)])
+
+        def distance(u: Array, qp: QP = qp, H: Array = H, c: Array = constant,
+                     rest: Array = rest) -> float:  # fmt: skip
+            moved = network.rates(qp, u)  # r - u
+            gap = -(H @ u + c) @ moved - 0.5 * moved @ moved
+            return float(gap + 0.5 * np.sum((u - rest) ** 2))
+
+        for spread in 10.0 ** rng.uniform(-2.0, 2.0, 50):
+            state = np.clip(rest + spread * rng.standard_normal(size), lower, upper)
+            moved = network.rates(qp, state)
+            gradient = H @ state + constant - H.T @ moved + moved + state - rest
+            rate = gradient @ moved
+            scale = 1.0 + np.sum((state - rest) ** 2) * (1.0 + np.linalg.norm(H, 2)) ** 3
+            ahead, behind = (distance(state + step * moved) for step in (1e-5, -1e-5))
+            assert rate == pytest.approx((ahead - behind) / 2e-5, abs=1e-4 * scale)
+            parts = np.stack([moved[:5], state[:5] - rest[:5]])
+            assert rate <= -np.sum(parts @ H[:5, :5] * parts) + 1e-9 * scale
+            assert distance(state) >= 0.5 * np.sum((state - rest) ** 2) - 1e-9 * scale
+
+
+@pytest.mark.parametrize("far", [10.0, 100.0, 200.0])
+def test_settling_takes_as_long_as_the_multiplier_is_far_away(far: float) -> None:
+    """P = A = 1, |x| <= 1: no exponential rate holds from everywhere, it would be log D."""
+    qp = QP([[1.0]], [0.0], A=[[1.0]], b=[0.0], lb=[-1.0], ub=[1.0])
+    network = ProjectionNetwork()
+    state = np.array([0.0, -far, 0.0, 0.0])
+    rates = network.flow(qp).rates
+    step, settled = 0.01, 0.0
+    for k in range(round((far + 40.0) / step)):
+        state = state + step * rates(state)
+        if np.linalg.norm(state) > 1e-6:
+            settled = k * step
+    assert settled == pytest.approx(far + 28.0, abs=1.0)
+
+
+@pytest.mark.parametrize("gain", [10.2, 1000.0])
+def test_on_so3_a_gain_below_one_over_the_period_turns_the_error(gain: float) -> None:
+    """e+ = (1 - gain dt) (e + dt/2 w x e) to second order: nothing is left at gain = 1 / dt."""
+    dt = 1e-3
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        error, speed = 1e-3 * rng.standard_normal(3), rng.standard_normal(3)
+        turned = Rotation.from_rotvec(error)
+        ahead = Rotation.from_rotvec(dt * speed) * turned
+        rows = ahead.as_rotvec() / dt - (1.0 / dt - gain) * error
+        left = (ahead * Rotation.from_rotvec(dt * rows).inv()).as_rotvec()
+        expected = (1.0 - gain * dt) * (error + 0.5 * dt * np.cross(speed, error))
+        np.testing.assert_allclose(left, expected, atol=2e-9 * np.linalg.norm(speed) ** 2)
+        if gain < 1.0 / dt:
+            assert np.abs(left - (1.0 - gain * dt) * error).max() > 1e-8
 
 
 def test_without_cost_the_flow_circles() -> None:

@@ -11,8 +11,8 @@ With H, c and :math:`\Omega` of `iiwa_dnn.networks.primal_dual` and :math:`u = [
 The part in brackets, the correction, makes it converge from anywhere for every monotone H with
 :math:`\alpha\,\|H\| < 1`: :math:`\tfrac{d}{dt}\tfrac12\|u-u^*\|^2 \le
 -(1-\alpha\|H\|)\,\|v - u\|^2/\rho`. Without it this is the simplified primal-dual network, the
-paper's without its second multipliers of the bounds: it is proved for symmetric H, which that of a
-program with rows is not.
+paper's without its second multipliers of the bounds: it converges for every positive definite P, by
+the function of docs/theory.md.
 
 Sources: Y. Xia, J. Wang, "A general projection neural network for solving monotone variational
 inequalities and related optimization problems", IEEE Transactions on Neural Networks 15 (2004);
