@@ -177,18 +177,21 @@ class NoiseOptions(SweepOptions):
 
 @dataclass(frozen=True)
 class AtlasOptions(SweepOptions):
-    """Compare the networks of the field at equal compute: tables, a figure and verdicts.
+    """Compare the networks of the field at equal work: tables, a figure, verdicts and cards.
 
-    An interrupted sweep resumes.
+    A part of one's own is named as module:NAME or file.py:NAME. An interrupted sweep resumes.
     """
 
     command: ClassVar[str] = "atlas"
     out: Path = Path("runs/atlas")  # folder of the results
-    seeds: int = 100  # number of noises with the first scheme
-    other_seeds: int = 10  # number of noises with the other schemes and budgets
-    schemes: _Names = ()  # names of the schemes (none: all)
-    networks: _Names = ()  # names of the networks (none: all)
-    evaluations: tuple[int, ...] = (1, 2, 4, 8, 16)  # evaluations of a network in a period
+    whole: bool = False  # run 100 seeds and all schemes: hours in place of minutes
+    seeds: _Int = None  # number of noises with the first scheme (5, whole: 100)
+    other_seeds: _Int = None  # number of noises with the other schemes and budgets (3)
+    networks: _Names = ()  # names of the networks (none, or your own alone: all others too)
+    schemes: _Names = ()  # names of the schemes (none: the first, whole: all)
+    references: _Names = ()  # names of the paths (none: all)
+    disturbances: _Names = ()  # names of the disturbances (none: all)
+    work: tuple[float, ...] = (3e3, 1e4, 3e4)  # operations a control period
     plots: bool = True  # draw the figure
 
 

@@ -4,6 +4,7 @@ from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.dual import DualNetwork, SimplifiedDualNetwork
 from iiwa_dnn.networks.gradient import GradientNetwork
+from iiwa_dnn.networks.noise_suppressing import NoiseSuppressingNetwork
 from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.projection import ProjectionNetwork
@@ -15,6 +16,7 @@ __all__ = [
     "Flow",
     "GradientNetwork",
     "Network",
+    "NoiseSuppressingNetwork",
     "OneLayerNetwork",
     "PrimalDualNetwork",
     "ProjectionNetwork",

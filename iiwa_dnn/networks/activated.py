@@ -23,7 +23,7 @@ import numpy as np
 from iiwa_dnn.networks.activations import Activation, SignBiPower
 from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, settings_of
 from iiwa_dnn.networks.dual import DualNetwork
-from iiwa_dnn.qp.layout import Triple, Vector
+from iiwa_dnn.qp.layout import Sizes, Triple, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -65,12 +65,23 @@ class ActivatedNetwork(Network):
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
         return self.network.read(qp, state, point)
 
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count the work of the network inside; sizes are (n, m, p)."""
+        return self.network.work(sizes)
+
+    def linear_limit(self, qp: QP, state: Vector) -> float:
+        """Compute the limit [rho] of the network inside at its speed at the state (size,)."""
+        return self._slowed(qp, state, self.network.linear_limit(qp, state))
+
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] at this state; 0 without one: near rest none may be stable."""
         if state is None:
             return 0.0
+        return self._slowed(qp, state, self.network.stable_step(qp, state))
+
+    def _slowed(self, qp: QP, state: Vector, step: float) -> float:
+        """Return the step of the network inside in the time of this one."""
         size = float(np.linalg.norm(self.network.rates(qp, state)))
-        step = self.network.stable_step(qp, state)
         return step * size / float(self.activation(np.array([size]))[0]) if size > 0.0 else step
 
     def settings(self) -> dict[str, Any]:

@@ -145,6 +145,27 @@ class Network(ABC):
             state: A state, (state_size,), around which the bound has to hold; None: everywhere.
         """
 
+    def linear_limit(self, qp: QP, state: Vector) -> float:
+        r"""Compute the largest step [rho] of explicit Euler that is stable on the active set.
+
+        Eigenvalues :math:`\lambda` of the derivative at the state (state_size,) ask for
+        :math:`|1 + h \lambda| \le 1`. Those at zero, of dependent rows, are left out. It is 0 where
+        an eigenvalue has no negative real part.
+        """
+        eigenvalues = np.linalg.eigvals(self.flow(qp).jacobian(state))
+        squares = np.abs(eigenvalues) ** 2
+        moving = squares > 1e-14 * squares.max(initial=1e-300)
+        bounds = -2.0 * eigenvalues.real[moving] / squares[moving]
+        return max(0.0, float(bounds.min(initial=2.0)))
+
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count the floating-point operations of one program's set-up and of one evaluation.
+
+        By default an evaluation is a product of a square matrix with n + m + p numbers. A subclass
+        counts its own; sizes are (n, m, p).
+        """
+        return 0.0, 2.0 * sum(sizes) ** 2
+
     def rates_function(self) -> Rates | None:
         """Return `compiled_rates`, unless a subclass has overridden what it stands in for."""
         for cls in type(self).__mro__:
@@ -165,6 +186,12 @@ class Network(ABC):
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         return settings_of(self)
+
+
+def kkt_product(sizes: Sizes) -> float:
+    """Count the operations of one product with the KKT matrix of a program of sizes (n, m, p)."""
+    n, m, p = sizes
+    return 2.0 * n**2 + 4.0 * n * (m + p)
 
 
 def read_point(qp: QP, state: Vector, point: Vector, size: int) -> Triple:

@@ -76,6 +76,15 @@ class DualNetwork(Network):
         n, m, p = qp.sizes
         return n + m + (0 if self.simplified else p)
 
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count P's inverse, E M E^T and an evaluation's product; sizes are (n, m, p)."""
+        n, m, p = sizes
+        rows = m if self.simplified else m + p
+        setup = 2.0 * n**3 + 2.0 * n * rows * (n + rows)
+        if self.simplified:  # A M A^T, its factors, and what it takes from M
+            setup += 4.0 * n * p * (n + p) + p**3 / 3.0
+        return setup, 2.0 * (n + rows) ** 2
+
     def _dual(self, qp: QP) -> _Dual:
         return _lift(qp.data.tobytes(), qp.sizes, self.simplified)
 

@@ -14,17 +14,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, difference_jacobian
+from iiwa_dnn.networks.base import Flow, difference_jacobian, kkt_product
 from iiwa_dnn.networks.kkt_system import KktSystem
 from iiwa_dnn.networks.primal_dual import coupling
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
 @dataclass(frozen=True, kw_only=True)
 class GradientNetwork(ZeroingNetwork):
     """The gradient network; the zeroing network's activation and form, no integral, no growth."""
+
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count, for each evaluation, the residual and a product with W^T; sizes are (n, m, p)."""
+        return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side for this program; its derivative by differences."""

@@ -25,9 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow, difference_jacobian
+from iiwa_dnn.networks.base import Flow
 from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, coupling, limits
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -49,8 +49,13 @@ class OneLayerNetwork(PrimalDualNetwork):
         if not 0.0 < self.share < 1.0:
             raise InvalidInputError("share", f"must be in (0, 1), not {self.share}")
 
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count no set-up and a product with H, two with the correction; sizes are (n, m, p)."""
+        setup, two = super().work(sizes)
+        return setup, two if self.corrected else 0.5 * two
+
     def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side for this program; its derivative by differences."""
+        """Make the right-hand side for this program; and its derivative."""
         H = coupling(qp)
         lower, upper = limits(qp)
         constant = np.concatenate([qp.q, qp.b, qp.h])
@@ -60,7 +65,16 @@ class OneLayerNetwork(PrimalDualNetwork):
             step: Vector = np.clip(state - alpha * (H @ state + constant), lower, upper) - state
             return step - alpha * (H @ step) if self.corrected else step
 
-        return Flow(rates, lambda state: difference_jacobian(rates, state))
+        eye = np.eye(constant.size)
+        corrected = eye - alpha * H if self.corrected else eye
+
+        def jacobian(state: Vector) -> Matrix:
+            aim = state - alpha * (H @ state + constant)
+            inside = (aim > lower) & (aim < upper)
+            result: Matrix = corrected @ (np.where(inside[:, None], eye - alpha * H, 0.0) - eye)
+            return result
+
+        return Flow(rates, jacobian)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] that get nearer to every solution, of the corrected form."""

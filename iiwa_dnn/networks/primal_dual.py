@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -37,6 +37,10 @@ class PrimalDualNetwork(Network):
         """Count the states: x and one multiplier for each row."""
         n, m, p = qp.sizes
         return n + m + p
+
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count no set-up and two products with H; sizes are (n, m, p)."""
+        return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""

@@ -26,7 +26,7 @@ from typing import TypeGuard
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.base import Flow, Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
 from iiwa_dnn.qp.layout import (
     Matrix,
@@ -157,6 +157,10 @@ class ProjectionNetwork(Network):
         """Count the states: n + p + m + 2n, 28 for seven joints and the paper's seven rows."""
         n, m, p = qp.sizes
         return 3 * n + p + m
+
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count no set-up and one product with the KKT matrix; sizes are (n, m, p)."""
+        return 0.0, kkt_product(sizes)
 
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program."""

@@ -30,9 +30,15 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
-from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, settings_of
+from iiwa_dnn.networks.base import (
+    Flow,
+    Network,
+    difference_jacobian,
+    kkt_product,
+    settings_of,
+)
 from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
-from iiwa_dnn.qp.layout import Vector
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -65,6 +71,11 @@ class ZeroingNetwork(Network):
         """Count the states: unknowns, their integrals, and a clock for the growing gain."""
         return system_size(qp, self.form) * (1 + (self.integral > 0.0)) + (self.growth > 0.0)
 
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count, for each evaluation, residual, drift and a solved system; sizes are (n, m, p)."""
+        size = sum(sizes) + (2 * sizes[0] if self.form == "smooth" else 0)
+        return 0.0, 2.0 * kkt_product(sizes) + 2.0 * size**3 / 3.0 + 2.0 * size**2
+
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side for a program that stands still."""
         return self._flow(KktSystem(qp, self.form))
@@ -81,13 +92,9 @@ class ZeroingNetwork(Network):
 
         def rates(state: Vector) -> Vector:
             error, drift = system.evaluate(state[:size])
-            wanted = self.activation(error)
-            if self.growth:
-                wanted = (1.0 + abs(state[-1]) ** self.growth) * wanted
-            wanted += drift
+            wanted = self.removal(error, state) + drift
             result = np.ones(state.size)
             if self.integral:
-                wanted += self.integral * state[size : 2 * size]
                 result[size : 2 * size] = error
             try:
                 result[:size] = -np.linalg.solve(system.matrix, wanted)
@@ -99,6 +106,15 @@ class ZeroingNetwork(Network):
             # Exact at rest; elsewhere it makes of a long implicit step Newton's.
             return Flow(rates, lambda state: -np.eye(size))
         return Flow(rates, lambda state: difference_jacobian(rates, state))
+
+    def removal(self, error: Vector, state: Vector) -> Vector:
+        """Return the rate (size,) at which a residual (size,) is removed at a state."""
+        wanted = self.activation(error)
+        if self.growth:
+            wanted = (1.0 + abs(state[-1]) ** self.growth) * wanted
+        if self.integral:
+            wanted = wanted + self.integral * state[error.size : 2 * error.size]
+        return wanted
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known."""

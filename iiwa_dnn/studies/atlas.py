@@ -1,22 +1,26 @@
-"""The atlas: networks, schemes and disturbances compared at equal compute, paired by seed.
+"""The atlas: networks, schemes and disturbances compared at equal work, paired by seed.
 
-Every network drives the paper's arm along a heart, in a loop that gives it so many evaluations a
-control period: right-hand sides, or linear systems where it solves them. Each one's time constant
-is as short as its discretisation is stable with, so that none is slowed down by a choice of ours.
-A network of one's own is one line in `NETWORKS`.
+Every network drives the paper's arm along a path, in a loop that grants it so many floating-point
+operations a control period, a program's set-up included. All gains follow one rule: a share of the
+largest step that is stable with the linearised network, the best of `SHARES` in an undisturbed run,
+with one evaluation a period or with as many as the work allows.
+A network, scheme, reference or disturbance of one's own is named as ``module:NAME`` or
+``file.py:NAME``.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain, product
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, NotFoundError
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
 from iiwa_dnn.networks import (
     DualNetwork,
     Network,
+    NoiseSuppressingNetwork,
     PrimalDualNetwork,
     ProjectionNetwork,
     SimplifiedDualNetwork,
@@ -24,8 +28,9 @@ from iiwa_dnn.networks import (
 from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.activations import FixedTime, PowerSigmoid, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
+from iiwa_dnn.networks.base import kkt_product
 from iiwa_dnn.networks.gradient import GradientNetwork
-from iiwa_dnn.networks.integrators import SAFETY, ExplicitEuler, ImplicitEuler
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import (
@@ -39,35 +44,55 @@ from iiwa_dnn.networks.tracking import (
 )
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 from iiwa_dnn.qp import QP, Vector
-from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
+from iiwa_dnn.qp.layout import Sizes
+from iiwa_dnn.references import Circle, Heart, Lissajous, Reference
+from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT, Disturbance
 from iiwa_dnn.studies.atlas_loop import DisturbedLoop
-from iiwa_dnn.studies.atlas_schemes import SCHEMES
+from iiwa_dnn.studies.atlas_schemes import FREE, SCHEMES
+from iiwa_dnn.studies.outside import digest, find_part
 from iiwa_dnn.studies.runs import paper_robot
-from iiwa_dnn.studies.sweeps import Outcome
+from iiwa_dnn.studies.sweeps import Outcome, Settings
 
 DURATION = 0.5
 """Length of a run [s]."""
 
+SHARES = (0.05, 0.15, 0.4, 0.95)
+"""Shares of the linear limit among which every network's gain is chosen."""
+
+PERIODS = (4e-3, 2e-3, 1e-3, 5e-4)
+"""Control periods [s] against which the order of a formula is found."""
+
+UNLIMITED = 1e9
+"""Operations a control period that allow any number of evaluations."""
+
+PATHS: dict[str, Callable[[], Reference]] = {
+    "heart": partial(Heart, period=2.0),
+    "circle": partial(Circle, radius=0.05, period=2.0),
+    "lissajous": partial(Lissajous, amplitudes=(0.05, 0.05, 0.02), period=2.0),
+}
+"""Paths by name; the seeds take them in turn."""
+
 
 @dataclass(frozen=True)
 class Paced(ExplicitEuler):
-    """Explicit Euler by `substeps` steps, each as long as the network is stable with.
+    """Explicit Euler by `substeps` steps, each a share of the longest that is linearly stable.
 
     Attributes:
-        base: Network whose stable step is taken; None takes that of the network itself.
+        share: Share of `Network.linear_limit`.
     """
 
-    base: Network | None = None
+    share: float = 0.95
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place, whatever the duration; returns the steps taken.
 
         Raises:
-            InvalidInputError: The network knows no stable step.
+            InvalidInputError: No step is stable.
         """
-        step = SAFETY * (self.base or network).stable_step(qp, state)
+        step = self.share * network.linear_limit(qp, state)
         if not step > 0.0:
-            raise InvalidInputError("network", "knows no stable step: take `settled`", network)
+            raise InvalidInputError("network", "has no stable step: take `settled`", network)
         rates = network.flow(qp).rates
         count = self.substeps or 1
         for _ in range(count):
@@ -89,39 +114,70 @@ class Entry(NamedTuple):
     """A network of the atlas.
 
     Attributes:
-        make: Makes its solver from the evaluations a control period.
-        systems: Whether an evaluation solves a linear system.
+        network: The network, or what is documented in its place.
+        make: Makes its solver from the evaluations a control period, the share of the linear
+            limit that is its gain, and the control period [s].
+        work: Operations of a program's set-up and of an evaluation, from the sizes (n, m, p).
+        paced: Whether it has a gain.
     """
 
-    make: Callable[[int], DNNSolver]
-    systems: bool = False
+    network: Any
+    make: Callable[[int, float, float], DNNSolver]
+    work: Callable[[Sizes], tuple[float, float]]
+    paced: bool = True
 
 
-def still(network: Network, systems: bool = False) -> Entry:
+def still(network: Network) -> Entry:
     """Return the entry of a network for a program that stands still."""
-    return Entry(lambda count: DNNSolver(network, follower=Paced(count)), systems)
+
+    def make(count: int, share: float, dt: float) -> DNNSolver:
+        return DNNSolver(network, follower=Paced(count, share=share))
+
+    return Entry(network, make, network.work)
 
 
 def settled(network: Network) -> Entry:
     """Return the entry of a network that is integrated implicitly towards rest."""
-    return Entry(lambda count: DNNSolver(network, follower=CutOff(max_steps=count)), systems=True)
+
+    def make(count: int, share: float, dt: float) -> DNNSolver:
+        return DNNSolver(network, follower=CutOff(max_steps=count))
+
+    return Entry(network, make, _condensed, paced=False)
 
 
-def activated(network: Network, activation: Any) -> Entry:
-    """Return the entry of an activated network, with the steps of the network itself."""
-    whole = ActivatedNetwork(network=network, activation=activation)
-    systems = isinstance(network, SimplifiedDualNetwork)
-    return Entry(lambda count: DNNSolver(whole, follower=Paced(count, base=network)), systems)
+def zeroing(formula: Formula = EULER, **options: Any) -> Entry:
+    """Return the entry of a zeroing network, its gain a share of the formula's limit."""
+    return follows(ZeroingNetwork(**options), formula)
 
 
-def zeroing(gain: float, formula: Formula = EULER, **options: Any) -> Entry:
-    """Return the entry of a zeroing network with a gain tau / rho."""
+def follows(network: Network, formula: Formula = EULER) -> Entry:
+    """Return the entry of a network that follows a program that moves."""
 
-    def make(count: int) -> DNNSolver:
-        network = ZeroingNetwork(rho=DT / count / gain, **options)
-        return TrackingSolver(network, formula, count)
+    def make(count: int, share: float, dt: float) -> DNNSolver:
+        rho = dt / count / (share * formula.limit)
+        return TrackingSolver(replace(network, rho=rho), formula, count)
 
-    return Entry(make, systems=True)
+    return Entry(network, make, network.work)
+
+
+def _condensed(sizes: Sizes) -> tuple[float, float]:
+    """Count the operations of an implicit step: the condensed matrix, its factors, residuals."""
+    n, m, p = sizes
+    return 0.0, 2.0 * n**2 * (m + p) + n**3 / 3.0 + 2.0 * n**2 + 2.0 * kkt_product(sizes)
+
+
+def _factorised(sizes: Sizes) -> tuple[float, float]:
+    """Count the operations of ADMM: one factorisation a program, one substitution an iteration."""
+    size = sizes[0] + sum(sizes)
+    return size**3 / 3.0, 2.0 * size**2
+
+
+def _admm(count: int, share: float, dt: float) -> DNNSolver:
+    return AdmmSolver(count)
+
+
+def _activated(network: Network, activation: Any) -> Entry:
+    return still(ActivatedNetwork(network=network, activation=activation))
 
 
 NETWORKS: dict[str, Entry] = {
@@ -130,94 +186,234 @@ NETWORKS: dict[str, Entry] = {
     "one-layer": still(OneLayerNetwork(corrected=False)),
     "one-layer, corrected": still(OneLayerNetwork()),
     "dual": still(DualNetwork()),
-    "simplified dual": still(SimplifiedDualNetwork(), systems=True),
+    "simplified dual": still(SimplifiedDualNetwork()),
     "primal-dual": still(PrimalDualNetwork()),
     "gradient": still(GradientNetwork()),
-    "dual, finite time": activated(DualNetwork(), SignBiPower()),
-    "dual, fixed time": activated(DualNetwork(), FixedTime()),
-    "primal-dual, fixed time": activated(PrimalDualNetwork(), FixedTime()),
-    "simplified dual, predefined time": activated(SimplifiedDualNetwork(), PredefinedTime()),
-    "zeroing, Euler": zeroing(1.0),
-    "zeroing, Taylor 3": zeroing(0.24, TAYLOR3),
-    "zeroing, FIFD": zeroing(0.59, FIFD),
-    "zeroing, Taylor 4": zeroing(0.074, TAYLOR4),
-    "zeroing, Taylor 5": zeroing(0.16, TAYLOR5),
-    "zeroing, power-sigmoid": zeroing(0.3, activation=PowerSigmoid()),
-    "zeroing, sign-bi-power": zeroing(0.3, activation=SignBiPower()),
-    "zeroing, fixed time": zeroing(0.3, activation=FixedTime()),
-    "zeroing, predefined time": zeroing(0.1, activation=PredefinedTime()),
-    "zeroing, noise-tolerant": zeroing(0.5, integral=0.25),
-    "zeroing, growing gain": zeroing(0.05, growth=0.5),
-    "zeroing, smooth": zeroing(1.0, form="smooth"),
+    "dual, finite time": _activated(DualNetwork(), SignBiPower()),
+    "dual, fixed time": _activated(DualNetwork(), FixedTime()),
+    "primal-dual, fixed time": _activated(PrimalDualNetwork(), FixedTime()),
+    "simplified dual, predefined time": _activated(SimplifiedDualNetwork(), PredefinedTime()),
+    "zeroing, Euler": zeroing(),
+    "zeroing, Taylor 3": zeroing(TAYLOR3),
+    "zeroing, FIFD": zeroing(FIFD),
+    "zeroing, Taylor 4": zeroing(TAYLOR4),
+    "zeroing, Taylor 5": zeroing(TAYLOR5),
+    "zeroing, power-sigmoid": zeroing(activation=PowerSigmoid()),
+    "zeroing, sign-bi-power": zeroing(activation=SignBiPower()),
+    "zeroing, fixed time": zeroing(activation=FixedTime()),
+    "zeroing, predefined time": zeroing(activation=PredefinedTime()),
+    "zeroing, noise-tolerant": zeroing(integral=0.25),
+    "zeroing, growing gain": zeroing(growth=0.5),
+    "zeroing, smooth": zeroing(form="smooth"),
+    "noise-suppressing": follows(NoiseSuppressingNetwork(form="projected")),
     "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
-    "ADMM (OSQP)": Entry(AdmmSolver, systems=True),
+    "ADMM (OSQP)": Entry(AdmmSolver, _admm, _factorised, paced=False),
 }
 """Networks of the atlas by name, and the yardstick."""
 
-MEASURES = ("rms_error_m", "max_error_m", "rms_residual", "advance_us")
+MEASURES = ("residual", "rms_error_m")
 
 
-def cell(
-    network: str, scheme: str, disturbance: str, evaluations: int, seeds: int
-) -> dict[str, Any]:
-    """Return the settings of one cell: all seeds of a combination, one where there is no chance."""
-    names = {"network": network, "scheme": scheme, "disturbance": disturbance}
-    return {**names, "evaluations": evaluations, "seeds": 1 if disturbance == "none" else seeds}
-
-
-def cells(
-    seeds: int,
-    others: int,
-    evaluations: Sequence[int],
-    schemes: Sequence[str] = tuple(SCHEMES),
-    networks: Sequence[str] = (),
-) -> list[dict[str, Any]]:
-    """List the cells: every network with every scheme and disturbance, and the budgets.
-
-    Args:
-        seeds: Runs of each cell with chance in it, with the first scheme.
-        others: Runs of each cell with chance in it, with another scheme or budget.
-        evaluations: Evaluations a control period: all of them with the first scheme, undisturbed
-            and with white noise; the middle one with everything.
-        schemes: Names of the schemes.
-        networks: Names of the networks; none: all.
+def find_network(name: str) -> Entry:
+    """Return a network's entry by its name, or of one from outside: an `Entry` or a network.
 
     Raises:
-        InvalidInputError: A scheme is not one of `SCHEMES`, or there is none.
-        NotFoundError: A network is not one of `NETWORKS`.
+        InvalidInputError: The object is neither a network nor an entry; and as of `find_part`.
+        NotFoundError: There is no such network.
     """
-    if not schemes or not set(schemes) <= SCHEMES.keys():
-        raise InvalidInputError("schemes", f"must be of {list(SCHEMES)}, not {list(schemes)}")
-    networks = networks or tuple(NETWORKS)
-    for name in networks:
-        if name not in NETWORKS:
-            raise NotFoundError("network", name, NETWORKS)
-    middle = evaluations[len(evaluations) // 2]
-    by_scheme = [
-        [
-            cell(network, scheme, kind, middle, seeds if scheme == schemes[0] else others)
-            for network, kind in product(networks, DISTURBANCES)
-        ]
-        for scheme in schemes
-    ]
-    budgets = [
-        cell(network, schemes[0], kind, count, others)
-        for network, kind, count in product(networks, ("none", "white"), evaluations)
-        if count != middle
-    ]
-    return [*by_scheme[0], *budgets, *chain(*by_scheme[1:])]
+    found = _made(find_part("network", name, NETWORKS), Entry)
+    if isinstance(found, Network):
+        return still(found)
+    if not isinstance(found, Entry):
+        raise InvalidInputError("networks", f"{name} is no network: {found!r}", found)
+    return found
 
 
-def measure(settings: Mapping[str, Any]) -> Outcome:
+def _find(kind: str, name: str, known: Mapping[str, Any], wanted: type[Any]) -> Any:
+    """Return a scheme or a reference by its name, made anew, or from outside."""
+    found = _made(find_part(kind, name, known), wanted)
+    if not isinstance(found, wanted):
+        raise InvalidInputError(kind, f"{name} is no {wanted.__name__}: {found!r}", found)
+    return found
+
+
+def _made(part: Any, wanted: type[Any]) -> Any:
+    """Call a class or a function without arguments; return anything else as it is."""
+    if isinstance(part, wanted) or not callable(part):
+        return part
+    return part()
+
+
+def find_disturbance(name: str) -> type[Disturbance]:
+    """Return the class of a disturbance by its name, or from outside; errors as of `find_part`."""
+    found: Any = find_part("disturbance", name, DISTURBANCES)
+    if not (isinstance(found, type) and issubclass(found, Disturbance)):
+        raise InvalidInputError("disturbances", f"{name} is no class of a Disturbance", found)
+    return found
+
+
+def cell(network: str, **changes: Any) -> dict[str, Any]:
+    """Return the settings of one cell, all runs of a combination, with some of them changed.
+
+    They are the network's name; ``scheme`` and ``disturbance``, names; ``work``, operations a
+    control period, and ``most``, evaluations at most; ``share`` of the linear limit; ``seeds``, a
+    number; ``paths``, names that the seeds take in turn; ``dt`` [s]; and a hash of every file from
+    outside, so that a cell is computed anew after a change of it.
+    """
+    settings = {
+        "network": network,
+        "scheme": next(iter(SCHEMES)),
+        "disturbance": "none",
+        "work": 10_000.0,
+        "most": None,
+        "share": SHARES[-1],
+        "seeds": 1,
+        "paths": list(PATHS),
+        "dt": DT,
+        **changes,
+    }
+    if settings["disturbance"] == "none":  # only the paths differ
+        settings["seeds"] = min(settings["seeds"], len(settings["paths"]))
+    parts = [(network, NETWORKS), (settings["scheme"], SCHEMES)]
+    parts += [(settings["disturbance"], DISTURBANCES)]
+    parts += [(path, PATHS) for path in settings["paths"]]
+    files = [digest(name, cast("Mapping[str, object]", known)) for name, known in parts]
+    return {**settings, "files": [file for file in files if file]}
+
+
+class Size(NamedTuple):
+    """Size of a league.
+
+    Attributes:
+        networks: Names of the networks.
+        schemes: Names of the schemes.
+        disturbances: Names of the disturbances.
+        paths: Names of the paths.
+        work: Operations a control period; the middle one with everything, the others with the
+            first scheme, undisturbed and with white noise.
+        seeds: Runs of each cell with chance in it, with the first scheme.
+        others: Runs of each such cell with another scheme or budget.
+    """
+
+    networks: Sequence[str]
+    schemes: Sequence[str]
+    disturbances: Sequence[str]
+    paths: Sequence[str]
+    work: Sequence[float]
+    seeds: int
+    others: int
+
+    @property
+    def middle(self) -> float:
+        """The budget with which everything is run."""
+        return self.work[len(self.work) // 2]
+
+    def check(self) -> None:
+        """Check that all parts are there; raises NotFoundError or InvalidInputError."""
+        for network in self.networks:
+            find_network(network)
+        for scheme in self.schemes:
+            _find("scheme", scheme, SCHEMES, Scheme)
+        for disturbance in self.disturbances:
+            find_disturbance(disturbance)
+        for path in self.paths:
+            _find("reference", path, PATHS, Reference)
+
+
+def gain_cells(size: Size) -> list[dict[str, Any]]:
+    """List the cells of the search for gains, undisturbed, with the first scheme.
+
+    They are every share with one evaluation a period and with all that the work allows.
+    """
+    common = {"scheme": size.schemes[0], "work": size.middle, "paths": list(size.paths)[:1]}
+    return [
+        cell(network, share=share, most=most, **common)
+        for network in size.networks
+        for share, most in product(SHARES, (None, 1))
+        if find_network(network).paced or (share == SHARES[-1] and most is None)
+    ]
+
+
+def best_gains(
+    cells: Iterable[Settings], results: Iterable[Mapping[str, Any]]
+) -> dict[str, dict[str, Any]]:
+    """Choose each network's ``share`` and ``most``: those with the smallest residual."""
+    best: dict[str, float] = {}
+    gains = {}
+    for settings, result in zip(cells, results, strict=True):
+        name = settings["network"]
+        residual = result["residual"][0]
+        found = np.inf if residual is None else residual
+        if name not in best or found < best[name]:
+            best[name] = found
+            gains[name] = {"share": settings["share"], "most": settings["most"]}
+    return gains
+
+
+def of_league(scheme: str, disturbance: str) -> str:
+    """Return the scheme of a league's column: where a joint is locked, the orientation is free.
+
+    Six joints cannot hold it on the path, so that the program would have no solution.
+    """
+    locked = disturbance == "locked" and scheme == next(iter(SCHEMES))
+    return FREE if locked else scheme
+
+
+def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """List the cells of a league whose gains are known.
+
+    Every network with every disturbance, each scheme in turn; the other budgets; and the control
+    periods for the zeroing networks.
+    """
+    first = size.schemes[0]
+    pairs = [(scheme, kind) for scheme in size.schemes for kind in size.disturbances]
+
+    def more(network: str, **changes: Any) -> dict[str, Any]:
+        return cell(
+            network,
+            **{
+                "scheme": first,
+                "work": size.middle,
+                **gains[network],
+                "seeds": size.others,
+                "paths": list(size.paths),
+                **changes,
+            },
+        )
+
+    found = [
+        more(
+            network,
+            scheme=of_league(scheme, kind),
+            disturbance=kind,
+            seeds=size.seeds if scheme == first else size.others,
+        )
+        for network, (scheme, kind) in product(size.networks, pairs)
+    ]
+    found += [
+        more(network, disturbance=kind, work=work)
+        for network, kind, work in product(size.networks, ("none", "white"), size.work)
+        if work != size.middle and kind in size.disturbances
+    ]
+    found += [
+        more(network, dt=dt, work=UNLIMITED, most=1, seeds=1)
+        for network, dt in product(size.networks, PERIODS)
+        if isinstance(find_network(network).network, ZeroingNetwork)
+    ]
+    unique = {repr(settings): settings for settings in found}
+    return list(unique.values())
+
+
+def measure(settings: Settings) -> Outcome:
     """Carry out the runs of one cell.
 
     Returns:
         For each of `MEASURES` a list with a number for each seed, None where the run failed: the
-        tool's position error over the second half of the run [m], its largest value, the KKT
-        residual of the answers over that half, and the time of an answer [us]; ``failures``, the
-        reasons.
+        root mean squares, over the second half of the run, of the answers' KKT residual and of the
+        tool's position error [m]. ``failures``, the reasons; ``taken``, the evaluations a control
+        period and their operations.
     """
-    runs = []
+    runs: list[dict[str, Any]] = []
     failures = []
     for seed in range(settings["seeds"]):
         try:
@@ -227,24 +423,48 @@ def measure(settings: Mapping[str, Any]) -> Outcome:
             runs.append(dict.fromkeys(MEASURES))
             failures.append(str(error))
     values: dict[str, Any] = {name: [run[name] for run in runs] for name in MEASURES}
-    return Outcome({**values, "failures": sorted(set(failures))})
+    taken = next((run["taken"] for run in runs if "taken" in run), None)
+    return Outcome({**values, "taken": taken, "failures": sorted(set(failures))})
 
 
-def _run(settings: Mapping[str, Any], seed: int) -> dict[str, Any]:
+def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
+    """Count the evaluations that a number of operations a control period allows.
+
+    Raises:
+        InvalidInputError: Not even one is possible.
+    """
+    setup, each = entry.work(sizes)
+    count = int((work - setup) // each)
+    if count < 1:
+        raise InvalidInputError("work", f"one evaluation takes {setup + each:.0f} operations")
+    return count
+
+
+def _run(settings: Settings, seed: int) -> dict[str, Any]:
     """Drive the arm once."""
-    steps = round(DURATION / DT)
+    dt = settings["dt"]
+    steps = round(DURATION / dt)
     robot = paper_robot()
-    scheme = SCHEMES[settings["scheme"]]()
-    solver = NETWORKS[settings["network"]].make(settings["evaluations"])
-    draw = DISTURBANCES[settings["disturbance"]]
-    disturbance = draw(robot, np.random.default_rng(seed), steps)
-    loop = DisturbedLoop(scheme.program(robot), solver, disturbance, steps)
+    scheme = _find("scheme", settings["scheme"], SCHEMES, Scheme)
+    path = settings["paths"][seed % len(settings["paths"])]
+    reference = _find("reference", path, PATHS, Reference)
+    program = scheme.program(robot)
+    entry = find_network(settings["network"])
+    count = evaluations_within(entry, program.sizes, settings["work"])
+    if settings["most"] is not None:
+        count = min(count, settings["most"])
+    solver = entry.make(count, settings["share"], dt)
+    draw = find_disturbance(settings["disturbance"])
+    disturbance = draw(robot, np.random.default_rng(seed), steps, dt)
+    loop = DisturbedLoop(program, solver, disturbance, reference, steps, dt)
     taken = [loop.step(k) for k in range(steps)]
-    errors, residuals, seconds = np.array(taken).T
+    errors, residuals = np.array(taken).T
     half = slice(steps // 2, None)
+    if not np.isfinite(residuals[half]).all():
+        raise IiwaDnnError("the residual is not finite")
+    setup, each = entry.work(program.sizes)
     return {
+        "residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
         "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),
-        "max_error_m": float(errors[half].max()),
-        "rms_residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
-        "advance_us": 1e6 * float(seconds.sum()) / steps,
+        "taken": [count, setup + count * each],
     }

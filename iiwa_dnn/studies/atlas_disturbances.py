@@ -55,6 +55,7 @@ class Disturbance:
 
     Attributes:
         robot: The true arm, n joints.
+        dt: Control period [s].
         rng: Source of everything random.
         direction: Direction in the space of the states, (100,).
         noise: Noise that is added to the network's state after each step, (steps, 100), or None.
@@ -62,12 +63,13 @@ class Disturbance:
         moment: Step from which on it has lost it.
     """
 
-    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int) -> None:
-        """Draw a disturbance of a run of so many steps: a seed draws the same for every kind."""
+    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int, dt: float = DT) -> None:
+        """Draw a disturbance of so many periods of dt [s]: a seed draws the same for every kind."""
+        self.dt = dt
         self.robot = robot
         self.rng = rng
         self.direction: Vector = rng.standard_normal(100) / np.sqrt(7.0)
-        self.noise = self.noise_at(DT * np.arange(steps, dtype=np.float64))
+        self.noise = self.noise_at(dt * np.arange(steps, dtype=np.float64))
         self.joint = int(rng.integers(robot.dof))
         self.moment = int(rng.integers(steps // 2))
 
@@ -101,7 +103,7 @@ class ConstantNoise(Disturbance):
 
     def noise_at(self, t: Vector) -> Matrix:
         """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
-        return np.tile(DT * self.direction, (t.size, 1))
+        return np.tile(self.dt * self.direction, (t.size, 1))
 
 
 class Ramp(Disturbance):
@@ -109,7 +111,7 @@ class Ramp(Disturbance):
 
     def noise_at(self, t: Vector) -> Matrix:
         """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
-        return DT * (t[:, np.newaxis] * self.direction)
+        return self.dt * (t[:, np.newaxis] * self.direction)
 
 
 class Sinusoid(Disturbance):
@@ -117,7 +119,7 @@ class Sinusoid(Disturbance):
 
     def noise_at(self, t: Vector) -> Matrix:
         """Return the noise in the network's state at times t (steps,) [s], (steps, 100)."""
-        return DT * (np.sin(10.0 * np.pi * t)[:, np.newaxis] * self.direction)
+        return self.dt * (np.sin(10.0 * np.pi * t)[:, np.newaxis] * self.direction)
 
 
 class WhiteNoise(Disturbance):
@@ -139,9 +141,9 @@ class MeasurementNoise(Disturbance):
 class OtherArm(Disturbance):
     """An arm with other links than the controller's model, and a tool whose pose is measured."""
 
-    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int) -> None:
+    def __init__(self, robot: Robot, rng: np.random.Generator, steps: int, dt: float = DT) -> None:
         """Draw the lengths of the links."""
-        super().__init__(other_arm(robot, rng), rng, steps)
+        super().__init__(other_arm(robot, rng), rng, steps, dt)
 
     def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
         """Move the target (18,) by the model's error of the placement (12,); q is in [rad]."""
@@ -154,7 +156,7 @@ class LockedJoint(Disturbance):
     def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
         """Fix the joint by its bounds; the velocity (n,) is in [rad/s]."""
         if k >= self.moment:
-            value = -velocity[self.joint] / DT if accelerates else 0.0
+            value = -velocity[self.joint] / self.dt if accelerates else 0.0
             qp.lb[self.joint] = value
             qp.ub[self.joint] = value
 

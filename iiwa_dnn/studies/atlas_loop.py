@@ -1,6 +1,5 @@
 """The loop of the atlas: an arm, a network and a disturbance, step by step."""
 
-import time
 from typing import NamedTuple
 
 import numpy as np
@@ -8,15 +7,13 @@ import numpy as np
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Vector
-from iiwa_dnn.references import Heart
+from iiwa_dnn.references import Reference
+from iiwa_dnn.references.base import Ahead
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.atlas_disturbances import DT, Disturbance
-
-PERIOD = 2.0
-"""Time of a whole heart [s]."""
+from iiwa_dnn.studies.atlas_disturbances import Disturbance
 
 
 class Judged(NamedTuple):
@@ -25,16 +22,14 @@ class Judged(NamedTuple):
     Attributes:
         error: Distance of the tool from its target before the step [m].
         residual: Largest KKT residual of the answer.
-        seconds: Wall time of the answer [s].
     """
 
     error: float
     residual: float
-    seconds: float
 
 
 class DisturbedLoop:
-    """The paper's arm along a heart, closed by a network over a disturbed `StepProgram`.
+    """The paper's arm along a path, closed by a network over a disturbed `StepProgram`.
 
     `iiwa_dnn.simulation.Loop` is not used: the disturbances act inside the controller's step, on
     the Jacobian and the target before a program is written, on its bounds before it is answered,
@@ -48,9 +43,15 @@ class DisturbedLoop:
     """
 
     def __init__(
-        self, program: StepProgram, solver: DNNSolver, disturbance: Disturbance, steps: int
+        self,
+        program: StepProgram,
+        solver: DNNSolver,
+        disturbance: Disturbance,
+        reference: Reference,
+        steps: int,
+        dt: float,
     ) -> None:
-        """Put the arm at rest at the paper's start, for so many steps at most."""
+        """Put the arm at rest at the paper's start, for so many periods of dt [s] at most."""
         self.program = program
         self.solver = solver
         self.disturbance = disturbance
@@ -59,8 +60,10 @@ class DisturbedLoop:
         self._past = np.zeros((3, self.q.size))
         self._qp = QP.from_data(np.zeros(program.data_size), program.sizes)
         start = Configuration(disturbance.robot, self.q)
-        self._heart = Heart(period=PERIOD).anchored(start)
-        self._targets = self._heart.sample(DT * np.arange(steps)).data
+        self._dt = dt
+        self._reference = reference.anchored(start)
+        path = Ahead(self._reference, dt) if program.ahead else self._reference
+        self._targets = path.sample(dt * np.arange(steps)).data
 
     def step(self, k: int) -> Judged:
         """Take step k.
@@ -74,9 +77,9 @@ class DisturbedLoop:
         if not error < 1.0:
             raise IiwaDnnError(f"the tool is {error:.2g} m away")
         self._write(k, target, tool)
-        x, residual, seconds = self._answer(k)
+        x, residual = self._answer(k)
         self._move(k, x)
-        return Judged(error, residual, seconds)
+        return Judged(error, residual)
 
     def _tool(self) -> Vector:
         """Return the true placement of the tool, (12,)."""
@@ -91,37 +94,35 @@ class DisturbedLoop:
         program.kinematics.update(seen)
         self._past[0] = seen
         self.disturbance.mislead(program, target, tool, self.q)
-        t = k * DT
-        wanted = self._heart.accelerations(t) if program.accelerates else None
-        program.write(self._qp.data, target.reshape(1, -1), self._past, DT, t, wanted)
+        t = k * self._dt
+        wanted = self._reference.accelerations(t) if program.accelerates else None
+        program.write(self._qp.data, target.reshape(1, -1), self._past, self._dt, t, wanted)
         self.disturbance.constrain(k, self._qp, self._past[1], program.accelerates)
 
-    def _answer(self, k: int) -> tuple[Vector, float, float]:
-        """Advance the network; return x, its largest KKT residual and the wall time [s]."""
+    def _answer(self, k: int) -> tuple[Vector, float]:
+        """Advance the network; return x and its largest KKT residual."""
         qp = self._qp
-        began = time.perf_counter()
-        answer = self.solver.advance(qp, DT)
-        seconds = time.perf_counter() - began
+        answer = self.solver.advance(qp, self._dt)
         state = self.solver.warm_state(qp.sizes)
         if state is None:
             raise IiwaDnnError("the state is not finite")
         noise = self.disturbance.noise
         if noise is None:
-            return answer.x, answer.residuals.largest, seconds
+            return answer.x, answer.residuals.largest
         network = self.solver.network
         width = self.q.size if network.carries_x else state.size
         state[:width] += noise[k, :width]
         point = np.empty_like(answer.point)
         residual = max(network.read(qp, state, point))
-        return point, residual, seconds
+        return point, residual
 
     def _move(self, k: int, x: Vector) -> None:
         """Move the arm by the network's x, whose first n are velocities or accelerations."""
         last = self._past[1].copy()
         velocity: Vector = x[: self.q.size].copy()
         if self.program.accelerates:
-            velocity = last + DT * velocity
+            velocity = last + self._dt * velocity
         self.disturbance.hold(k, velocity)
         self._past[1] = velocity
         mean = 0.5 * (last + velocity) if self.program.accelerates else velocity
-        self.q = self.q + DT * mean
+        self.q = self.q + self._dt * mean

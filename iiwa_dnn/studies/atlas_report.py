@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,19 +12,26 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import matplotlib
 import numpy as np
 
-from iiwa_dnn.results.markdown import markdown_table, number, save_markdown
-from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.studies.atlas import MEASURES, NETWORKS
-from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT
+from iiwa_dnn.files import write_text
+from iiwa_dnn.results.markdown import number, save_markdown
+from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
+from iiwa_dnn.results.publication import Table
+from iiwa_dnn.studies.atlas import MEASURES, UNLIMITED, Size, find_network, of_league
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from iiwa_dnn.qp import Vector
+
 Row = Mapping[str, Any]
 PAPER = "projection (the paper's)"
-_MARKERS = "os^vD*P"
+SOLVED = 1e-9
+"""Residual below which a program counts as solved."""
+MARGIN = 0.01
+"""Difference of the decimal logarithms below which two networks are equal, 2.3 %."""
 
+_MARKERS = "os^vD*P"
 _number = partial(number, form=".2e", unknown="–")
 
 
@@ -34,32 +43,27 @@ class Claim(NamedTuple):
         better: Name of the network that should be better.
         worse: Name of the other.
         disturbance: Disturbance under which.
-        measure: Measure by which.
     """
 
     text: str
     better: str
     worse: str
     disturbance: str = "none"
-    measure: str = "rms_residual"
 
 
 CLAIMS = (
     Claim("A zeroing network follows where a gradient network lags", "zeroing, Euler", "gradient"),
-    Claim("Three Taylor steps are more exact than Euler", "zeroing, Taylor 3", "zeroing, Euler"),
-    Claim("Four Taylor steps are more exact than three", "zeroing, Taylor 4", "zeroing, Taylor 3"),
-    Claim("The FIFD formula is more exact than Euler", "zeroing, FIFD", "zeroing, Euler"),
     Claim(
-        "A sign-bi-power activation is more exact than a linear one",
+        "Finite time (sign-bi-power) is more exact than linear",
         "zeroing, sign-bi-power", "zeroing, Euler",
     ),
     Claim(
-        "A power-sigmoid activation is more exact than a linear one",
+        "A power-sigmoid activation is more exact than linear",
         "zeroing, power-sigmoid", "zeroing, Euler",
     ),
+    Claim("Fixed time is more exact than linear", "zeroing, fixed time", "zeroing, Euler"),
     Claim(
-        "A predefined-time activation is more exact than a linear one",
-        "zeroing, predefined time", "zeroing, Euler",
+        "Predefined time is more exact than linear", "zeroing, predefined time", "zeroing, Euler"
     ),
     Claim("A growing gain is more exact", "zeroing, growing gain", "zeroing, Euler"),
     Claim(
@@ -67,12 +71,20 @@ CLAIMS = (
         "zeroing, noise-tolerant", "zeroing, Euler", "constant",
     ),
     Claim("The integral bounds a ramp", "zeroing, noise-tolerant", "zeroing, Euler", "ramp"),
+    Claim(
+        "The integral suppresses white noise", "zeroing, noise-tolerant", "zeroing, Euler", "white"
+    ),
     Claim("A finite-time dual network beats the dual", "dual, finite time", "dual"),
     Claim("A fixed-time dual network beats the dual", "dual, fixed time", "dual"),
-    Claim("A dual network needs fewer states and is no worse", "simplified dual", "dual"),
-    Claim("The paper's network beats the dual", PAPER, "dual", measure="rms_error_m"),
-    Claim("The paper's network beats the primal-dual", PAPER, "primal-dual", "none", "rms_error_m"),
-    Claim("A network beats a plain numerical method", PAPER, "ADMM (OSQP)", "none", "rms_error_m"),
+    Claim("A simplified dual network is no worse than the dual", "simplified dual", "dual"),
+    Claim("The correction helps the one-layer network", "one-layer, corrected", "one-layer"),
+    Claim("The paper's network beats the dual", PAPER, "dual"),
+    Claim("The paper's network beats the primal-dual", PAPER, "primal-dual"),
+    Claim("The paper's network beats a plain numerical method", PAPER, "ADMM (OSQP)"),
+    Claim(
+        "The paper's network by implicit steps beats a plain numerical method",
+        "projection, implicit Euler", "ADMM (OSQP)",
+    ),
 )  # fmt: skip
 
 
@@ -84,147 +96,228 @@ def tabulate(cells: Sequence[Row], results: Sequence[Row]) -> list[dict[str, Any
         for name in MEASURES:
             known = [value for value in result[name] if value is not None]
             means[name] = float(np.mean(known)) if known else None
-        lost = sum(value is None for value in result["rms_error_m"])
+        lost = sum(value is None for value in result["residual"])
         rows.append({**cell, "lost": lost, "mean": means, **result})
     return rows
 
 
-def judge(rows: Sequence[Row], claim: Claim) -> dict[str, Any]:
+def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
+    """Find the rows with these settings; the first row's scheme, budget and period by default."""
+    first = {name: rows[0][name] for name in ("work", "dt")}
+    first["scheme"] = of_league(rows[0]["scheme"], wanted.get("disturbance", ""))
+    return [row for row in rows if {**first, **wanted}.items() <= row.items()]
+
+
+def scores(rows: Sequence[Row], network: str) -> Vector | None:
+    """Return the mean decimal logarithm of a network's residual over the disturbances, by seed.
+
+    The undisturbed runs are those of the seed's path. None stands for a network with a failed run.
+    """
+    found = of_every_disturbance(rows, network)
+    if any(row["lost"] for row in found):
+        return None
+    count = max(len(row["residual"]) for row in found)
+    values = [np.resize(np.maximum(row["residual"], SOLVED), count) for row in found]
+    mean: Vector = np.log10(values).mean(axis=0)
+    return mean
+
+
+def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
+    """Return the row of a network for each disturbance, with the league's scheme and budget."""
+    kinds = dict.fromkeys(row["disturbance"] for row in rows)
+    return [find(rows, network=network, disturbance=kind)[0] for kind in kinds]
+
+
+def compare(one: Vector, other: Vector) -> int:
+    """Compare paired numbers, (k,) both: -1 if the first are smaller, 1 if larger, 0 for a tie."""
+    if abs(float(np.mean(one - other))) < MARGIN:
+        return 0
+    if len(one) < 2:
+        return int(np.sign(one[0] - other[0]))
+    return paired_difference(one, other).sign
+
+
+def places(rows: Sequence[Row]) -> dict[str, str]:
+    """Rank the networks, the best first: the first and the last place that each may have.
+
+    Networks with failed runs come last, without a place.
+    """
+    known = {name: scores(rows, name) for name in dict.fromkeys(row["network"] for row in rows)}
+    ranked = {name: score for name, score in known.items() if score is not None}
+    found = {}
+    for name in sorted(ranked, key=lambda name: float(ranked[name].mean())):
+        signs = [compare(ranked[name], other) for other in ranked.values()]
+        first = 1 + signs.count(1)
+        last = len(signs) - signs.count(-1)
+        found[name] = str(first) if first == last else f"{first}–{last}"
+    return found | {name: "–" for name, score in known.items() if score is None}
+
+
+def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
     """Judge a claim by pairs of runs with the first scheme at the middle budget.
 
     Returns:
-        The claim, both means and the verdict: ``holds`` or ``does not hold`` where the whole
-        interval of the difference says so or a network lost runs, else ``undecided``.
+        The claim, its disturbance, both means and the verdict: ``holds`` or ``does not hold``
+        where the interval of the difference of logarithms says so or a network lost runs; ``tie``.
     """
-    # A failed run, None, is NaN here.
-    better, worse = (
-        np.array(find(rows, name, claim.disturbance)[claim.measure], float)
+    pair = [
+        find(rows, network=name, disturbance=claim.disturbance)[0]
         for name in (claim.better, claim.worse)
-    )
-    means = [float(np.mean(values)) for values in (better, worse)]
-    first, second = np.nan_to_num(means, nan=np.inf)
-    sign = int(first > second) - int(first < second)
-    if np.isfinite(means).all() and len(better) > 1:
-        sign = paired_difference(better, worse).sign
-    verdict = {-1: "holds", 0: "undecided", 1: "does not hold"}[sign]
-    known = [None if np.isnan(mean) else mean for mean in means]
-    return {**claim._asdict(), "values": known, "verdict": verdict}
+    ]
+    lost = [bool(row["lost"]) for row in pair]
+    if any(lost):
+        sign = int(lost[0]) - int(lost[1])
+    else:
+        sign = compare(*(np.log10(np.maximum(row["residual"], SOLVED)) for row in pair))
+    verdict = {-1: "holds", 0: "tie", 1: "does not hold"}[sign]
+    means = [_shown(row) for row in pair]
+    return [claim.text, claim.disturbance, *means, verdict]
 
 
-def find(rows: Sequence[Row], network: str, disturbance: str, scheme: str = "") -> Row:
-    """Find the row of a network at the middle budget; the first scheme by default."""
-    wanted = {
-        "network": network,
-        "disturbance": disturbance,
-        "scheme": scheme or rows[0]["scheme"],
-        "evaluations": rows[0]["evaluations"],
-    }
-    return next(row for row in rows if wanted.items() <= row.items())
+def orders(rows: Sequence[Row]) -> list[list[str]]:
+    """Return, for each zeroing network, the residual at each control period and its slope."""
+    found = []
+    of_periods = [row for row in rows if row["work"] == UNLIMITED]
+    for name in dict.fromkeys(row["network"] for row in of_periods):
+        own = [row for row in of_periods if row["network"] == name]
+        means = [row["mean"]["residual"] for row in own]
+        slope = None
+        if None not in means:
+            slope = np.polyfit(np.log([row["dt"] for row in own]), np.log(means), 1)[0]
+        found.append([name, *map(_number, means), number(slope, ".2f", "–")])
+    return found
 
 
 def figure(rows: Sequence[Row]) -> Figure:
-    """Draw error against evaluations, a curve a network: undisturbed, and with white noise."""
-    drawn = new_figure(DOUBLE_COLUMN, 4.6)
-    axes = drawn.subplots(1, 2, sharey=True)
-    names = list(NETWORKS)
-    budgets = sorted({row["evaluations"] for row in rows})
+    """Draw the tool's error against the work of a control period, a curve a network."""
+    drawn = new_figure(COLUMN, 4.6)
+    axis = drawn.subplots()
+    names = list(places(rows))
     colors = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
-    for axis, kind in zip(axes, ("none", "white"), strict=True):
-        for i, name in enumerate(names):
-            wanted = {"network": name, "scheme": rows[0]["scheme"], "disturbance": kind}
-            found = [row for row in rows if wanted.items() <= row.items()]
-            errors = {row["evaluations"]: row["mean"]["rms_error_m"] for row in found}
-            known = sorted(pair for pair in errors.items() if pair[1] is not None)
-            if known:
-                axis.loglog(
-                    *np.transpose(known),
-                    "-" if NETWORKS[name].systems else "--",
-                    color="black" if name == PAPER else colors[i],
-                    marker=_MARKERS[i % 7],
-                    markersize=3,
-                    linewidth=2.0 if name == PAPER else 0.9,
-                    label=name,
-                )
-        axis.set_xticks(budgets, [str(count) for count in budgets])
-        axis.minorticks_off()
-        axis.set_title(f"disturbance: {kind}")
-        axis.set_xlabel("evaluations a control period")
-    axes[0].set_ylabel("RMS position error [m]")
-    handles, labels = axes[0].get_legend_handles_labels()
-    drawn.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=5.5)
+    for i, name in enumerate(names):
+        known = []
+        for work in sorted({row["work"] for row in rows} - {UNLIMITED}):
+            for row in find(rows, network=name, disturbance="none", work=work):
+                if not row["lost"]:
+                    known.append((row["taken"][1], row["mean"]["rms_error_m"]))
+        if known:
+            axis.loglog(
+                *np.transpose(known),
+                color="black" if name == PAPER else colors[i],
+                marker=_MARKERS[i % 7],
+                markersize=3,
+                linewidth=2.0 if name == PAPER else 0.9,
+                label=name,
+            )
+    axis.set_xlabel("operations a control period")
+    axis.set_ylabel("RMS position error [m]")
+    drawn.legend(loc="outside lower center", ncols=2, fontsize=5)
     return drawn
 
 
-def write_report(folder: Path, rows: Sequence[Row], head: str, plots: bool) -> str:
-    """Write ``report.md`` and, where asked for, the figure; returns the text."""
-    names = dict.fromkeys(row["network"] for row in rows)
-    league = sorted(names, key=lambda name: _rank(rows, name))
-    claims = [claim for claim in CLAIMS if {claim.better, claim.worse} <= names.keys()]
+def write_report(folder: Path, size: Size, rows: Sequence[Row], head: str, plots: bool) -> str:
+    """Write ``report.md``, ``cards.md``, the tables and, where asked for, the figure.
+
+    Returns the text of the report.
+    """
+    ranking = places(rows)
     parts = ["# Atlas of neurodynamic control", head]
     if plots:
         write_figures({"atlas": partial(figure, rows)}, folder)
-        parts.append("![Error against evaluations; dashed: products, solid: systems](atlas.png)")
-    parts += [
-        f"## League: RMS position error [m], {rows[0]['scheme']}, {rows[0]['evaluations']} "
-        f"evaluations a period of {DT:g} s",
-        _league_table(rows, league),
-        "A number in brackets counts runs that failed.",
-        "## Schemes: RMS position error [m], undisturbed",
-        _scheme_table(rows, league),
-        "## Every scheme with every disturbance: RMS position error [m]",
-        markdown_table(
-            ("network", "combinations", "with a failed run", "median", "worst"),
-            (_summed(rows, name) for name in league),
-        ),
-        "## Verdicts",
-        _verdict_table(rows, claims),
-    ]
+        parts.append("![Position error against the work of a control period](atlas.png)")
+    for table in _tables(size, rows, ranking):
+        table.save(folder)
+        parts.append(table.markdown())
+    parts.append("A number in brackets counts runs that failed.")
+    write_text(folder / "cards.md", "\n\n".join(card(rows, name, ranking) for name in ranking))
     save_markdown(folder, parts)
     return "\n\n".join(parts)
 
 
-def _league_table(rows: Sequence[Row], league: Sequence[str]) -> str:
-    lines = []
-    for name in league:
-        errors = [_shown(find(rows, name, kind)) for kind in DISTURBANCES]
-        lines.append([name, "system" if NETWORKS[name].systems else "product", *errors])
-    return markdown_table(("network", "evaluation", *DISTURBANCES), lines)
-
-
-def _scheme_table(rows: Sequence[Row], league: Sequence[str]) -> str:
-    schemes = list(dict.fromkeys(row["scheme"] for row in rows))
+def card(rows: Sequence[Row], name: str, ranking: Mapping[str, str]) -> str:
+    """Write a network's card: ODE, source and promises, its work, and what was measured."""
+    entry = find_network(name)
+    kind = entry.network if isinstance(entry.network, type) else type(entry.network)
+    inner = getattr(entry.network, "network", entry.network)
+    modules = dict.fromkeys([kind.__module__, type(inner).__module__])
+    texts = [inspect.getdoc(sys.modules[name]) for name in modules if name != "abc"]
+    found = of_every_disturbance(rows, name)
+    undisturbed = found[0]
+    activation = getattr(entry.network, "activation", None)
     lines = [
-        [name, *(_shown(find(rows, name, "none", scheme)) for scheme in schemes)] for name in league
+        f"# {name}",
+        *(text for text in texts if text),
+        f"- class: `{kind.__name__}`; place in this league: {ranking[name]}",
+        f"- gain: {undisturbed['share']:g} of the linear limit",
     ]
-    return markdown_table(("network", *schemes), lines)
+    if undisturbed["taken"]:
+        count, work = undisturbed["taken"]
+        lines.append(f"- a control period: {count} evaluations, {work:.0f} operations")
+    if activation is not None:
+        lines.append(f"- settles from an error of 1 within {activation.settle_time(1.0):g} rho")
+    lines += [
+        f"- {row['disturbance']}: residual {_shown(row)}, tool {_shown(row, 'rms_error_m')} m"
+        for row in found
+    ]
+    return "\n".join(lines) + "\n"
 
 
-def _verdict_table(rows: Sequence[Row], claims: Sequence[Claim]) -> str:
+def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list[Table]:
+    """Lay out the tables of a report."""
+    head = ["place", "network", "evaluations", *size.disturbances]
+    of = f"{size.schemes[0]}, {size.middle:g} operations a control period"
+    claims = [
+        claim
+        for claim in CLAIMS
+        if {claim.better, claim.worse} <= set(size.networks)
+        and claim.disturbance in size.disturbances
+    ]
+    tables = [
+        Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, "residual")),
+        Table(
+            "errors",
+            f"RMS position error of the tool [m]: {of}",
+            head,
+            _league(rows, ranking, "rms_error_m"),
+        ),
+        Table(
+            "verdicts",
+            "Claims, by the residual of pairs of runs",
+            ["claim", "disturbance", "ours", "beside", "verdict"],
+            [judge(rows, claim) for claim in claims],
+        ),
+    ]
+    found = orders(rows)
+    if found:
+        periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
+        columns = ["network", *(f"{1e3 * dt:g} ms" for dt in periods), "slope"]
+        caption = "RMS KKT residual against the control period, one evaluation each"
+        tables.append(Table("orders", caption, columns, found))
+    if len(size.schemes) > 1 and "none" in size.disturbances:
+        lines = [
+            [name]
+            + [
+                _shown(find(rows, network=name, scheme=scheme, disturbance="none")[0])
+                for scheme in size.schemes
+            ]
+            for name in ranking
+        ]
+        caption = "RMS KKT residual of each scheme, undisturbed"
+        tables.append(Table("schemes", caption, ["network", *size.schemes], lines))
+    return tables
+
+
+def _league(rows: Sequence[Row], ranking: Mapping[str, str], measure: str) -> list[list[str]]:
+    """Lay out a measure of every network under every disturbance, the best network first."""
     lines = []
-    for claim in claims:
-        found = judge(rows, claim)
-        means = map(_number, found["values"])
-        lines.append([claim.text, claim.disturbance, claim.measure, *means, found["verdict"]])
-    return markdown_table(("claim", "disturbance", "measure", "ours", "beside", "verdict"), lines)
+    for name, place in ranking.items():
+        found = of_every_disturbance(rows, name)
+        taken = next((row["taken"] for row in found if row["taken"]), None)
+        count = "–" if taken is None else str(taken[0])
+        lines.append([place, name, count, *(_shown(row, measure) for row in found)])
+    return lines
 
 
-def _rank(rows: Sequence[Row], name: str) -> float:
-    """Compute the mean logarithm of the error over the disturbances; inf if a run was lost."""
-    found = [find(rows, name, kind) for kind in DISTURBANCES]
-    if any(row["lost"] for row in found):
-        return np.inf
-    return float(np.mean([np.log(row["mean"]["rms_error_m"]) for row in found]))
-
-
-def _summed(rows: Sequence[Row], name: str) -> list[str]:
-    """Sum a network up over all schemes and disturbances at the middle budget."""
-    wanted = {"network": name, "evaluations": rows[0]["evaluations"]}
-    own = [row for row in rows if wanted.items() <= row.items()]
-    errors = [row["mean"]["rms_error_m"] for row in own if not row["lost"]]
-    ends = [float(np.median(errors)), max(errors)] if errors else [None, None]
-    return [name, str(len(own)), str(len(own) - len(errors)), *map(_number, ends)]
-
-
-def _shown(row: Row) -> str:
+def _shown(row: Row, measure: str = "residual") -> str:
     lost = f" ({row['lost']} of {row['seeds']})" if row["lost"] else ""
-    return _number(row["mean"]["rms_error_m"]) + lost
+    return _number(row["mean"][measure]) + lost

@@ -1,6 +1,7 @@
 """The schemes of the atlas: those of the package and of the literature, for the paper's arm."""
 
 from collections.abc import Callable
+from typing import Any
 
 from iiwa_dnn.schemes import (
     DoubleIndicator,
@@ -18,10 +19,15 @@ from iiwa_dnn.studies.runs import paper_robot
 
 _TASKS = [PositionTask(), OrientationTask()]
 
+FREE = "double indicator, position only"
+"""Scheme that leaves the orientation free."""
+
+_AHEAD: dict[str, Any] = {"home": START, "tracking": "next", "next_gain": 10.2}
+
 SCHEMES: dict[str, Callable[[], Scheme]] = {
-    "double indicator": lambda: DoubleIndicator(home=START),
-    "double indicator, block rows": lambda: DoubleIndicator(orientation="block", home=START),
-    "double indicator, position only": lambda: DoubleIndicator(orientation="none", home=START),
+    "double indicator": lambda: DoubleIndicator(**_AHEAD),
+    "double indicator, the paper's rows": lambda: DoubleIndicator(orientation="block", home=START),
+    FREE: lambda: DoubleIndicator(orientation="none", **_AHEAD),
     "minimum velocity": literature.minimum_velocity_norm,
     "minimum kinetic energy": lambda: Scheme(
         [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
@@ -37,4 +43,5 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
     "resolved acceleration": literature.resolved_acceleration,
     "minimum torque": literature.minimum_torque,
 }
-"""Schemes by name; the first is the default."""
+"""Schemes by name; the first is the default. The double indicator's rows ask for the target one
+period ahead, so that the joints' Euler steps leave no floor that hides a network's own error."""

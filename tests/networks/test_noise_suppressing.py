@@ -1,0 +1,99 @@
+"""The noise-suppressing network beside the equations of its authors' program, and its promise."""
+
+import numpy as np
+import pytest
+
+from iiwa_dnn import QP, InvalidInputError
+from iiwa_dnn.networks import NoiseSuppressingNetwork
+from iiwa_dnn.networks.kkt_system import EPSILON
+
+GAMMA, ETA, NOISE = 30.0, 20.0, 5.0
+
+
+def clipped(values: np.ndarray) -> np.ndarray:
+    return np.array([min(max(value, -1.0), 1.0) for value in values])
+
+
+def programs_rates(qp: QP, rate: QP, state: np.ndarray) -> np.ndarray:
+    """Equation (12) with M, N, H of (11), block by block, as the authors' program has it."""
+    n, p, k = 4, 2, 8
+    x, y, mu = np.split(state[: n + p + k], [n, n + p])
+    summed = state[n + p + k :]
+    C, ends = np.vstack([np.eye(n), -np.eye(n)]), np.concatenate([qp.ub, -qp.lb])
+    slack = ends - C @ x
+    root = np.sqrt(slack**2 + mu**2 + EPSILON**2)
+    first, second = np.diag(slack / root), np.diag(mu / root)
+    one, none = np.eye(k), np.zeros
+    M = np.block([
+        [qp.P, qp.A.T, C.T],
+        [qp.A, none((p, p)), none((p, k))],
+        [(first - one) @ C, none((k, p)), one - second],
+    ])  # fmt: skip
+    N = np.block([
+        [rate.P, rate.A.T, none((n, k))],
+        [rate.A, none((p, p + k))],
+        [none((k, n + p + k))],
+    ])  # fmt: skip
+    error = np.concatenate([
+        qp.P @ x + qp.q + qp.A.T @ y + C.T @ mu, qp.A @ x - qp.b, slack + mu - root
+    ])  # fmt: skip
+    moved = N @ state[: n + p + k] + np.concatenate([rate.q, -rate.b, none(k)])
+    wanted = -moved - ETA * clipped(error)
+    wanted += -GAMMA * clipped(error + ETA * clipped(summed)) + NOISE
+    return np.concatenate([np.linalg.solve(M, wanted), error])
+
+
+def test_rates_are_those_of_the_authors_equations() -> None:
+    rng = np.random.default_rng(0)
+    network = NoiseSuppressingNetwork(rho=1.0, integral=GAMMA, proportional=ETA, noise=NOISE)
+    for _ in range(20):
+        qp = QP(
+            np.diag(rng.uniform(0.5, 2.0, 4)), rng.standard_normal(4),
+            A=rng.standard_normal((2, 4)), b=rng.standard_normal(2),
+            lb=-rng.uniform(0.5, 1.0, 4), ub=rng.uniform(0.5, 1.0, 4),
+        )  # fmt: skip
+        rate = QP(
+            np.diag(rng.standard_normal(4)), rng.standard_normal(4),
+            A=rng.standard_normal((2, 4)), b=rng.standard_normal(2),
+            lb=np.zeros(4), ub=np.zeros(4),
+        )  # fmt: skip
+        state = 0.3 * rng.standard_normal(network.state_size(qp))
+        found = network.moving_flow(qp, rate).rates(state)
+        expected = programs_rates(qp, rate, state)
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("noise", "rejected"), [(5.0, True), (29.0, True), (60.0, False)])
+def test_a_constant_noise_is_taken_out_below_gamma(noise: float, rejected: bool) -> None:
+    """The integral goes to n / (gamma eta); at gamma + eta and beyond nothing holds it."""
+    qp = QP(np.eye(2), [0.3, -0.2], A=[[1.0, 2.0]], b=[0.4], lb=[-1.0, -1.0], ub=[1.0, 1.0])
+    network = NoiseSuppressingNetwork(
+        rho=1.0, form="projected", integral=GAMMA, proportional=ETA, noise=noise
+    )
+    rates = network.flow(qp).rates
+    state = network.initial_state(qp)
+    for _ in range(4000):
+        state = state + 2e-3 * rates(state)
+    error = rates(state)[3:]
+    assert bool(np.abs(error).max() < 1e-9) is rejected
+    if rejected:
+        np.testing.assert_allclose(state[3:], noise / (GAMMA * ETA), rtol=1e-6)
+
+
+def test_steps_below_the_stable_one_settle_and_others_do_not() -> None:
+    qp = QP(np.eye(2), [0.3, -0.2], A=[[1.0, 2.0]], b=[0.4], lb=[-1.0, -1.0], ub=[1.0, 1.0])
+    network = NoiseSuppressingNetwork(form="projected", integral=GAMMA, proportional=ETA)
+    limit = network.stable_step(qp)
+    rates = network.flow(qp).rates
+    for share, settles in ((0.95, True), (1.05, False)):
+        state = network.initial_state(qp)
+        for _ in range(500):
+            state = state + share * limit * rates(state)
+        assert bool(np.abs(rates(state)[3:]).max() < 1e-9) is settles
+
+
+def test_parameters_that_make_no_sense_are_named() -> None:
+    with pytest.raises(InvalidInputError, match="proportional"):
+        NoiseSuppressingNetwork(proportional=0.0)
+    with pytest.raises(InvalidInputError, match="noise"):
+        NoiseSuppressingNetwork(noise=np.inf)
