@@ -5,12 +5,12 @@ function as the NCP function (`iiwa_dnn.networks.kkt_system`), and n the noise,
 
 .. math::
 
-    \rho\,\dot E = -\eta\,\Phi(E) - \gamma\,\Phi\Bigl(E + \eta\,\Phi\bigl(\int E\,dt/\rho\bigr)\Bigr)
-        + n, \qquad \Phi(e) = \min(\max(e, -1), 1) .
+    \rho\,\dot E = -\eta\,\Phi(E) - \gamma\,\Phi\bigl(E + \eta\,\Phi(Z)\bigr) + n, \qquad
+    \rho\,\dot Z = E, \qquad \Phi(e) = \min(\max(e, -1), 1) .
 
 Near rest :math:`\Phi` is linear and the integral takes a constant noise out that is below
-:math:`\gamma\,\min(1, \eta)`, with :math:`\int E\,dt/\rho \to n/(\gamma\,\eta)`; it is the
-noise-tolerant zeroing network with the gains :math:`\gamma + \eta` and :math:`\gamma\,\eta`.
+:math:`\gamma\,\min(1, \eta)`, with :math:`Z \to n/(\gamma\,\eta)`; it is the noise-tolerant
+zeroing network with the gains :math:`\gamma + \eta` and :math:`\gamma\,\eta`.
 
 Source: L. Wei, L. Jin et al., "Noise-suppressing neural dynamics for time-dependent constrained
 nonlinear optimization with applications", IEEE Transactions on Systems, Man, and Cybernetics:

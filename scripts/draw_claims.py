@@ -1,0 +1,38 @@
+"""The figure of docs/claims.md: each network's residual, undisturbed and disturbed, at equal work.
+
+    python scripts/draw_claims.py runs/atlas/atlas.json docs/images
+"""
+
+import json
+import sys
+from functools import partial
+from pathlib import Path
+
+from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
+from iiwa_dnn.studies.atlas_report import SOLVED, of_every_disturbance, places
+
+KINDS = {"none": ("o", "0.0"), "constant": ("s", "tab:red"), "white": ("^", "tab:blue")}
+"""Marker and color of each disturbance."""
+
+
+def figure(rows):
+    """Draw a line for each network, the best at the top, and a marker for each disturbance."""
+    names = list(places(rows))[::-1]
+    drawn = new_figure(COLUMN, 0.6 + 0.2 * len(names))
+    axis = drawn.subplots()
+    for height, name in enumerate(names):
+        for row in of_every_disturbance(rows, name):
+            value = row["mean"]["residual"]
+            if row["disturbance"] in KINDS and value is not None:
+                marker, color = KINDS[row["disturbance"]]
+                label = row["disturbance"] if height == 0 else None
+                axis.semilogx(max(value, SOLVED), height, marker, color=color, label=label)
+    axis.set_yticks(range(len(names)), names)
+    axis.set_xlabel("RMS KKT residual")
+    axis.legend(loc="lower right", fontsize=6)
+    return drawn
+
+
+if __name__ == "__main__":
+    cells = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
+    print(*write_figures({"claims": partial(figure, cells)}, Path(sys.argv[2])), sep="\n")
