@@ -1,6 +1,8 @@
 """The figure of docs/claims.md: each network's residual, undisturbed and disturbed, at equal work.
 
     python scripts/draw_claims.py runs/atlas/atlas.json docs/images
+
+The first file is what `iiwa-dnn atlas` leaves behind.
 """
 
 import json
