@@ -31,7 +31,7 @@ def figure(rows):
                 axis.semilogx(max(value, SOLVED), height, marker, color=color, label=label)
     axis.set_yticks(range(len(names)), names)
     axis.set_xlabel("RMS KKT residual")
-    axis.legend(loc="lower right", fontsize=6)
+    axis.legend(loc="lower left", fontsize=6)
     return drawn
 
 
