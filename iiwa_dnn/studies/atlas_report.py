@@ -109,7 +109,7 @@ def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
 
 
 def scores(rows: Sequence[Row], network: str) -> Vector | None:
-    """Return the mean decimal logarithm of a network's residual over the disturbances, by seed.
+    """Return the mean decimal logarithm of a network's residual over the disturbances, (seeds,).
 
     The undisturbed runs are those of the seed's path. None stands for a network with a failed run.
     """
