@@ -85,7 +85,15 @@ from iiwa_dnn.schemes import (
     Step,
     Task,
 )
-from iiwa_dnn.simulation import FrankaPlant, MujocoPlant, Simulation, Trajectory, retime, simulate
+from iiwa_dnn.simulation import (
+    FrankaPlant,
+    FriPlant,
+    MujocoPlant,
+    Simulation,
+    Trajectory,
+    retime,
+    simulate,
+)
 
 __version__ = version("iiwa-dnn")
 
@@ -94,11 +102,11 @@ __all__ = [
     "BatchSolution", "Box", "Capsule", "CenterOfMassTask", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork", "ElbowAngleTask",
-    "ExplicitEuler", "FileError", "FrankaPlant", "GradientNetwork", "HalfSpace", "Heart",
-    "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits", "JointAcceleration",
-    "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy", "Limit", "Line",
-    "Lissajous", "Manipulability", "MissingDependencyError", "MovingTarget", "MujocoPlant",
-    "Network", "NoSolutionError", "NotFoundError", "OnSurface", "OneLayerNetwork",
+    "ExplicitEuler", "FileError", "FrankaPlant", "FriPlant", "GradientNetwork", "HalfSpace",
+    "Heart", "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits",
+    "JointAcceleration", "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy",
+    "Limit", "Line", "Lissajous", "Manipulability", "MissingDependencyError", "MovingTarget",
+    "MujocoPlant", "Network", "NoSolutionError", "NotFoundError", "OnSurface", "OneLayerNetwork",
     "OrientationTask", "PoseTask", "PositionTask", "PostureTask", "PrimalDualNetwork",
     "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference", "RelativePoseTask",
     "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork", "Simulation",

@@ -20,9 +20,10 @@ from iiwa_dnn.schemes.parts import Tracking
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
+from iiwa_dnn.simulation.plants.fri_messages import PORT
 
 Check = Literal["proxqp", "osqp", "both", "proof", "none"]
-PlantName = Literal["ideal", "franka"]
+PlantName = Literal["ideal", "franka", "fri"]
 SHELLS = ("bash", "zsh", "tcsh")
 
 # Options whose default, None or (), the help need not show.
@@ -211,6 +212,26 @@ class ViewOptions:
 
 
 @dataclass(frozen=True)
+class FriRobotOptions:
+    """Answer a client of KUKA's FRI as the robot does, with a simulated LBR iiwa behind it.
+
+    The session ends with the client, at a command that is refused, or at Ctrl-C.
+    """
+
+    command: ClassVar[str] = "fri-robot"
+    robot: str = "iiwa7"  # robot of 7 joints, by its name or by its file
+    q0: _Floats = ()  # joint positions at the start [rad] (none: the robot's start posture)
+    period: float = 5e-3  # time between two messages [s], whole milliseconds
+    host: str = "127.0.0.1"  # address of the client
+    port: int = PORT  # UDP port of the client
+    own_port: int = 0  # UDP port of the robot; 0 takes a free one
+    ideal: bool = False  # joints that move as they are told, as without the package mujoco
+    realtime: bool = True  # periods of their length; otherwise each ends with the client's answer
+    quiet: _Quiet = False  # print nothing but the reason of a failure
+    verbose: _Verbose = False  # print the connection quality and the traceback of an error too
+
+
+@dataclass(frozen=True)
 class SolveOptions:
     """Solve the quadratic program in an .npz file.
 
@@ -251,6 +272,7 @@ _KINDS: tuple[Any, ...] = (
     PhysicsOptions,
     ExportOptions,
     ViewOptions,
+    FriRobotOptions,
     SolveOptions,
     WarmUpOptions,
     CompletionOptions,

@@ -43,7 +43,7 @@ from iiwa_dnn.schemes import (
     Limit,
     Scheme,
 )
-from iiwa_dnn.simulation import FrankaPlant, Plant, RealPlant, Simulation
+from iiwa_dnn.simulation import FrankaPlant, FriPlant, Plant, RealPlant, Simulation
 from iiwa_dnn.studies import paper
 
 CHECKS: dict[Check, tuple[str, ...]] = {
@@ -56,6 +56,7 @@ CHECKS: dict[Check, tuple[str, ...]] = {
 
 PLANTS: dict[PlantName, Callable[[TrackOptions], RealPlant]] = {
     "franka": lambda o: FrankaPlant(o.host),
+    "fri": lambda o: FriPlant(o.host),
 }
 """Real arms by name, made from all options."""
 
@@ -112,7 +113,7 @@ _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp, both or proof"),
     "push_at": (lambda o: not o.push, "--push"),
     "push_for": (lambda o: not o.push, "--push"),
-    "host": (lambda o: o.plant not in PLANTS, "--plant franka"),
+    "host": (lambda o: o.plant not in PLANTS, "--plant franka or fri"),
 }
 
 More = Callable[[Record, Path], list[Path]]

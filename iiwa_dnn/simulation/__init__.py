@@ -10,6 +10,7 @@ from iiwa_dnn.simulation.noise import NoiseEntry as NoiseEntry
 from iiwa_dnn.simulation.noise import VelocityDisturbance as VelocityDisturbance
 from iiwa_dnn.simulation.noise import gaussian_noise as gaussian_noise
 from iiwa_dnn.simulation.plants import FrankaPlant as FrankaPlant
+from iiwa_dnn.simulation.plants import FriPlant as FriPlant
 from iiwa_dnn.simulation.plants import IdealPlant as IdealPlant
 from iiwa_dnn.simulation.plants import MujocoPlant as MujocoPlant
 from iiwa_dnn.simulation.plants import Plant as Plant

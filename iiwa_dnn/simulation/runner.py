@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import signal
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from typing import Any
 
@@ -18,7 +20,7 @@ from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.control.paths import References, by_frame
 from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.compiling import WATCH
@@ -42,6 +44,9 @@ BLOCK = 1000
 
 MAX_STEPS = 20_000_000
 """More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
+
+_REHEARSED = 5
+"""Steps that are rehearsed before a real arm moves."""
 
 _INTERRUPTS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
@@ -215,8 +220,7 @@ class Simulation:
         controller.reset()
         self._plant.start(controller.robot, self._q0, dt, self._seed)
         if isinstance(self._plant, RealPlant):
-            controller.warm_up()
-            controller.compute(self._q0, 0.0)  # lays the step out, for which a robot does not wait
+            self._rehearse()
         loop = self._loop()
         recorder = Recorder(self.steps, controller, loop.q, self._settings)
         stages = MOTIONS[self._motion].stages
@@ -247,6 +251,19 @@ class Simulation:
             **collision_arrays(controller.scheme, controller.robot, columns["q"], columns["t"]),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )
+
+    def _rehearse(self) -> None:
+        """Call all that a run may need once: a first call takes many of a robot's periods."""
+        controller = self._controller
+        controller.warm_up()
+        twin = copy.copy(controller)
+        middle = 0.5 * self.steps * controller.dt
+        with suppress(NoSolutionError):
+            for _ in range(_REHEARSED):
+                twin.step(self._q0, middle)  # where the arm is not, so that a policy decides
+        twin.halt()
+        twin.step(self._q0, middle)
+        controller.compute(self._q0, 0.0)
 
     def _move(self, loop: Loop, steps: int, observers: Sequence[Observer], first: int) -> int:
         """Take steps of the loop, a real arm's with a motion to rest after them; return how many.

@@ -1,7 +1,17 @@
 // A client of KUKA's Fast Robot Interface that moves the arm by the controller, in position control.
-// It needs the FRI client SDK; the FRI's sample time has to be CONTROLLER_DT.
+// It needs KUKA's FRI client SDK, in the folder SDK with its library built:
+//     cc -O2 -c controller.c
+//     c++ -O2 -I$SDK/include example_fri.cpp controller.o libFRIClient.a -o example_fri
+// Without a robot, beside it: iiwa-dnn fri-robot --period @dt@
+#include <cmath>
+#include <cstddef>  // the SDK's headers take NULL for granted
+
 #include "controller.h"
+#include "friClientApplication.h"
 #include "friLBRClient.h"
+#include "friUdpConnection.h"
+
+static_assert(CONTROLLER_DOF == KUKA::FRI::LBRState::NUMBER_OF_JOINTS, "an LBR arm has 7 joints");
 
 class ControllerClient : public KUKA::FRI::LBRClient {
 public:
@@ -10,12 +20,18 @@ public:
     // Called by the FRI at every sample while the robot may be commanded.
     void command() override
     {
-        const double *measured = robotState().getMeasuredJointPosition();
         if (!started_) {
+            // Where the robot is commanded to be: the measured position would be a small jump.
+            const double *held = robotState().getIpoJointPosition();
             for (int i = 0; i < CONTROLLER_DOF; i++) {
-                q_[i] = measured[i];
+                q_[i] = held[i];
             }
             started_ = true;
+        }
+        if (std::fabs(robotState().getSampleTime() - CONTROLLER_DT) > 1e-9) {
+            last_action = CONTROLLER_INVALID;  // another sample time is another speed
+            robotCommand().setJointPosition(q_);
+            return;
         }
         double dq[CONTROLLER_DOF];
 @fri_sample@        last_action = controller_step(&controller_, q_, target, dq);
@@ -36,3 +52,17 @@ private:
     double t_ = 0.0;
     bool started_ = false;
 };
+
+int main()
+{
+    ControllerClient client;
+    KUKA::FRI::UdpConnection connection;
+    KUKA::FRI::ClientApplication application(connection, client);
+    if (!application.connect(30200, nullptr)) {  // whichever robot sends to this port
+        return 1;
+    }
+    while (application.step() && client.robotState().getSessionState() != KUKA::FRI::IDLE) {
+    }
+    application.disconnect();
+    return client.last_action;
+}
