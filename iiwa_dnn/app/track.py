@@ -134,13 +134,14 @@ def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
     """Return the options with what was left to their defaults as a real arm needs it.
 
     The start is the measured posture, the control period the robot's, and acceleration and jerk
-    limits are the robot's.
+    limits are the robot's, where it has such limits.
     """
+    robot, _ = arm(options)
     own: dict[str, Any] = {
         "q0": tuple(plant.posture.tolist()),
         "dt": plant.period,
-        "acceleration_limit": "robot",
-        "jerk_limit": "robot",
+        "acceleration_limit": "robot" if np.isfinite(robot.ddq_max).all() else None,
+        "jerk_limit": "robot" if np.isfinite(robot.dddq_max).all() else None,
     }
     default = type(options)
     left = {name: own[name] for name in own if getattr(options, name) == getattr(default, name)}

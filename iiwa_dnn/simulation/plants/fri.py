@@ -193,11 +193,11 @@ class FriPlant(RealPlant):
         checks.one_of("feedback", feedback, FEEDBACKS)
         self.feedback = feedback
         self._client: Any = None
-        self._fault: str | None = None
         self._reset()
 
     def _reset(self) -> None:
         """Forget the motion before."""
+        self._fault: str | None = None
         self._commanded: Vector | None = None
         self._velocity: Vector = np.zeros(JOINTS)
         self._substitutes: Matrix | None = None
@@ -214,7 +214,6 @@ class FriPlant(RealPlant):
         """
         if self._client is None or not self._client.is_open:
             self._client = FriClient(self.host, self.port)
-            self._fault = None
             self._reset()
 
     @property
