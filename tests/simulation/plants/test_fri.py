@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import threading
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,10 @@ import pytest
 from helpers_fri import Network, free_port, read_command, write_command
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import DoubleIndicator, FriPlant, InvalidInputError, export, simulate
+from iiwa_dnn.app import track as app_track
+from iiwa_dnn.app.main import run
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.results.record import Record
 from iiwa_dnn.simulation import IdealPlant, fri_robot
 from iiwa_dnn.simulation.fri_robot import FriController, serve
 from iiwa_dnn.simulation.plants import fri
@@ -219,6 +223,23 @@ def test_the_robot_s_period_and_posture_are_the_run_s(port) -> None:
         with pytest.raises(InvalidInputError, match=r"joint 7: the arm stands 0\.1 rad from it"):
             plant.start(paper_robot(), paper_start().q + 0.1 * np.eye(7)[6], 5e-3, 0)
         plant.stop()
+
+
+def test_track_takes_start_period_and_limits_from_the_robot(port, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(app_track, "FriPlant", partial(FriPlant, port=port))
+    words = ["--plant", "fri", "--tracking", "next", "--duration", "0.2", "--check", "none"]
+    with Robot(port) as robot:
+        assert run("track", [*words, "--no-plots", "-q", "--out", str(tmp_path)]) == 0
+        robot.join(5.0)
+    record = Record.load(tmp_path)
+    assert record.settings["dt"] == 5e-3
+    assert record.settings["q0"] == paper_start().q.tolist()
+    assert record.settings["plant"]["lost_commands"] == 0
+    speeds = np.diff(np.array(robot.commanded), axis=0) / 5e-3
+    accelerations = np.abs(np.diff(speeds, axis=0)) / 5e-3
+    assert (accelerations <= paper_robot().ddq_max * (1 + 1e-6)).all()
+    assert accelerations.max() > 0.1
+    assert robot.controller.fault is None
 
 
 # Not as a skipped test: with CI=true that is a failure, and KUKA's SDK cannot be downloaded there.
