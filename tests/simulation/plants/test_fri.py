@@ -231,7 +231,7 @@ def test_track_takes_start_period_and_limits_from_the_robot(port, tmp_path, monk
     with Robot(port) as robot:
         assert run("track", [*words, "--no-plots", "-q", "--out", str(tmp_path)]) == 0
         robot.join(5.0)
-    record = Record.load(tmp_path)
+    record = Record.load(tmp_path / "record.npz")
     assert record.settings["dt"] == 5e-3
     assert record.settings["q0"] == paper_start().q.tolist()
     assert record.settings["plant"]["lost_commands"] == 0
