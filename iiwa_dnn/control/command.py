@@ -196,10 +196,13 @@ class Command:
         if self.action is Action.NONE:
             return None
         n = self._layout.sizes[0]
+        qp = self.qp
         blocking = self._layout.view(self.row, "blocking").astype(np.int8)
-        return Resolution(
-            self.action, self.qp, self.solution, self.fraction, blocking[:n], blocking[n:]
-        )
+        sides = blocking[:n]
+        rows = blocking[n:]
+        names = self._layout.names
+        against = () if names is None else tuple(names.in_words(qp, sides, rows, self.past))
+        return Resolution(self.action, qp, self.solution, self.fraction, sides, rows, against)
 
     @property
     def qp(self) -> QP:
@@ -250,17 +253,10 @@ class Command:
         words = _WORDS[self.action]
         if self.action is Action.NONE and not self.ok:
             words = "not settled"
-        against = self._against()
-        if against:
-            words += f", against {', '.join(against)}"
-        return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
-
-    def _against(self) -> list[str]:
-        """Return the limits that stood in the way, in words."""
         found = self.resolution
-        if found is None or self._layout.names is None:
-            return []
-        return self._layout.names.in_words(found.qp, found.sides, found.rows, self.past)
+        if found is not None and found.against:
+            words += f", against {', '.join(found.against)}"
+        return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
 
 
 _WORDS = {

@@ -470,10 +470,17 @@ class Controller:
             warn_if_unstable(self.program, self.dt, stacklevel=5)
         state.begun = True
 
-    def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
-        """Warn if a first target is far from its frame: most likely it was not anchored."""
-        targets = self.targets(t).ravel()
-        warn_if_far(self.scheme, self.program.target_frames, start, targets, stacklevel + 1)
+    def warn_if_far(
+        self, start: Configuration, t: float, stacklevel: int, refuses: bool = False
+    ) -> None:
+        """Warn if a first target is far from its frame: most likely it was not anchored.
+
+        Raises:
+            InvalidInputError: `refuses` is set, and a path of poses begins elsewhere.
+        """
+        paths = paths_of(self.reference, self.robot.tip, self.program.target_frames)
+        targets = self.targets(t)
+        warn_if_far(self.scheme, paths, start, targets, stacklevel + 1, refuses)
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
