@@ -15,7 +15,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 from iiwa_dnn.qp.layout import Sizes, compiled
-from iiwa_dnn.schemes.limit_names import LimitNames
+from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 FIGURES = 5
@@ -241,6 +241,19 @@ class Command:
             Status.SOLVED,
             Status.ADVANCED,
         )
+
+    @property
+    def limited(self) -> bool:
+        """True if acceleration and jerk limits alone keep it from all that the tasks ask.
+
+        Then the arm is on its way there, or noise asks for more than it may follow; a command that
+        is neither `ok` nor limited cannot do it.
+        """
+        found = self.resolution
+        if found is None or self._layout.names is None or found.rows.any():
+            return False
+        codes = np.abs(self._layout.names.codes(found.qp, found.sides, self.past))
+        return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
 
     def __getstate__(self) -> tuple[Any, ...]:
         return self.row, self._layout, self.action
