@@ -96,6 +96,7 @@ class TrackOptions(RunOptions):
     noise: float = 0.0  # standard deviation of the noise: velocity [rad/s], measurement [rad]
     noise_at: NoiseEntry = "velocity"  # quantity that the noise is added to
     filter_window: int = 1  # number of samples in the moving average of the joint velocity
+    csv: bool = False  # write every sample of the record as a table too, record.csv
     plots: bool = True  # draw the figures
 
 
@@ -194,7 +195,8 @@ class ViewOptions:
     """Replay a run in the browser, or let the arm follow a target that is dragged."""
 
     command: ClassVar[str] = "view"
-    run: Positional[_Path] = None  # folder or record of a run (none: live)
+    run: Positional[Annotated[Path | None, arg(metavar="[RUN]", help_behavior_hint="")]] = None
+    """folder or record of a run (none: live)"""
     robot: _Name = None  # robot, by its name or by its file (none: the record's, or iiwa7)
     tip: _Name = None  # frame that follows the target (none: the record's, or the chain's end)
     lock: _Names = ()  # names of the joints that are held still

@@ -33,6 +33,7 @@ from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import rotation_angle
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
+from iiwa_dnn.results.table import save_csv
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import (
     AccelerationLimits,
@@ -237,6 +238,8 @@ def draw(
     if not options.quiet and sys.stderr.isatty():
         print(f"writing report and figures to {folder}", file=sys.stderr)
     metrics = save_run(record, folder, plots=options.plots, more=more)
+    if options.csv:
+        save_csv(record, folder / "record.csv")
     if last is not None:
         last(record, folder)
     reasons = failures(record)
