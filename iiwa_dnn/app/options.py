@@ -71,6 +71,7 @@ class TrackOptions(RunOptions):
     sphere: float = 0.2  # radius of the sphere under the sphere-heart [m]
     normal: _Floats = ()  # outward normal of plane or sphere at the start (none: the tool axis)
     tool_speed: float = SPEED  # speed of the tip along a CSV file without times [m/s]
+    stretch: float = 1.0  # ratio of the path's times to those in a CSV file with times [1]
     offset: tuple[float, ...] = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
     amplitudes: tuple[float, ...] = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
     period: float = Heart.period  # time of one round on the path [s]; a CSV file has its own

@@ -74,7 +74,10 @@ _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
         ("scale", "sphere", "normal", "period"),
         lambda o: OnSurface(Heart(o.scale, o.period), o.sphere, o.normal or None),
     ),
-    "FILE.csv": (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed)),
+    "FILE.csv": (
+        ("tool_speed", "stretch"),
+        lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed, stretch=o.stretch),
+    ),
 }
 
 _NEAR_POSITION = 1e-3
