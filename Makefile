@@ -77,5 +77,5 @@ types: $(STAMP)  ## check the types of the package
 	$(VENV_PYTHON) -m mypy
 
 clean:  ## remove .venv, caches and what was built; runs/ stays
-	rm -rf $(VENV) build dist site htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) build dist site jupyter_execute htmlcov .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find iiwa_dnn tests scripts benchmarks -name __pycache__ -prune -exec rm -rf {} +

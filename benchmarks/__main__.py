@@ -8,6 +8,7 @@ from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
 from benchmarks.exports import bench_export
 from benchmarks.franka import bench_franka
+from benchmarks.poses import bench_poses
 from benchmarks.proofs import bench_proof
 from benchmarks.sizes import bench_sizes
 
@@ -20,6 +21,7 @@ COMMANDS = {
     "arrivals": bench_arrivals,
     "export": bench_export,
     "franka": bench_franka,
+    "poses": bench_poses,
     "proof": bench_proof,
     "sizes": bench_sizes,
 }

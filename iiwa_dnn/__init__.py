@@ -7,6 +7,7 @@ from warnings import warn
 from iiwa_dnn import export as export
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.posing import PoseSolution, solve_pose
 from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,
@@ -107,12 +108,13 @@ __all__ = [
     "JointAcceleration", "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy",
     "Limit", "Line", "Lissajous", "Manipulability", "MissingDependencyError", "MovingTarget",
     "MujocoPlant", "Network", "NoSolutionError", "NotFoundError", "OnSurface", "OneLayerNetwork",
-    "OrientationTask", "PoseTask", "PositionTask", "PostureTask", "PrimalDualNetwork",
-    "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference", "RelativePoseTask",
-    "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork", "Simulation",
-    "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting", "TrackingSolver",
-    "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots", "compute_metrics", "failures",
-    "load_robot", "prove", "retime", "robot_from_dh", "simulate", "solve_batch", "solve_problem",
+    "OrientationTask", "PoseSolution", "PoseTask", "PositionTask", "PostureTask",
+    "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
+    "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
+    "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
+    "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots",
+    "compute_metrics", "failures", "load_robot", "prove", "retime", "robot_from_dh", "simulate",
+    "solve_batch", "solve_pose", "solve_problem",
 ]  # fmt: skip
 
 _RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}

@@ -1,9 +1,12 @@
 """A control loop at 1 kHz: encoders in, joint velocities out.
 
 One sees the time of a step, which has to be far below the period, and the tracking error. A real
-robot takes the places of `read_encoders` and `send`; everything else stays as it is.
+robot takes the places of `read_encoders` and `send`; everything else stays as it is. With noise of
+the encoders, such as ``--noise 1e-4``, an estimator keeps it out of the commands; with a jerk
+limit, such as ``--jerk 100``, the arm takes a while to reach the speed of the path.
 """
 
+import math
 import sys
 import time
 
@@ -13,6 +16,7 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import run_script
+from iiwa_dnn.control.estimation import NoiseModel
 
 DT = 1e-3  # control period [s]
 
@@ -20,26 +24,41 @@ DT = 1e-3  # control period [s]
 class Arm:
     """A simulated arm that moves as it is told; replace it by the driver of a real one."""
 
-    def __init__(self, q):
+    def __init__(self, q, noise):
         self.q = np.array(q, dtype=float)
+        self.noise = noise
+        self.random = np.random.default_rng(0)
 
     def read_encoders(self):
         """Return the joint positions [rad], (n,)."""
-        return self.q.copy()
+        return self.q + self.noise * self.random.standard_normal(self.q.size)
 
     def send(self, dq):
         """Command the joint velocities [rad/s], (n,), for one period."""
         self.q += DT * dq
 
 
-def main(steps: tyro.conf.Positional[int] = 1000):
-    """Draw the heart's first steps in real time; 1 where a command was not a solved one."""
+def main(steps: tyro.conf.Positional[int] = 1000, noise: float = 0.0, jerk: float = math.inf):
+    """Draw the heart's first steps in real time; 1 where the arm cannot follow.
+
+    Args:
+        steps: number of steps
+        noise: standard deviation of the encoders' noise [rad]
+        jerk: jerk limit of every joint [rad/s^3], beside an acceleration limit of 10 rad/s^2
+    """
     checks.integer("steps", steps, 1)
+    checks.not_negative("noise", noise)
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
-    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+    limits = ()
+    if jerk < math.inf:
+        robot = robot.with_limits(acceleration=10.0, jerk=jerk)
+        limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise)
     start = iiwa_dnn.Configuration(robot, arm.q)
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
-    controller = iiwa_dnn.Controller(robot, iiwa_dnn.DoubleIndicator(), heart, dt=DT)
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
+    model = NoiseModel(velocity=1e-3, measurement=noise) if noise else None
+    controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT, estimator=model)
     controller.warm_up()  # compiles, so that the first step is as quick as the others
     times = []
     errors = []
@@ -50,7 +69,7 @@ def main(steps: tyro.conf.Positional[int] = 1000):
         asked = time.perf_counter()
         command = controller.step(q, k * DT)
         times.append(1e6 * (time.perf_counter() - asked))
-        if not command.ok:
+        if not (command.ok or command.limited):
             print(f"step {k}: {command}")
             return 1
         arm.send(command.dq)

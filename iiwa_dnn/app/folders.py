@@ -25,7 +25,7 @@ SETTINGS_FILE = "settings.toml"
 # Options of the output: they are not kept in the settings file.
 _NOT_KEPT = {"settings", "out", "overwrite", "quiet", "verbose"}
 # Options that are kept, though a run with other values is the same run.
-_NOT_COMPARED = {"plots", "pictures", "video", "workers", "dask"}
+_NOT_COMPARED = {"csv", "plots", "pictures", "video", "workers", "dask"}
 
 
 def claim_folder(options: RunOptions, resumes: Collection[str] = ()) -> Path:

@@ -73,6 +73,7 @@ class TrackOptions(RunOptions):
     sphere: float = 0.2  # radius of the sphere under the sphere-heart [m]
     normal: _Floats = ()  # outward normal of plane or sphere at the start (none: the tool axis)
     tool_speed: float = SPEED  # speed of the tip along a CSV file without times [m/s]
+    stretch: float = 1.0  # ratio of the path's times to those in a CSV file with times [1]
     offset: tuple[float, ...] = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]
     amplitudes: tuple[float, ...] = (0.05, 0.05, 0.0)  # amplitudes of the Lissajous figure [m]
     period: float = Heart.period  # time of one round on the path [s]; a CSV file has its own
@@ -98,6 +99,7 @@ class TrackOptions(RunOptions):
     noise: float = 0.0  # standard deviation of the noise: velocity [rad/s], measurement [rad]
     noise_at: NoiseEntry = "velocity"  # quantity that the noise is added to
     filter_window: int = 1  # number of samples in the moving average of the joint velocity
+    csv: bool = False  # write every sample of the record as a table too, record.csv
     plots: bool = True  # draw the figures
     plant: PlantName = "ideal"  # arm that moves: an ideal one, or a robot through its own client
     host: str = ""  # address of the robot's controller
@@ -201,7 +203,8 @@ class ViewOptions:
     """Replay a run in the browser, or let the arm follow a target that is dragged."""
 
     command: ClassVar[str] = "view"
-    run: Positional[_Path] = None  # folder or record of a run (none: live)
+    run: Positional[Annotated[Path | None, arg(metavar="[RUN]", help_behavior_hint="")]] = None
+    """folder or record of a run (none: live)"""
     robot: _Name = None  # robot, by its name or by its file (none: the record's, or iiwa7)
     tip: _Name = None  # frame that follows the target (none: the record's, or the chain's end)
     lock: _Names = ()  # names of the joints that are held still

@@ -14,7 +14,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, PlantName, TrackOptions
-from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Vector
@@ -34,6 +34,7 @@ from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import rotation_angle
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import save_run, settings_lines, summary
+from iiwa_dnn.results.table import save_csv
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import (
     AccelerationLimits,
@@ -43,6 +44,7 @@ from iiwa_dnn.schemes import (
     Limit,
     Scheme,
 )
+from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.simulation import FrankaPlant, FriPlant, Plant, RealPlant, Simulation
 from iiwa_dnn.studies import paper
 
@@ -79,7 +81,10 @@ _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
         ("scale", "sphere", "normal", "period"),
         lambda o: OnSurface(Heart(o.scale, o.period), o.sphere, o.normal or None),
     ),
-    "FILE.csv": (("tool_speed",), lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed)),
+    "FILE.csv": (
+        ("tool_speed", "stretch"),
+        lambda o: Waypoints.from_csv(o.reference, speed=o.tool_speed, stretch=o.stretch),
+    ),
 }
 
 _NEAR_POSITION = 1e-3
@@ -87,9 +92,6 @@ _NEAR_POSITION = 1e-3
 
 _NEAR_ANGLE = 1e-2
 """Angle [rad] up to which a path of poses begins at the tip."""
-
-_ZERO_VELOCITY = 1e-6
-"""Largest joint velocity [rad/s] of an arm at standstill."""
 
 # Options that are arguments of a simulation under the same name.
 _ARGUMENTS = (
@@ -179,6 +181,7 @@ def simulation(
             q0,
             plant=plant,
             check=CrossCheck(CHECKS[options.check], options.tolerance),
+            far_start=True,
             **arguments,
         )
 
@@ -221,29 +224,16 @@ def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Schem
         return
     distance = np.linalg.norm(target.position - start.position)
     angle = rotation_angle(start.rotation, target.rotation)
-    q = _posture_at(target, start, scheme)
-    advice = "no posture was found there"
-    if q is not None:
-        posture = " ".join(f"{value:.6f}" for value in q)
+    answer = solve_pose(start.robot, target, start.q, obstacles=avoidance_of(scheme) or ())
+    advice = f"no posture was found there: {answer}"
+    if answer.q is not None:
+        posture = " ".join(f"{value:.6f}" for value in answer.q)
         advice = f"to begin there, with another --out or --overwrite: --q0 {posture}"
     print(
         f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, "
         f"at {np.round(target.position, 4).tolist()} m; {advice}",
         file=sys.stderr,
     )
-
-
-def _posture_at(target: Target, start: Configuration, scheme: Scheme) -> Vector | None:
-    """Move the tip to a target by the controller; return the posture (n,) [rad] there, or None."""
-    q = start.q.copy()
-    dt = 0.02
-    controller = Controller(start.robot, scheme, dt=dt)
-    for k in range(1000):
-        dq = controller.step(q, k * dt, target).dq
-        q = q + dt * dq
-        if np.abs(dq).max() < _ZERO_VELOCITY:
-            break
-    return q if _is_at(Configuration(start.robot, q), target) else None
 
 
 def _is_at(conf: Configuration, target: Target) -> bool:
@@ -282,6 +272,8 @@ def draw(
     if not options.quiet and sys.stderr.isatty():
         print(f"writing report and figures to {folder}", file=sys.stderr)
     metrics = save_run(record, folder, plots=options.plots, more=more)
+    if options.csv:
+        save_csv(record, folder / "record.csv")
     if last is not None:
         last(record, folder)
     if simulation.interrupt is not None:

@@ -15,7 +15,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 from iiwa_dnn.qp.layout import Sizes, compiled
-from iiwa_dnn.schemes.limit_names import LimitNames
+from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 FIGURES = 5
@@ -196,10 +196,13 @@ class Command:
         if self.action is Action.NONE:
             return None
         n = self._layout.sizes[0]
+        qp = self.qp
         blocking = self._layout.view(self.row, "blocking").astype(np.int8)
-        return Resolution(
-            self.action, self.qp, self.solution, self.fraction, blocking[:n], blocking[n:]
-        )
+        sides = blocking[:n]
+        rows = blocking[n:]
+        names = self._layout.names
+        against = () if names is None else tuple(names.in_words(qp, sides, rows, self.past))
+        return Resolution(self.action, qp, self.solution, self.fraction, sides, rows, against)
 
     @property
     def qp(self) -> QP:
@@ -239,6 +242,19 @@ class Command:
             Status.ADVANCED,
         )
 
+    @property
+    def limited(self) -> bool:
+        """True if acceleration and jerk limits alone keep it from all that the tasks ask.
+
+        Then the arm is on its way there, or noise asks for more than it may follow; a command that
+        is neither `ok` nor limited cannot do it.
+        """
+        found = self.resolution
+        if found is None or self._layout.names is None or found.rows.any():
+            return False
+        codes = np.abs(self._layout.names.codes(found.qp, found.sides, self.past))
+        return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
+
     def __getstate__(self) -> tuple[Any, ...]:
         return self.row, self._layout, self.action
 
@@ -250,17 +266,10 @@ class Command:
         words = _WORDS[self.action]
         if self.action is Action.NONE and not self.ok:
             words = "not settled"
-        against = self._against()
-        if against:
-            words += f", against {', '.join(against)}"
-        return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
-
-    def _against(self) -> list[str]:
-        """Return the limits that stood in the way, in words."""
         found = self.resolution
-        if found is None or self._layout.names is None:
-            return []
-        return self._layout.names.in_words(found.qp, found.sides, found.rows, self.past)
+        if found is not None and found.against:
+            words += f", against {', '.join(found.against)}"
+        return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
 
 
 _WORDS = {

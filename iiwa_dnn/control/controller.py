@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.cascade import Cascade, Level, Priorities
 from iiwa_dnn.control.command import Command, RowLayout
+from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.control.paths import (
     References,
     by_frame,
@@ -60,6 +61,8 @@ class Controller:
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`). At
             the acceleration level ``slow`` acts as ``relax``.
         solver: Network, integrators and tolerance; keeps the network's state between steps.
+        estimator: Noise of encoders and drives, and delay of the drives, which a Kalman filter of
+            the measured joint positions in `step` reckons with; None: they are taken as they are.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
@@ -70,6 +73,7 @@ class Controller:
     mode: Mode
     policy: Policy
     solver: DNNSolver
+    estimator: NoiseModel | None
 
     def __init__(
         self,
@@ -82,6 +86,7 @@ class Controller:
         policy: Policy = "slow",
         tol: float = 1e-9,
         solver: DNNSolver | None = None,
+        estimator: NoiseModel | None = None,
     ) -> None:
         """Bring the parts together.
 
@@ -94,6 +99,7 @@ class Controller:
             policy: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
             solver: The network and its integrators; None takes the paper's network with `tol`.
+            estimator: Model of a filter of the measured joint positions, without a bias.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
@@ -109,6 +115,7 @@ class Controller:
         self.scheme = scheme
         self.reference = reference
         self.solver = DNNSolver(tol=tol) if solver is None else solver
+        self.estimator = estimator
 
     def __setattr__(self, name: str, value: Any) -> None:
         check = _CHECKS.get(name)
@@ -118,6 +125,8 @@ class Controller:
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
+        if name in ("dt", "estimator"):
+            self._state.estimator = None
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in _DERIVED}
@@ -154,7 +163,8 @@ class Controller:
 
         Args:
             q: Measured joint positions [rad], (n,).
-            t: Time [s]; the reference is asked for the time `delay` before it.
+            t: Time [s]; the reference is asked for the time `delay` before it. With an estimator
+                the command is for the time at which the drives begin it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
                 At the acceleration level it has no acceleration.
             dq: Measured joint velocities [rad/s], (n,), at the acceleration level; None takes the
@@ -171,11 +181,19 @@ class Controller:
         state = self._state
         before = state.past
         delay = state.delay
+        estimated = state.estimator
         try:
             with self._lock:
                 if dq is not None:
                     self._measure(dq)
+                estimator = self._next_estimator()
+                if estimator is not None:
+                    q = estimator.update(checks.finite_array("q", q, (self.robot.dof,)))
+                    t += estimator.model.delay * self.dt
                 command = self._compute(q, t, target)
+                if estimator is not None:
+                    estimator.predict(command.dq)
+                    state.estimator = estimator
                 if command.action is not Action.NONE:
                     state.delay += self.dt * (1.0 - command.fraction)
                 state.commit()
@@ -184,6 +202,7 @@ class Controller:
             if state.past is not before:  # interrupted before anybody got the command
                 state.commit()
             state.delay = delay
+            state.estimator = estimated
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -202,6 +221,12 @@ class Controller:
         self._state.send(dq)
         self._state.delay += self.dt * (1.0 - fraction)
         self._state.commit()
+
+    def _next_estimator(self) -> JointEstimator | None:
+        """Return a copy of the estimator, since a step may be broken off; None if there is none."""
+        if self.estimator is None:
+            return None
+        return copy.copy(self._state.estimator or JointEstimator(self.estimator, self.dt))
 
     def _compute(
         self,
@@ -492,10 +517,17 @@ class Controller:
             warn_if_unstable(self.program, self.dt, stacklevel=5)
         state.begun = True
 
-    def warn_if_far(self, start: Configuration, t: float, stacklevel: int) -> None:
-        """Warn if a first target is far from its frame: most likely it was not anchored."""
-        targets = self.targets(t).ravel()
-        warn_if_far(self.scheme, self.program.target_frames, start, targets, stacklevel + 1)
+    def warn_if_far(
+        self, start: Configuration, t: float, stacklevel: int, refuses: bool = False
+    ) -> None:
+        """Warn if a first target is far from its frame: most likely it was not anchored.
+
+        Raises:
+            InvalidInputError: `refuses` is set, and a path of poses begins elsewhere.
+        """
+        paths = paths_of(self.reference, self.robot.tip, self.program.target_frames)
+        targets = self.targets(t)
+        warn_if_far(self.scheme, paths, start, targets, stacklevel + 1, refuses)
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
@@ -560,6 +592,13 @@ class Controller:
         return QP.from_data(data, program.sizes)
 
 
+def _check_estimator(name: str, value: Any) -> None:
+    """Refuse what is no noise model, and one with a bias, which belongs off the plant's command."""
+    if value is not None and checks.instance(name, value, NoiseModel).bias_walk:
+        problem = "has a bias_walk, which the estimator of simulate alone takes off a command"
+        raise InvalidInputError(name, problem, value)
+
+
 def _is_plain(q: ArrayLike, dof: int) -> bool:
     """Tell whether joint positions are an array as compiled code takes it."""
     return (
@@ -578,4 +617,5 @@ _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "mode": partial(checks.one_of, choices=MODES),
     "policy": partial(checks.one_of, choices=POLICIES),
     "solver": partial(checks.instance, kind=DNNSolver),
+    "estimator": _check_estimator,
 }

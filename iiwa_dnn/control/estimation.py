@@ -11,7 +11,9 @@ velocity, and u the velocity that was commanded:
 All joints share the covariance, so the gains are computed once a step, two numbers. Feeding back
 the estimated q instead of z keeps the encoders' noise out of the command; taking the estimated d
 off the command removes a bias in the joints themselves, whatever the posture, which an integral
-term of the tip's error cannot do in motion.
+term of the tip's error cannot do in motion. If the drives carry a command out some periods late,
+the velocity above is the one that they carry out, and the estimated angles are those at which the
+next command begins, since all commands until then are known.
 
 Source: R. E. Kalman, "A new approach to linear filtering and prediction problems", Journal of Basic
 Engineering 82 (1960).
@@ -36,18 +38,21 @@ class NoiseModel:
         bias_walk: beta, how fast the disturbance may change [rad/s per sqrt(s)]; with 0 there is
             none, and nothing is taken off the command.
         bias: Standard deviation of the disturbance at the start [rad/s].
+        delay: Number of control periods by which the drives carry a command out late.
     """
 
     velocity: float = 0.01
     measurement: float = 1e-5
     bias_walk: float = 0.0
     bias: float = 0.1
+    delay: int = 0
 
     def __post_init__(self) -> None:
         """Check the numbers; raises InvalidInputError naming the one that is wrong."""
         checks.positive("measurement", self.measurement)
         for name in ("velocity", "bias_walk", "bias"):
             checks.not_negative(name, getattr(self, name))
+        checks.integer("delay", self.delay, 0)
 
     def settings(self) -> dict[str, Any]:
         """Name and numbers, as values that JSON can hold."""
@@ -76,15 +81,20 @@ class JointEstimator:
     def reset(self) -> None:
         """Drop the estimates; the next sample starts anew."""
         self._q: Vector | None = None
+        self._late: tuple[Vector, ...] = ()
         self.bias: Vector = np.zeros(0)
 
     def update(self, reading: Vector) -> Vector:
-        """Take in measured angles (n,) [rad]; returns the estimated ones, a new array."""
+        """Take in measured angles (n,) [rad]; return estimated ones, a new array.
+
+        With a delay they are those at which the next command begins.
+        """
         model = self.model
         noise = model.measurement**2
         if self._q is None:
             self._q = reading.copy()
             self.bias = np.zeros_like(reading)
+            self._late = (np.zeros_like(reading),) * model.delay
             # Covariance of (q, d): the first reading is all that is known of q.
             self._qq = noise
             self._qd = 0.0
@@ -100,11 +110,13 @@ class JointEstimator:
         self._dd -= k_d * self._qd
         self._qq = noise * k_q
         self._qd = self._qd * noise / total
-        return self._q.copy()
+        return self._q + self.dt * (sum(self._late) + model.delay * self.bias)
 
     def predict(self, command: Vector) -> None:
-        """Let the joints move with a velocity command (n,) [rad/s] for one control period."""
+        """Let the joints move for one control period; the drives get a command (n,) [rad/s]."""
         assert self._q is not None, "predict comes after update"
+        command, *late = (*self._late, command)
+        self._late = tuple(late)
         dt = self.dt
         model = self.model
         self._q = self._q + dt * (command + self.bias)

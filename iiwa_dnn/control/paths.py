@@ -11,10 +11,10 @@ from pinocchio import log3
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Vector
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes import OrientationTask, Scheme
+from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.motion_limits import largest_gain
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.tasks import GainTask
@@ -80,19 +80,44 @@ def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
 
 
 def warn_if_far(
-    scheme: Scheme, frames: Sequence[str], start: Configuration, targets: Vector, stacklevel: int
+    scheme: Scheme,
+    references: Mapping[str, Reference],
+    start: Configuration,
+    targets: Matrix,
+    stacklevel: int,
+    refuses: bool = False,
 ) -> None:
-    """Warn where a first target, of (18 frames,), is far from its frame in a configuration."""
-    turns = any(isinstance(task, OrientationTask) for task in getattr(scheme, "tasks", ()))
-    for name, data in zip(frames, targets.reshape(-1, 18), strict=True):
+    """Warn where first targets are far from their frames in a configuration.
+
+    Args:
+        scheme: The scheme, of which only an orientation task looks at angles.
+        references: References by frame name, in the order of the targets.
+        start: The configuration.
+        targets: The targets, (k, 18).
+        stacklevel: As of `warnings.warn`.
+        refuses: Whether a path of poses that begins elsewhere is refused.
+
+    Raises:
+        InvalidInputError: Such a path does.
+    """
+    turns = any(isinstance(task, _TURNING) for task in getattr(scheme, "tasks", ()))
+    for (name, reference), data in zip(references.items(), targets, strict=True):
         frame = start.frame(name)
         target = Target.from_data(data)
         distance = float(np.linalg.norm(target.position - frame.position))
         angle = turns * float(np.linalg.norm(log3(target.rotation @ frame.rotation.T)))
-        if distance > FAR or angle > TURNED:
-            where = "tip" if name == start.robot.tip else f"frame {name}"
-            message = (
-                f"the reference begins {distance:.3g} m from the {where}, {angle:.3g} rad "
-                "turned; to begin where it is: reference.anchored(configuration)"
-            )
-            warnings.warn(message, stacklevel=stacklevel)
+        if distance <= FAR and angle <= TURNED:
+            continue
+        where = "tip" if name == start.robot.tip else f"frame {name}"
+        message = f"begins {distance:.3g} m from the {where}, {angle:.3g} rad turned"
+        if getattr(reference, "quaternions", None) is None:
+            advice = "to begin where it is: reference.anchored(configuration)"
+        else:
+            advice = "a posture there: iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
+            if refuses:
+                problem = f"{message}; {advice}, or to go there first: far_start=True"
+                raise InvalidInputError("reference", problem, reference)
+        warnings.warn(f"the reference {message}; {advice}", stacklevel=stacklevel)
+
+
+_TURNING = (OrientationTask, PoseTask)

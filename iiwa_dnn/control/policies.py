@@ -73,6 +73,7 @@ class Resolution(NamedTuple):
         fraction: By which share of a control period the reference's clock advances, in [0, 1].
         sides: Bounds that stood in the way, (n,): 1 upper, -1 lower, 0 neither.
         rows: Inequality rows that stood in the way, (m,): 1 or 0.
+        against: The same bounds and rows in words.
     """
 
     action: Action
@@ -81,3 +82,8 @@ class Resolution(NamedTuple):
     fraction: float
     sides: Sides
     rows: Sides
+    against: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        way = ", ".join(self.against) or "no limit"
+        return f"<Resolution {self.action.name}: {self.fraction:.3g} of the period, against {way}>"

@@ -154,6 +154,8 @@ def check(controller: Controller, step: ControlStep) -> None:
         raise InvalidInputError("scheme", "has a cost of the inertia matrix, which is not exported")
     if program.moving:
         raise InvalidInputError("scheme", "has obstacles that move, which are not exported")
+    if controller.estimator is not None:
+        raise InvalidInputError("estimator", "is not exported: hand the estimated positions over")
     if not step.has_network:
         problem = "has no compiled answer: take the projection network with the default integrators"
         raise InvalidInputError("solver", problem, controller.solver)

@@ -164,6 +164,11 @@ class QP:
             raise InvalidInputError("problem", given, problem) from None
         return cls(*arrays)
 
+    def __repr__(self) -> str:
+        n, m, p = self.sizes
+        bounds = int(np.isfinite(self.lb).sum() + np.isfinite(self.ub).sum())
+        return f"<QP of {n} variables: {m} inequalities, {p} equalities, {bounds} bounds>"
+
     def to_qpsolvers(self) -> qpsolvers.Problem:
         """Convert to a problem of qpsolvers; parts without rows are left out, as it expects."""
         import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs

@@ -214,6 +214,7 @@ class Waypoints(Reference):
         ends: Ends = "clamped",
         speed: float = SPEED,
         rate: float = RATE,
+        stretch: float = 1.0,
     ) -> Waypoints:
         """Read points or poses from a CSV file in [s] and [m].
 
@@ -226,24 +227,29 @@ class Waypoints(Reference):
             ends: As for :class:`Waypoints`.
             speed: Mean speed on each stretch of a file without times [m/s].
             rate: Mean angular speed on each stretch of a file without times [rad/s].
+            stretch: Ratio of the path's times to those in a file with times.
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
-            InvalidInputError: If ``ends`` is not one of its values, or a speed is not above zero,
-                or given for a file with times.
+            InvalidInputError: If ``ends`` is not one of its values, or a speed or the ratio is not
+                above zero, or given for the other kind of file.
         """
         positive("speed", speed)
         positive("rate", rate)
+        positive("stretch", stretch)
         path = Path(path)
         columns, table = _read(path)
         if columns[0] == "t":
-            times = table[:, 0]
+            times = stretch * table[:, 0]
             if speed != SPEED:
                 raise InvalidInputError("speed", f"is for a file without times, not {path}", speed)
             if rate != RATE:
                 raise InvalidInputError("rate", f"is for a file without times, not {path}", rate)
         else:
             times = _times_at(table, speed, rate)
+            if stretch != 1.0:
+                problem = f"is for a file with times, not {path}, which takes a speed"
+                raise InvalidInputError("stretch", problem, stretch)
         points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
         quaternions = table[:, -4:] if "qw" in columns else None
         try:

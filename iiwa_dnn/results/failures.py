@@ -103,8 +103,19 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
         )
     if incidents["slow_steps"]:
         path_time = number(incidents["path_time_s"])
-        reasons.append(f"slowed: path time {path_time} s after {number(metrics['duration_s'])} s")
+        needed = _needed(incidents.get("needed"))  # older metrics lack it
+        took = number(metrics["duration_s"])
+        reasons.append(f"slowed: path time {path_time} s after {took} s{needed}")
     return reasons
+
+
+def _needed(needed: Mapping[str, Any] | None) -> str:
+    """State what would have sufficed, rounded up; nothing if that is not known."""
+    if needed is None:
+        return ""
+    ratio = np.ceil(100.0 * needed["speed_ratio"]) / 100.0
+    time = np.ceil(10.0 * needed["time_s"]) / 10.0
+    return f"; needs {ratio:g} times the speed of joint {needed['joint']}, or about {time:g} s"
 
 
 def _blocking(metrics: Mapping[str, Any]) -> str:

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import bound_name, bound_words, in_the_way
+from iiwa_dnn.naming import KINDS, bound_name, bound_words, in_the_way
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 PROOF = "proof"
 """Name of the proof among a run's reference solvers."""
 
-ACTIONS = {1: "fallback", 2: "slow", 3: "relax", 4: "stop", 5: "euler"}
+_SLOW = 2
+ACTIONS = {1: "fallback", _SLOW: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5
@@ -327,6 +328,7 @@ def _incidents(record: Record) -> dict[str, Any]:
             "clipped_steps": record.filled("clipped").any(axis=1).sum(),
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
+            "needed": _needed(record, action, blocking),
             "first": _first_action(record, action),
             "blocking": _spells(record, _bounds(record, blocking, np.abs(blocking))),
             "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
@@ -334,6 +336,26 @@ def _incidents(record: Record) -> dict[str, Any]:
             "active_rows": _spells(record, _rows(record, "row_multiplier"), sized=True),
         }
     }
+
+
+def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | None:
+    """Estimate what would have sufficed where velocity limits alone slowed the path.
+
+    With its velocity over the fraction of the path's speed that it had, a slowed step would have
+    followed the path at its own speed. The time is that of the whole path at the mean pace. What is
+    left of an incomplete path may need more.
+    """
+    slow = action == _SLOW
+    acting = np.abs(blocking[slow])
+    others = (acting != 0) & (acting != KINDS.index("velocity") + 1)
+    nothing = ~acting.any(axis=1)
+    if not slow.any() or others.any() or nothing.any() or record.filled("blocking_rows").any():
+        return None
+    fraction = record.filled("fraction")[slow, np.newaxis]
+    ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
+    joint = int(ratio.argmax())
+    time = record.t[-1] / max(record.path_completed, np.finfo(float).tiny)
+    return {"joint": joint + 1, "speed_ratio": ratio[joint], "time_s": time}
 
 
 def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:

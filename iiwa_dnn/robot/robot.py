@@ -240,20 +240,31 @@ class Robot:
         fits = known.size == self.dof and not self.mimics
         if fits and (self.q_lower < known).all() and (known < self.q_upper).all():
             return known
+        drawn = np.random.default_rng(0).uniform(0.2, 0.8, (200, self.dof))
+        postures = self._inside(np.vstack([np.full(self.dof, 0.5), drawn]))
+        smallest = self._smallest_singular_values(postures)
+        best = 0 if smallest[0] >= SINGULAR else int(smallest.argmax())
+        return np.array(postures[best])
+
+    def draw(self, random: np.random.Generator, count: int) -> checks.Array:
+        """Draw joint positions inside the limits, evenly, (count, n) [rad]."""
+        return self._inside(random.uniform(0.0, 1.0, (count, self.dof)))
+
+    def _inside(self, ratios: checks.Array) -> checks.Array:
+        """Return postures at ratios of the joints' ranges, (k, n) [rad], mimics at their leaders.
+
+        In place of an infinite limit there is one 2 pi from 0, or from the other limit.
+        """
         nearest = np.clip(0.0, self.q_lower, self.q_upper)
-        lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)  # a limit may be infinite
+        lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)
         upper = np.minimum(self.q_upper, nearest + 2.0 * np.pi)
-        middle = 0.5 * (lower + upper)
-        drawn = np.random.default_rng(0).uniform(-0.3, 0.3, (200, self.dof))
-        postures = np.vstack([middle, middle + (upper - lower) * drawn])
+        postures: checks.Array = lower + (upper - lower) * ratios
         for mimic in self.mimics:
             j = self.joint_names.index(mimic.joint)
             followed = postures[:, self.joint_names.index(mimic.leader)]
             position = mimic.multiplier * followed + mimic.offset
             postures[:, j] = np.clip(position, lower[j], upper[j])
-        smallest = self._smallest_singular_values(postures)
-        best = 0 if smallest[0] >= SINGULAR else int(smallest.argmax())
-        return np.array(postures[best])
+        return postures
 
     def _smallest_singular_values(self, postures: checks.Array) -> checks.Array:
         """Compute the smallest singular value of the tip's Jacobian in each posture (k, n), (k,).

@@ -81,6 +81,7 @@ class Simulation:
         tol: float = 1e-9,
         check: CrossCheck | None = None,
         solver: DNNSolver | None = None,
+        far_start: bool = False,
         **disturbances: Any,
     ) -> None:
         """Check the arguments.
@@ -105,6 +106,8 @@ class Simulation:
             check: Reference solvers; None asks ProxQP, ``CrossCheck(())`` nobody.
             solver: The network and its integrators, reset before the run; None takes the paper's
                 network with `tol`.
+            far_start: Whether the arm may go to a path of poses that begins elsewhere than the
+                tip; else such a run is refused.
             **disturbances: Fields of `Disturbance`, for example ``noise=0.01``.
 
         Raises:
@@ -137,7 +140,7 @@ class Simulation:
         self._controller.anchor(start)
         self._check_combination(scheme)
         self._plant.start(robot, self._q0, dt, seed)
-        self._controller.warn_if_far(start, 0.0, stacklevel=4)
+        self._controller.warn_if_far(start, 0.0, 4, refuses=not far_start)
         self._settings = self._stated(length)
 
     @property
@@ -339,7 +342,7 @@ def simulate(
         q0: Joint positions at the start [rad], (n,).
         progress: Called now and then with the number of steps done since the last call.
         **options: Keyword arguments of `Simulation`: plant, dt, duration, mode, motion,
-            disturbance or its fields, policy, seed, tol, check, solver.
+            disturbance or its fields, policy, seed, tol, check, solver, far_start.
 
     Returns:
         The record of the run.

@@ -116,7 +116,7 @@ def findings(tables: Mapping[str, Table]) -> list[str]:
             verdict = variant["verdicts"][key]
             known = [ratio for ratio in verdict["ours_over_paper"] if ratio is not None]
             ratios = f"{short(min(known))} to {short(max(known))}" if known else "–"
-            trends = f"{verdict['our_trend']} with ξ (paper: {verdict['paper_trend']})"
+            trends = f"over ξ {verdict['our_trend']} (paper: {verdict['paper_trend']})"
             said.append(f"{label} {trends}, {ratios} times the paper's")
         lines.append(f"Table I, {name}: {'; '.join(said)}.")
     for mode, entries in table2["modes"].items():

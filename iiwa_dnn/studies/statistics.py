@@ -118,3 +118,15 @@ def trend(x: ArrayLike, y: ArrayLike) -> Trend:
         return "constant"
     tau = kendalltau(one, other).statistic  # NaN of a constant x
     return "rising" if tau > 0.0 else "falling" if tau < 0.0 else "none"
+
+
+def trend_words(x: ArrayLike, y: ArrayLike) -> str:
+    """Name the trend of y over x, (k,), and the steps that go against it, if any.
+
+    Raises:
+        InvalidInputError: As `trend`.
+    """
+    found = trend(x, y)
+    steps = np.diff(np.asarray(y)[np.argsort(x)])
+    against = {"rising": steps < 0.0, "falling": steps > 0.0}.get(found, np.zeros(0)).sum()
+    return f"{found} but at {against:.0f} of {steps.size} steps" if against else found

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.studies.statistics import Estimate, trend
+from iiwa_dnn.studies.statistics import Estimate, trend, trend_words
 
 FACTOR = 2.0
 """Largest factor between a number and the paper's that still counts as reproduced."""
@@ -29,8 +29,8 @@ class Verdict:
     Attributes:
         level: The verdict.
         ratios: Ours over the paper's, entry by entry; None where either is missing.
-        ours: Direction of ours.
-        paper: Direction of the paper's.
+        ours: Direction of ours, and the steps against it.
+        paper: Direction of the paper's, likewise.
     """
 
     level: Level
@@ -65,11 +65,12 @@ def judge_row(
     table = np.array([x, paper, ours], dtype=float)
     ratios = tuple(None if np.isnan(ratio) else ratio for ratio in (table[2] / table[1]).tolist())
     at, theirs, mine = table[:, ~np.isnan(table[1])]
-    paper_trend = trend(at, theirs)
+    paper_trend = trend_words(at, theirs)
     if np.isnan(mine).any():
         return Verdict("not reproduced", ratios, "unknown", paper_trend)
-    our_trend = trend(at, mine)
-    level: Level = "same trend" if our_trend == paper_trend else "not reproduced"
+    our_trend = trend_words(at, mine)
+    same = trend(at, mine) == trend(at, theirs)
+    level: Level = "same trend" if same else "not reproduced"
     if all(map(_within_factor, mine / theirs)):
         level = "reproduced"
     return Verdict(level, ratios, our_trend, paper_trend)

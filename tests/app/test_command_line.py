@@ -51,7 +51,9 @@ def test_help_names_the_quantity_and_the_unit_of_every_option(
     for field in dataclasses.fields(COMMANDS[name]):
         option = field.name.replace("_", "-")
         if field.name in ("run", "file", "shell"):
-            assert any(row.startswith(("PATH  ", "SHELL  ")) for row in rows)
+            assert any(row.startswith(("PATH  ", "SHELL  ", "[RUN]  ")) for row in rows)
+            # What may be left out stands in brackets in the first line.
+            assert ("[RUN]" in rows[0]) == (field.name == "run")
             continue
         (words,) = [shown[k] for k in shown if re.search(rf"--(no-)?{option}(?![\w-])", k)]
         assert words

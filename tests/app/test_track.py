@@ -83,6 +83,14 @@ def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert names == {"record.npz", "metrics.json", "report.md", "settings.toml"}
 
 
+def test_csv_writes_all_samples_beside_the_record(tmp_path: Path) -> None:
+    assert call([*QUICK, "--quiet", "--csv", "--out", str(tmp_path)]) == 0
+    record = Record.load(tmp_path / "record.npz")
+    table = np.genfromtxt(tmp_path / "record.csv", delimiter=",", names=True)
+    np.testing.assert_array_equal(table["t"], record.t)
+    np.testing.assert_array_equal(table["kkt_residual"][:-1], record.kkt_residual)
+
+
 def test_no_network_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*args: object, **options: object) -> None:
         raise AssertionError("a connection was opened")

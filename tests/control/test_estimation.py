@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import heart, paper_robot, paper_start
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.references import Still
+from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits
 
 DT = 1e-3
 
@@ -95,3 +103,93 @@ def test_without_a_bias_walk_there_is_no_bias() -> None:
 def test_bad_numbers_are_named(numbers: dict[str, float], name: str) -> None:
     with pytest.raises(InvalidInputError, match=rf"^{name}\b"):
         NoiseModel(**numbers)
+
+
+def test_with_late_drives_the_estimate_is_where_the_next_command_begins() -> None:
+    """Exact readings of a joint whose drive carries out what it got three periods ago."""
+    dt = 1e-3
+    commands = np.random.default_rng(2).standard_normal((50, 2))
+    q = np.cumsum(np.vstack([np.zeros((4, 2)), dt * commands]), axis=0)
+    estimator = JointEstimator(NoiseModel(velocity=1e-6, measurement=1e-6, delay=3), dt)
+    for k in range(40):
+        expected = estimator.update(q[k])
+        np.testing.assert_allclose(expected, q[k + 3], rtol=0, atol=1e-14)
+        estimator.predict(commands[k])
+
+
+def loop(controller: Controller, first: int, last: int, arm: dict[str, np.ndarray]) -> None:
+    """Steps of an arm with noisy encoders whose drives are one period late."""
+    for k in range(first, last):
+        noise = 1e-4 * np.random.default_rng(k).standard_normal(7)
+        command = controller.step(arm["q"] + noise, k * controller.dt)
+        arm["ok"] = np.append(arm["ok"], command.ok or 2 * command.limited)
+        arm["q"] = arm["q"] + controller.dt * arm["late"]
+        arm["late"] = command.dq
+
+
+def shaken(**options: object) -> tuple[Controller, dict[str, np.ndarray]]:
+    robot = paper_robot().with_limits(acceleration=10.0, jerk=100.0)
+    limits = (AccelerationLimits(), JerkLimits())
+    scheme = DoubleIndicator(position_gain=9.5, orientation_gain=9.5, extra_limits=limits)
+    reference = Still().anchored(paper_start())
+    controller = Controller(robot, scheme, reference, dt=2e-3, **options)
+    return controller, {"q": np.array(PAPER_Q0), "late": np.zeros(7), "ok": np.zeros(0)}
+
+
+MODEL = NoiseModel(velocity=1e-3, measurement=1e-4, delay=1)
+
+
+def test_a_controller_with_an_estimator_leaves_an_arm_at_rest_alone() -> None:
+    plain, banged = shaken()
+    filtered, calm = shaken(estimator=MODEL)
+    loop(plain, 0, 300, banged)
+    loop(filtered, 0, 300, calm)
+    assert (banged["ok"] == 2.0).all()  # never all that is asked, and never more than limited
+    assert (calm["ok"] == 1.0).mean() > 0.9
+    assert np.abs(calm["late"]).max() < 0.2 * np.abs(banged["late"]).max()
+    assert filtered.delay < 0.1 * plain.delay
+
+
+def test_an_estimator_goes_with_copies_and_pickles_and_not_with_a_broken_step() -> None:
+    controller, arm = shaken(estimator=MODEL)
+    loop(controller, 0, 20, arm)
+    twins = [copy.copy(controller), pickle.loads(pickle.dumps(controller))]
+    arms = [dict(arm) for _ in twins]
+    with pytest.raises(InvalidInputError):
+        controller.step(np.full(7, np.nan), 20 * 2e-3)
+    with pytest.raises(InvalidInputError):
+        controller.step(arm["q"], 20 * 2e-3, "a target")
+    loop(controller, 20, 30, arm)
+    for twin, other in zip(twins, arms, strict=True):
+        loop(twin, 20, 30, other)
+        np.testing.assert_array_equal(other["late"], arm["late"])
+    controller.reset()
+    again = {"q": np.array(PAPER_Q0), "late": np.zeros(7), "ok": np.zeros(0)}
+    fresh, first = shaken(estimator=MODEL)
+    loop(controller, 0, 5, again)
+    loop(fresh, 0, 5, first)
+    np.testing.assert_allclose(again["late"], first["late"], rtol=0, atol=1e-9)
+
+
+def test_a_command_against_a_velocity_limit_is_not_limited_but_cannot() -> None:
+    robot = paper_robot().with_limits(velocity=0.02, acceleration=10.0, jerk=1000.0)
+    limits = (AccelerationLimits(), JerkLimits())
+    controller = Controller(robot, DoubleIndicator(extra_limits=limits), heart(), dt=1e-3)
+    q = np.array(PAPER_Q0)
+    found = []
+    for k in range(300):
+        command = controller.step(q, k * 1e-3)
+        q = q + 1e-3 * command.dq
+        found.append((command.ok, command.limited))
+    assert found[0] == (True, False)
+    assert found[-1] == (False, False)
+    assert "velocity limit" in repr(command)
+
+
+def test_an_estimator_with_a_bias_is_refused_by_a_controller() -> None:
+    with pytest.raises(InvalidInputError, match=r"^estimator: .*bias_walk"):
+        shaken(estimator=NoiseModel(bias_walk=0.1))
+    with pytest.raises(InvalidInputError, match=r"^estimator"):
+        shaken(estimator=0.1)
+    with pytest.raises(InvalidInputError, match=r"^delay"):
+        NoiseModel(delay=-1)

@@ -169,3 +169,22 @@ def test_csv_with_unknown_ends(tmp_path: Path) -> None:
     (tmp_path / "good.csv").write_text(GOOD)
     with pytest.raises(InvalidInputError, match=r"^ends: "):
         Waypoints.from_csv(tmp_path / "good.csv", ends="open")
+
+
+def test_a_stretched_file_is_the_same_path_more_slowly(tmp_path: Path) -> None:
+    file = tmp_path / "path.csv"
+    file.write_text("t,x,y,z\n0,0,0,0\n2,0.05,0,-0.02\n4,0.05,0.05,0\n")
+    plain = Waypoints.from_csv(file)
+    slow = Waypoints.from_csv(file, stretch=1.4)
+    assert slow.duration == pytest.approx(5.6, rel=1e-15)
+    for t in (0.0, 0.7, 2.0, 3.9):
+        before = plain.at(t)
+        after = slow.at(1.4 * t)
+        np.testing.assert_allclose(after.position, before.position, rtol=0, atol=1e-15)
+        velocity = before.linear_velocity / 1.4
+        np.testing.assert_allclose(after.linear_velocity, velocity, rtol=0, atol=1e-15)
+    file.write_text("x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0.05,0,0,1,0,0,0\n")
+    with pytest.raises(InvalidInputError, match=r"^stretch: is for a file with times"):
+        Waypoints.from_csv(file, stretch=1.4)
+    with pytest.raises(InvalidInputError, match=r"^stretch"):
+        Waypoints.from_csv(file, stretch=0.0)

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 
 import numpy as np
 import pytest
 
+from helpers_kinematics import PAPER_Q0
 from helpers_records import heart_record, make_record
+from helpers_simulation import paper_robot, paper_start
+from iiwa_dnn import Circle, CrossCheck, DoubleIndicator, Record, simulate
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
 
@@ -321,6 +325,37 @@ def test_the_policies_are_named_with_their_steps():
     (reason, slowed_down) = failures(record)
     assert reason.startswith("6 steps without a solution (3 slowed, 2 relaxed, 1 stopped), the")
     assert slowed_down == "slowed: path time 1 s after 1 s"
+
+
+def test_what_would_suffice_does_and_less_does_not():
+    """A circle at a third of the speed that it needs, and then at what the report says."""
+
+    def run_at(velocity: float, duration: float = 3.0) -> Record:
+        start = paper_start()
+        circle = Circle(0.02, period=3.0).anchored(start)
+        robot = paper_robot().with_limits(velocity=velocity)
+        options = {"dt": 5e-3, "duration": duration, "check": CrossCheck(())}
+        return simulate(robot, DoubleIndicator(), circle, PAPER_Q0, **options)
+
+    slow = run_at(0.05)
+    needed = compute_metrics(slow)["incidents"]["needed"]
+    said = re.search(r"needs ([\d.]+) times .* joint (\d), or about ([\d.]+) s", failures(slow)[-1])
+    ratio = float(said[1])
+    assert 0.0 <= ratio - needed["speed_ratio"] < 0.01 + 1e-9
+    assert int(said[2]) == needed["joint"]
+    assert failures(run_at(0.05 * ratio * 1.02)) == []
+    assert failures(run_at(0.05 * ratio * 0.9)) != []
+    assert run_at(0.05, float(said[3])).path_time == pytest.approx(3.0, rel=0.1)
+
+
+def test_what_would_suffice_is_not_said_of_other_limits():
+    fraction = [0.5] * 4 + [1.0] * 6
+    fast = np.zeros((10, 7), int)
+    fast[:4, 3] = 2
+    assert "needs" in failures(slowed(fraction, blocking=fast))[-1]
+    fast[2, 1] = 1  # a position limit: speed alone does not help
+    assert "needs" not in failures(slowed(fraction, blocking=fast))[-1]
+    assert "needs" not in failures(slowed(fraction))[-1]
 
 
 def slowed(fraction, **changes):

@@ -160,16 +160,27 @@ def test_a_record_prints_one_line():
 def test_a_csv_file_holds_every_digit(heart, tmp_path):
     save_csv(heart, tmp_path / "heart.csv")
     head = (tmp_path / "heart.csv").read_text().splitlines()[0].split(",")
-    assert head[:2] + head[8:9] + head[-6:] == [
+    assert head[:2] + head[8:9] + head[15:21] == [
         "t", "q1", "dq1", "x", "y", "z", "x_desired", "y_desired", "z_desired",
     ]  # fmt: skip
+    assert len(set(head)) == len(head)
     table = np.genfromtxt(tmp_path / "heart.csv", delimiter=",", names=True)
     for name, values in {
         "t": heart.t, "q7": heart.q[:, 6], "y": heart.position[:, 1],
-        "z_desired": heart.position_desired[:, 2],
+        "z_desired": heart.position_desired[:, 2], "rotation6": heart.rotation[:, 1, 2],
     }.items():  # fmt: skip
         np.testing.assert_array_equal(table[name], values)
     np.testing.assert_array_equal(table["dq3"], [*heart.dq[:, 2], np.nan])
+    np.testing.assert_array_equal(table["kkt_residual"], [*heart.kkt_residual, np.nan])
+    np.testing.assert_array_equal(table["solution_gap1"], [*heart.solution_gap[:, 0], np.nan])
+    # Nothing of the record is left out.
+    arrays = [getattr(heart, name) for name in COLUMNS]
+    assert len(head) == sum(array[:1].size for array in arrays if array is not None)
+
+
+def test_a_csv_file_of_a_run_without_steps_has_its_start(tmp_path):
+    save_csv(make_record(steps=0), tmp_path / "none.csv")
+    assert len((tmp_path / "none.csv").read_text().splitlines()) == 2
 
 
 def test_a_share_below_one_is_never_shown_as_all_of_it():

@@ -91,6 +91,11 @@ def test_a_control_loop(tmp_path: Path) -> None:
     assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-5
 
 
+def test_a_control_loop_with_noise_and_a_jerk_limit(example: Example) -> None:
+    text = example("control_loop.py", "100", "--noise", "1e-4", "--jerk", "200")
+    assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-3
+
+
 def test_a_limit_of_ones_own(example: Example) -> None:
     text = example("own_parts.py", "10", "5e-3")
     assert 0.1999 <= number(r"smallest distance ([\d.]+) m", text) < 0.2001

@@ -7,6 +7,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from scipy.optimize import linprog
 
@@ -14,12 +15,13 @@ from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import Action
+from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.references import Circle, Heart
+from iiwa_dnn.references import Circle, Heart, Waypoints
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
@@ -523,6 +525,24 @@ def test_a_record_names_network_and_integrator() -> None:
 def test_a_reference_that_was_not_anchored_is_told_at_once() -> None:
     with pytest.warns(UserWarning, match=r"begins 0\.\d+ m from the tip.*anchored"):
         run(reference=Heart(), duration=0.002)
+
+
+def test_a_path_of_poses_that_begins_elsewhere_is_refused_unless_asked_for() -> None:
+    start = paper_start()
+    robot = start.robot
+    points = start.position + [[0.1, 0.0, -0.1], [0.1, 0.05, -0.1]]
+    turns = np.tile(pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]], (2, 1))
+    path = Waypoints([0.0, 0.2], points, quaternions=turns)
+    arguments = {"dt": 1e-3, "duration": 0.05, "check": CrossCheck(())}
+    with pytest.raises(InvalidInputError, match=r"begins 0\.141 m.*solve_pose.*far_start") as info:
+        simulate(robot, DoubleIndicator(), path, start.q, **arguments)
+    assert "anchored" not in str(info.value)
+    with pytest.warns(UserWarning, match="solve_pose"):
+        record = simulate(robot, DoubleIndicator(), path, start.q, far_start=True, **arguments)
+    assert record.steps == 50
+    posture = solve_pose(robot, path.at(0.0), start.q).q
+    record = simulate(robot, DoubleIndicator(), path, posture, **arguments)
+    assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 1e-3
 
 
 # Bad arguments

@@ -19,6 +19,7 @@ from iiwa_dnn import (
     Target,
     load_robot,
     simulate,
+    solve_pose,
 )
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
@@ -87,3 +88,13 @@ def test_a_follower_of_a_locked_joint_is_refused(file: Path) -> None:
     with pytest.raises(InvalidInputError, match=f"'{FOURTH}' follows '{SECOND}' .*lock it too"):
         load_robot(file, locked=[SECOND])
     assert load_robot(file, locked=[SECOND, FOURTH]).mimics == ()
+
+
+def test_a_posture_for_a_pose_keeps_the_coupling(file: Path) -> None:
+    robot = load_robot(file)
+    q = robot.draw(np.random.default_rng(0), 1)[0]
+    conf = Configuration(robot, q)
+    answer = solve_pose(robot, Target(conf.position, conf.rotation))
+    assert answer.q is not None
+    assert answer.position_error <= 1e-9
+    assert answer.q[3] == pytest.approx(-0.5 * answer.q[1] + 0.1, abs=1e-9)

@@ -72,8 +72,9 @@ def test_only_pictures_are_shown(report: str) -> None:
 
 def test_findings_are_made_from_the_numbers(tables: dict[str, Any]) -> None:
     said = "\n".join(findings(tables))
-    assert "drift rising with ξ (paper: rising), 1 to 1 times the paper's" in said
-    assert "Table I, continuous, block: MAX E falling with ξ (paper: falling)" in said
+    assert "drift over ξ rising (paper: rising), 1 to 1 times the paper's" in said
+    told = "MAX E over ξ falling but at 2 of 6 steps (paper: falling but at 2 of 6 steps)"
+    assert f"Table I, continuous, block: {told}" in said
     # Both modes and both measures: lowered at velocity, raised at network, neither at measurement.
     assert (
         "in 12 comparisons over 40 seeds: lowered in 4, raised in 4, no effect shown in 4" in said

@@ -9,7 +9,7 @@ from scipy.stats import ttest_rel
 from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference, trend
+from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference, trend, trend_words
 
 
 def test_interval_of_four_numbers_worked_by_hand() -> None:
@@ -128,3 +128,10 @@ def test_trends(values: tuple[float, ...], expected: str) -> None:
 def test_bad_input_is_named(call, argument: str) -> None:
     with pytest.raises(InvalidInputError, match=f"^{argument}: "):
         call()
+
+
+def test_steps_against_a_trend_are_counted() -> None:
+    assert trend_words((1, 2, 3, 4), (4.0, 5.0, 2.0, 1.0)) == "falling but at 1 of 3 steps"
+    assert trend_words((4, 3, 2, 1), (1.0, 2.0, 5.0, 4.0)) == "falling but at 1 of 3 steps"
+    assert trend_words((1, 2, 3), (1.0, 2.0, 3.0)) == "rising"
+    assert trend_words((1, 2, 3), (2.0, 2.0, 2.0)) == "constant"

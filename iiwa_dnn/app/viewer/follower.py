@@ -98,6 +98,7 @@ class FollowerState:
         kkt_residual: Largest KKT residual of the network's answer.
         ok: Whether the arm can follow the target within its limits.
         seconds: Wall time of the control step [s].
+        against: Limits in the way of following it, in words.
     """
 
     q: Vector
@@ -106,6 +107,7 @@ class FollowerState:
     kkt_residual: float
     ok: bool
     seconds: float
+    against: tuple[str, ...] = ()
 
 
 class Follower:
@@ -200,6 +202,7 @@ class Follower:
         outcome = self._loop.step(self._steps)
         seconds = time.perf_counter() - began
         command = outcome.commands[0]
+        resolution = command.resolution
         self._command = command
         self._steps += 1
         return FollowerState(
@@ -209,6 +212,7 @@ class Follower:
             kkt_residual=command.solution.residuals.largest,
             ok=command.ok,
             seconds=seconds,
+            against=() if resolution is None else resolution.against,
         )
 
     @property

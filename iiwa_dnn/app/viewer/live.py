@@ -226,6 +226,6 @@ class LivePanel:
 def describe(state: FollowerState) -> str:
     """Describe the arm's progress in a few words."""
     if not state.ok:
-        return "out of reach"
+        return f"held back by {', '.join(state.against)}" if state.against else "out of reach"
     arrived = state.position_error < 1e-4 and state.orientation_error < 1e-3
     return "at the target" if arrived else "on its way"

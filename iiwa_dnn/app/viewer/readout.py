@@ -1,7 +1,7 @@
 """Words and bars on the page, as HTML."""
 
 import html
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -72,6 +72,24 @@ def facts(values: Mapping[str, str]) -> str:
         for name, value in values.items()
     )
     return f'<div style="padding:2px 10px">{rows}</div>'
+
+
+def verdict(reasons: Sequence[str]) -> str:
+    """Return the reasons why a run is no success, or that it is one, as HTML."""
+    color, lines = ("#d6001c", reasons) if reasons else ("#2b8a3e", ["completed within all limits"])
+    rows = "".join(f"<div>{html.escape(line)}</div>" for line in lines)
+    return f'<div style="padding:2px 10px;font-size:12px;color:{color}">{rows}</div>'
+
+
+def marks(stretches: Sequence[tuple[float, float]]) -> str:
+    """Mark stretches of a time bar, each from a fraction of it to another one, as HTML."""
+    spans = "".join(
+        f'<span style="position:absolute;left:{100.0 * start:.2f}%;top:0;height:6px;'
+        f'min-width:2px;width:{100.0 * (end - start):.2f}%;background:#d6001c"></span>'
+        for start, end in stretches
+    )
+    bar = "position:relative;height:6px;background:#e5e7ec;border-radius:3px"
+    return f'<div style="padding:2px 10px"><div style="{bar}">{spans}</div></div>'
 
 
 def length(metres: float) -> str:

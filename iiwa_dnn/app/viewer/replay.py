@@ -9,8 +9,10 @@ from iiwa_dnn.app.viewer import readout
 from iiwa_dnn.app.viewer.curves import COLORS, Curves
 from iiwa_dnn.app.viewer.readout import Readout
 from iiwa_dnn.app.viewer.stage import Stage
+from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.envelope import envelope
+from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.scenery import obstacles_of
@@ -19,6 +21,8 @@ SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
 _DESIRED_COLOR = (70, 80, 100)
 _DRAWN_COLOR = (220, 0, 30)
 _POINTS = 300  # of a curve
+_POLICIES = {1: "second attempt", 2: "slowed", 3: "relaxed", 4: "stopped", 5: "Euler step"}
+"""Words for the codes of a record's actions."""
 
 
 @dataclass
@@ -96,6 +100,10 @@ class ReplayPanel:
         length = max(self.playback.end - start, 1e-6)
         self._play = gui.add_button("Play")
         self._slider = gui.add_slider("time [s]", start, start + length, length / 1000.0, start)
+        stretches = acted_stretches(self.record, _POINTS)
+        if stretches:
+            gui.add_html(readout.marks(stretches))
+        gui.add_html(readout.verdict(failures(self.record)))
         speed = gui.add_dropdown("speed", SPEEDS, initial_value="1")
         self._play.on_click(lambda _: self.playback.toggle())
         self._slider.on_update(self._on_slider)
@@ -180,6 +188,8 @@ class ReplayPanel:
             "KKT residual of the network": f"{record.kkt_residual[step]:.1e}",
             f"cross-check gap ({solvers})": "-" if np.isnan(gap) else f"{gap:.1e} rad/s",
         }
+        if record.action is not None:
+            values["policy"] = policy_words(record, step)
         if record.torque is not None:
             values["largest torque"] = f"{np.abs(record.torque[step]).max():.1f} N m"
         return values
@@ -189,3 +199,26 @@ class ReplayPanel:
         if event.client is not None:
             self.playback.playing = False
             self.playback.seek(float(event.target.value))
+
+
+def acted_stretches(record: Record, most: int) -> list[tuple[float, float]]:
+    """Find the stretches of a run, as fractions of it, in which a policy acted.
+
+    The run is cut into `most` pieces at most, and a piece counts as a whole.
+    """
+    steps = np.flatnonzero(record.filled("action"))
+    pieces = max(min(most, record.steps), 1)
+    acted = np.zeros(pieces + 2, bool)
+    acted[1 + steps * pieces // max(record.steps, 1)] = True
+    edges = np.flatnonzero(acted[1:] != acted[:-1]) / pieces
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def policy_words(record: Record, step: int) -> str:
+    """Say in words what a policy did at a step, and what was in the way."""
+    code = int(record.filled("action")[step])
+    if not code:
+        return "-"
+    acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
+    against = in_the_way({"rows": (), **record.settings}, *acting)
+    return ", ".join([_POLICIES.get(code, "acted"), *map(describe, against)])

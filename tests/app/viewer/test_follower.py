@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import coal
 import numpy as np
 import pinocchio as pin
@@ -180,3 +182,13 @@ def test_the_distance_of_arm_and_ball(robot):
     assert 0.0 < far - follower.distance <= TIP_SPEED * follower.dt + 1e-9
     follower.avoid(None)
     assert np.isnan(follower.distance)
+
+
+def test_an_arm_that_is_held_back_says_by_what(robot):
+    follower = Follower(robot.with_limits(velocity=0.01), START)
+    start = follower.configuration
+    for _ in range(20):
+        state = follower.step(start.position + [0.0, 0.1, 0.0], start.rotation)
+    assert not state.ok
+    assert "velocity limit" in describe(state)
+    assert describe(replace(state, against=())) == "out of reach"

@@ -1,10 +1,13 @@
-"""The replay's clock."""
+"""The replay's clock, and what it tells of a run that failed."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from iiwa_dnn.app.viewer.replay import Playback
+from helpers_records import make_record
+from iiwa_dnn.app.viewer import readout
+from iiwa_dnn.app.viewer.replay import Playback, acted_stretches, policy_words
 
 
 def test_it_stands_still_until_it_is_told_to_play():
@@ -44,3 +47,34 @@ def test_seeking_stays_inside_the_record():
     for asked, time in ((-5.0, 1.0), (1.5, 1.5), (9.0, 2.0)):
         playback.seek(asked)
         assert playback.time == time
+
+
+def test_stretches_of_a_policy_are_marked_where_they_are() -> None:
+    action = np.zeros(1000, int)
+    action[200:300] = 2
+    action[990:] = 4
+    record = make_record(steps=1000, action=action)
+    for pieces in (10, 100, 1000, 5000):
+        first, last = acted_stretches(record, pieces)
+        width = 1.0 / min(pieces, 1000)
+        assert first == pytest.approx((0.2, 0.3), abs=1e-12)
+        assert last[0] == pytest.approx(min(0.99, 1.0 - width), abs=1e-12)
+        assert last[1] == pytest.approx(1.0)
+    assert acted_stretches(make_record(), 10) == []
+    assert acted_stretches(make_record(steps=0), 10) == []
+
+
+def test_a_slowed_step_says_by_which_joint() -> None:
+    blocking = np.zeros((10, 7), int)
+    blocking[3, 3] = -2
+    record = make_record(action=[0, 0, 0, 2, 3, 0, 0, 0, 0, 0], blocking=blocking)
+    words = [policy_words(record, step) for step in (2, 3, 4)]
+    assert words == ["-", "slowed, joint 4 lower velocity limit", "relaxed"]
+
+
+def test_the_verdict_is_shown_and_harmless() -> None:
+    assert "completed" in readout.verdict([])
+    shown = readout.verdict(["path completed 12 %", "<b>"])
+    assert "path completed 12 %" in shown
+    assert "&lt;b&gt;" in shown
+    assert readout.marks([(0.2, 0.3)]).count("left:20.00%") == 1

@@ -1,0 +1,142 @@
+"""Postures for random poses beside Pink's iterated solver and Pinocchio's: share, error, time.
+
+``python -m benchmarks poses`` prints a table. A pose is that of a random posture within the joints'
+limits, so that it can be reached. Every solver gets the same poses and the same starts, the arm's
+start posture, whose CPU time is measured, and up to 19 random ones until one leads to the pose. An
+answer counts if Pinocchio finds its tip within 1e-9 m and 1e-9 rad of the pose and its joints
+within their limits. From each start a solver has 100 iterations, as `iiwa_dnn.solve_pose` has. Pink
+takes whole steps (gain 1 in a step of 1 s), with the damping of its examples; Pinocchio's loop is
+that of its inverse kinematics example, damped by 1e-12, its joints
+clipped to their limits.
+"""
+
+import argparse
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+import pink
+import pinocchio as pin
+from pink.limits import ConfigurationLimit
+from pink.tasks import FrameTask
+
+import iiwa_dnn
+from benchmarks.braking import ARMS
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.results.markdown import markdown_table
+
+TOL = 1e-9
+"""Largest error of a pose [m], [rad]."""
+
+STARTS = 20
+ITERATIONS = 100
+
+Solver = Callable[[iiwa_dnn.Robot, pin.SE3, Vector], Vector]
+
+ROUNDED = 1.01
+"""Ratio of an error to `TOL` that still counts: Pinocchio's rounding is another one."""
+
+
+def own_postures(robot: iiwa_dnn.Robot, pose: pin.SE3, start: Vector) -> Vector:
+    """Return the posture of `iiwa_dnn.solve_pose` from one start."""
+    target = iiwa_dnn.Target(pose.translation, pose.rotation)
+    return iiwa_dnn.solve_pose(robot, target, start, starts=1).nearest.q
+
+
+def pink_postures(robot: iiwa_dnn.Robot, pose: pin.SE3, start: Vector) -> Vector:
+    """Return where Pink's differential inverse kinematics, iterated, ends up."""
+    task = FrameTask(robot.tip, position_cost=1.0, orientation_cost=1.0, lm_damping=1e-3)
+    task.set_target(pose)
+    limits = [ConfigurationLimit(robot.model, config_limit_gain=1.0)]
+    conf = pink.Configuration(robot.model, robot.model.createData(), start)
+    for _ in range(ITERATIONS):
+        if np.linalg.norm(task.compute_error(conf)) <= 0.5 * TOL:
+            break
+        try:
+            speed = pink.solve_ik(conf, [task], 1.0, "daqp", 1e-12, limits)
+        except pink.exceptions.PinkError:
+            break
+        conf.update(np.clip(conf.integrate(speed, 1.0), robot.q_lower, robot.q_upper))
+    found: Vector = conf.q.copy()
+    return found
+
+
+def pinocchio_postures(robot: iiwa_dnn.Robot, pose: pin.SE3, start: Vector) -> Vector:
+    """Return where the loop of Pinocchio's example, with whole steps, ends up."""
+    model = robot.model
+    data = model.createData()
+    q = start.copy()
+    for _ in range(ITERATIONS):
+        pin.framesForwardKinematics(model, data, q)
+        missing = data.oMf[robot.tip_id].actInv(pose)
+        error = pin.log(missing).vector
+        if np.linalg.norm(error) <= 0.5 * TOL:
+            break
+        jacobian = pin.computeFrameJacobian(model, data, q, robot.tip_id)
+        jacobian = -pin.Jlog6(missing.inverse()) @ jacobian
+        square = jacobian @ jacobian.T + 1e-12 * np.eye(6)
+        step = -jacobian.T @ np.linalg.solve(square, error)
+        q = np.clip(pin.integrate(model, q, step), robot.q_lower, robot.q_upper)
+    return q
+
+
+SOLVERS: dict[str, Solver] = {
+    "iiwa_dnn": own_postures,
+    "Pink, daqp": pink_postures,
+    "Pinocchio, clipped": pinocchio_postures,
+}
+
+
+def error_of(robot: iiwa_dnn.Robot, q: Vector, pose: pin.SE3) -> float:
+    """Return the larger of the distance [m] and the angle [rad] of the tip from a pose."""
+    data = robot.model.createData()
+    pin.framesForwardKinematics(robot.model, data, q)
+    at = data.oMf[robot.tip_id]
+    off = np.linalg.norm(at.translation - pose.translation)
+    turned = np.linalg.norm(pin.log3(at.rotation.T @ pose.rotation))
+    return float(max(off, turned)) if not robot.outside(q) else np.inf
+
+
+def measure(robot: iiwa_dnn.Robot, count: int) -> list[list[str]]:
+    """Let each solver look for `count` random poses; returns the table's rows."""
+    poses = [
+        pin.SE3(at.rotation.copy(), at.position.copy())
+        for at in map(partial(iiwa_dnn.Configuration, robot), drawn(robot, count, seed=1))
+    ]
+    starts = np.vstack([robot.start_posture(), drawn(robot, STARTS - 1, seed=0)])
+    rows = []
+    for name, solver in SOLVERS.items():
+        solver(robot, poses[0], starts[0])  # compiles
+        errors = np.full((count, STARTS), np.inf)
+        times = np.empty(count)
+        for k, pose in enumerate(poses):
+            for i, start in enumerate(starts):
+                began = time.process_time()
+                q = solver(robot, pose, start)
+                if i == 0:
+                    times[k] = time.process_time() - began
+                errors[k, i] = error_of(robot, q, pose)
+                if errors[k, i] <= ROUNDED * TOL:
+                    break
+        found = errors <= ROUNDED * TOL
+        cells = [f"{found.any(axis=1).sum():,} of {count:,}", f"{found[:, 0].sum():,}"]
+        cells += [f"{errors[found].max(initial=0.0):.1e}", f"{1e3 * np.median(times):.1f}"]
+        rows.append([robot.name, name, *cells, f"{1e3 * np.percentile(times, 99):.0f}"])
+    return rows
+
+
+def drawn(robot: iiwa_dnn.Robot, count: int, seed: int) -> Matrix:
+    """Draw postures within the limits, (count, n) [rad]."""
+    return robot.draw(np.random.default_rng(seed), count)
+
+
+def bench_poses(arguments: Sequence[str] | None = None, prog: str = "poses") -> int:
+    """Look for random poses with every solver and print a table; returns 0."""
+    parser = argparse.ArgumentParser(prog, description=bench_poses.__doc__)
+    parser.add_argument("--poses", type=int, default=1000, help="number of poses of each arm")
+    count = parser.parse_args(arguments).poses
+    rows = [row for name in ARMS for row in measure(iiwa_dnn.load_robot(name), count)]
+    head = ["arm", "solver", "found", "from the first start", "largest error m, rad"]
+    print(markdown_table([*head, "median ms", "p99 ms of CPU"], rows))
+    return 0

@@ -1,0 +1,255 @@
+r"""Postures for a pose: inverse kinematics by programs of the same parts as a control step.
+
+Each iteration linearizes the pose of the tip and the distances of all pairs of bodies at the
+posture :math:`q`, and asks for the step :math:`\Delta q` of
+
+.. math::
+
+    \min_{\Delta q} \tfrac12 \|J \Delta q - e\|^2 + \tfrac12 \lambda \|\Delta q\|^2
+    \quad \text{s.t.} \quad q_{lower} - q \le \Delta q \le q_{upper} - q,
+    \quad -\nabla d_i^T \Delta q \le d_i - d_s
+
+with the pose error :math:`e`, position [m] over rotation vector [rad], and no joint by more than
+0.5 rad. The damping is :math:`\lambda = \mu \|e\|^2`, with :math:`\mu = 0.1` unless a step did not
+make the error smaller: it is taken back, and :math:`\mu` rises until one does. Near a posture that
+has the pose the damping vanishes and the convergence is quadratic; elsewhere the end is a posture
+whose pose is the nearest one around, and the multipliers name what is in the way.
+
+Sources: T. Sugihara, "Solvability-unconcerned inverse kinematics by the Levenberg-Marquardt
+method", IEEE Trans. Robotics 27(5), 2011, for the damping; D. W. Marquardt, "An algorithm for
+least-squares estimation of nonlinear parameters", J. SIAM 11(2), 1963, for its change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn import checks
+from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Matrix, Solution, Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Configuration, Robot
+from iiwa_dnn.robot.obstacles import Obstacle
+from iiwa_dnn.schemes import (
+    CollisionAvoidance,
+    JointCouplingTask,
+    JointLimits,
+    PoseTask,
+    Scheme,
+)
+from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.scene import BRAKED
+
+_STEP = 0.5
+"""Largest change of a joint in an iteration [rad]."""
+
+_MOST = 100
+"""Iterations from one start."""
+
+_DAMPING = 0.1
+"""Least ratio of the damping to the squared error."""
+
+_STILL = 1e-7
+"""Relative change of the error that ends the iterations away from the pose."""
+
+_ACTS = 1e-3
+"""Least ratio of a multiplier to the error for which a limit counts as in the way."""
+
+_POSE = slice(6)
+"""Rows of the pose among the equalities; those of mimic joints follow."""
+
+
+@dataclass(frozen=True, repr=False)
+class PoseSolution:
+    """Answer of `solve_pose`.
+
+    Attributes:
+        q: Joint positions [rad] whose pose is the target's, (n,); None if none was found.
+        nearest: Configuration at `q`; if none was found, the one with the least error.
+        position_error: Distance of `nearest` from the target [m].
+        orientation_error: Angle between the orientations of `nearest` and of the target [rad].
+        in_the_way: Limits and obstacles that keep `nearest` from the target, in words. If empty
+            though none was found, the arm is too short, or in a fold that it does not leave.
+        arrived: Number of starts that led to the pose.
+        starts: Number of starts.
+    """
+
+    q: Vector | None
+    nearest: Configuration
+    position_error: float
+    orientation_error: float
+    in_the_way: tuple[str, ...]
+    arrived: int
+    starts: int
+
+    @property
+    def found(self) -> bool:
+        """Test whether there is a posture."""
+        return self.q is not None
+
+    def __repr__(self) -> str:
+        if self.q is not None:
+            posture = np.array2string(self.q, precision=4, separator=", ")
+            return f"<PoseSolution q = {posture} rad; {self.arrived} of {self.starts} starts>"
+        way = ", ".join(self.in_the_way) or "no limit: out of reach"
+        return (
+            f"<PoseSolution: none found from {self.starts} starts; the nearest is "
+            f"{self.position_error:.3g} m and {self.orientation_error:.3g} rad away, "
+            f"in the way: {way}>"
+        )
+
+
+class _Point(NamedTuple):
+    """A posture on the way.
+
+    Attributes:
+        q: Joint positions [rad], (n,).
+        jacobian: Jacobian of the tip, linear over angular, (6, n).
+        error: Position [m] over rotation vector [rad] from the tip to the goal, (6,).
+        qp: Program of a step at `q`, whose equalities begin with the pose.
+        missing: Squared error, the distances by which pairs are too near, and how far mimic joints
+            are from where their leaders put them.
+        far: Largest of the errors of the pose [m], [rad], and of those distances.
+    """
+
+    q: Vector
+    jacobian: Matrix
+    error: Vector
+    qp: QP
+    missing: float
+    far: float
+
+
+def solve_pose(
+    robot: Robot,
+    target: Target,
+    q0: ArrayLike | None = None,
+    *,
+    obstacles: Sequence[Obstacle] | CollisionAvoidance = (),
+    starts: int = 20,
+    seed: int = 0,
+    tol: float = 1e-9,
+) -> PoseSolution:
+    """Find joint positions within the limits at which the tip has a pose.
+
+    Of those that several starts lead to, it is the one nearest to `q0`. The first start is `q0`
+    itself, the others are drawn at random within the limits.
+
+    Args:
+        robot: The robot, n joints.
+        target: The pose of the tip; its velocity does not matter.
+        q0: Joint positions [rad], (n,); None takes the robot's start posture.
+        obstacles: Obstacles that the arm keeps clear of, where they are at time 0, and it keeps
+            clear of itself then too. A `CollisionAvoidance` says the distance; without obstacles
+            nothing is watched.
+        starts: Number of starts.
+        seed: Seed of the random starts.
+        tol: Largest error of the pose [m], [rad].
+
+    Raises:
+        InvalidInputError: An argument is out of range; the message names it.
+    """
+    checks.instance("target", target, Target)
+    home = checks.instance("robot", robot, Robot).start_posture()
+    begin = home if q0 is None else checks.finite_array("q0", q0, (robot.dof,))
+    checks.integer("starts", starts, 1)
+    checks.positive("tol", tol)
+    program = _program(robot, obstacles)
+    goal = np.concatenate([target.data[:12], np.zeros(6)])[np.newaxis]
+    random = np.random.default_rng(checks.integer("seed", seed, 0))
+    solver = DNNSolver(tol=1e-12)
+    postures = [np.clip(begin, robot.q_lower, robot.q_upper), *robot.draw(random, starts - 1)]
+    ends = [_descend(program, solver, goal, posture, tol) for posture in postures]
+    found = [end for end in ends if end.far <= tol]
+    if found:
+        best = min(found, key=lambda end: float(np.linalg.norm(end.q - begin)))
+    else:
+        best = min(ends, key=lambda end: end.missing)
+    return PoseSolution(
+        best.q if found else None,
+        Configuration(robot, best.q),
+        float(np.linalg.norm(best.error[:3])),
+        float(np.linalg.norm(best.error[3:])),
+        () if found else _in_the_way(program, solver, best),
+        len(found),
+        starts,
+    )
+
+
+def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> StepProgram:
+    """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
+    limits: list[JointLimits | CollisionAvoidance] = [JointLimits(gain=1.0)]
+    avoidance = obstacles
+    if not isinstance(avoidance, CollisionAvoidance) and avoidance != ():
+        avoidance = CollisionAvoidance(avoidance)
+    slowed = robot.with_limits(velocity=_STEP)
+    if isinstance(avoidance, CollisionAvoidance):
+        pairs = len(avoidance.scene(slowed).pairs)
+        limits.append(replace(avoidance, gain=1.0, activation=None, nearest=pairs))
+    program = StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
+    for start, _ in program.constants_of(CollisionAvoidance):
+        program.constants[start + BRAKED] = 1.0  # nothing moves between two iterations
+    program.move(0.0)
+    return program
+
+
+def _descend(
+    program: StepProgram, solver: DNNSolver, goal: Matrix, start: Vector, tol: float
+) -> _Point:
+    """Go from a start (n,) [rad] to where the error from the goal (1, 18) gets no smaller."""
+    damping = _DAMPING
+    point = _at(program, start, goal)
+    for _ in range(_MOST):
+        if point.far <= tol:
+            break
+        step = _solve(solver, point, damping)
+        if not step.found:
+            break
+        trial = _at(program, np.clip(point.q + step.x, *program.robot.limits[:2]), goal)
+        gained = point.missing - trial.missing
+        if gained > 0.0:
+            damping = max(0.2 * damping, _DAMPING)
+            point = trial
+        else:
+            damping *= 8.0
+        if abs(gained) <= _STILL * point.missing:
+            break
+    return point
+
+
+def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
+    """Write the program at joint positions q (n,) [rad] for a goal (1, 18)."""
+    data = np.empty(program.data_size)
+    program.kinematics.update(q)
+    program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), 1.0)
+    qp = QP.from_data(data, program.sizes)
+    error = qp.b[_POSE]
+    couplings = qp.b[6:]
+    couplings /= JointCouplingTask.gain  # of a step, as the pose
+    apart = np.concatenate([np.abs(couplings), np.maximum(-qp.h, 0.0)])
+    missing = float(error @ error + apart.sum())
+    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), apart.max(initial=0.0))
+    return _Point(q, qp.A[_POSE], error, qp, missing, far)
+
+
+def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
+    """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
+    P = point.jacobian.T @ point.jacobian
+    P.flat[:: P.shape[1] + 1] += damping * float(point.error @ point.error)
+    _, _, G, h, A, b, lb, ub = point.qp.arrays()
+    return solver.solve(QP(P, -point.jacobian.T @ point.error, G, h, A[6:], b[6:], lb, ub))
+
+
+def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:
+    """Name the limits whose multipliers keep a posture from the goal."""
+    step = _solve(solver, point, _DAMPING)
+    least = _ACTS * math.hypot(*point.error)
+    codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
+    return tuple(map(describe, in_the_way(program.settings(), codes, step.z > least)))
