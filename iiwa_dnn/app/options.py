@@ -194,7 +194,7 @@ class AtlasOptions(SweepOptions):
     schemes: _Names = ()  # names of the schemes (none: the first, whole: all)
     references: _Names = ()  # names of the paths (none: all)
     disturbances: _Names = ()  # names of the disturbances (none: all)
-    work: tuple[float, ...] = (3e3, 1e4, 3e4)  # operations a control period
+    work: tuple[float, ...] = (3e3, 1e4, 3e4)  # work a control period [operations]
     plots: bool = True  # draw the figure
 
 

@@ -196,17 +196,29 @@ def resolve(qp: QPViews, priorities: Priorities) -> bool:
         for j in range(m):
             if point[n + p + j] > HELD:
                 held[j] = 1.0
-    rows = np.empty((qp.b.size, n))
-    for j in range(qp.b.size):
-        for i in range(n):
-            rows[j, i] = qp.A[j, i] if lb[i] < ub[i] else 0.0
-    write_orthonormal(rows, qp.A)
     for i in range(n):
         qp.lb[i] = lb[i]
         qp.ub[i] = ub[i]
-    for j in range(qp.b.size):
-        qp.b[j] = row_dot(qp.A, j, x)
+    _hold(qp.A.copy(), x, qp)
     return True
+
+
+@compiled
+def _hold(rows: Matrix, x: Vector, program: QPViews) -> None:
+    """Make a program hold the products of rows (k, n), overwritten, with x (n,)."""
+    _leave_out_fixed(rows, program)
+    write_orthonormal(rows, program.A)
+    for j in range(program.b.size):
+        program.b[j] = row_dot(program.A, j, x)
+
+
+@compiled
+def _leave_out_fixed(rows: Matrix, program: QPViews) -> None:
+    """Leave the variables whose bounds are equal out of rows (k, n)."""
+    for i in range(program.q.size):
+        if not program.lb[i] < program.ub[i]:
+            for j in range(rows.shape[0]):
+                rows[j, i] = 0.0
 
 
 @compiled
@@ -229,33 +241,34 @@ def _write_held(
 
     Those of the first level are the rows without a priority, as they are.
     """
-    n = qp.q.size
-    p = qp.b.size
-    number = priorities.numbers[k]
     if k == 0:
-        used = 0
-        for j in range(p):
-            if priorities.rows[j] == 0:
-                program.b[used] = qp.b[j]
-                for i in range(n):
-                    program.A[used, i] = qp.A[j, i]
-                used += 1
-        for j in range(used, program.b.size):
-            program.b[j] = 0.0
-            for i in range(n):
-                program.A[j, i] = 0.0
+        _copy_rows_without_level(qp, priorities, program)
         return
-    rows = np.zeros((p + held.size, n))
-    for i in range(n):
-        if program.lb[i] < program.ub[i]:
-            for j in range(p):
-                if priorities.rows[j] < number:
-                    rows[j, i] = qp.A[j, i]
-            for j in range(held.size):
-                rows[p + j, i] = held[j] * qp.G[j, i]
-    write_orthonormal(rows, program.A)
+    p = qp.b.size
+    rows = np.zeros((p + held.size, qp.q.size))
+    for i in range(qp.q.size):
+        for j in range(p):
+            if priorities.rows[j] < priorities.numbers[k]:
+                rows[j, i] = qp.A[j, i]
+        for j in range(held.size):
+            rows[p + j, i] = held[j] * qp.G[j, i]
+    _hold(rows, x, program)
+
+
+@compiled
+def _copy_rows_without_level(qp: QPViews, priorities: Priorities, program: QPViews) -> None:
+    """Copy the equality rows without a priority into a program, and write zeros after them."""
+    used = 0
     for j in range(program.b.size):
-        program.b[j] = row_dot(program.A, j, x)
+        program.b[j] = 0.0
+        for i in range(qp.q.size):
+            program.A[j, i] = 0.0
+    for j in range(qp.b.size):
+        if priorities.rows[j] == 0:
+            program.b[used] = qp.b[j]
+            for i in range(qp.q.size):
+                program.A[used, i] = qp.A[j, i]
+            used += 1
 
 
 @compiled
@@ -265,38 +278,43 @@ def _write_cost(qp: QPViews, priorities: Priorities, k: int, x: Vector, program:
     With E its rows in the freedom that is left, 1/2 |E (y - x) - (b - A x)|^2 of the answer y.
     """
     n = qp.q.size
-    p = qp.b.size
-    E = np.zeros((p, n))
-    number = priorities.numbers[k]
-    for j in range(p):
-        if priorities.rows[j] == number:
-            for i in range(n):
-                E[j, i] = qp.A[j, i]
-    if k > 0:
-        for j in range(p):
-            for i in range(n):
-                if not program.lb[i] < program.ub[i]:
-                    E[j, i] = 0.0
-            for r in range(program.b.size):
-                _subtract(E, j, program.A, r)
-    basis = np.empty((n, n))
-    rest = E.copy()
-    write_orthonormal(rest, basis)
-    # What is left of a row has no direction of its own: it is rounding.
-    for j in range(p):
-        for i in range(n):
-            E[j, i] -= rest[j, i]
+    E = np.zeros((qp.b.size, n))
+    _write_free_rows(qp, priorities, k, program, E)
     for i in range(n):
         program.q[i] = 0.0
         for c in range(n):
             program.P[i, c] = 0.0
-    for j in range(p):
-        if priorities.rows[j] == number:
-            wanted = qp.b[j] - row_dot(qp.A, j, x) + row_dot(E, j, x)
+    for j in range(qp.b.size):
+        # Rows of other levels are zero in E.
+        wanted = qp.b[j] - row_dot(qp.A, j, x) + row_dot(E, j, x)
+        for i in range(n):
+            program.q[i] -= E[j, i] * wanted
+            for c in range(n):
+                program.P[i, c] += E[j, i] * E[j, c]
+
+
+@compiled
+def _write_free_rows(
+    qp: QPViews, priorities: Priorities, k: int, program: QPViews, rows: Matrix
+) -> None:
+    """Write the rows of level k in the freedom that the levels above leave into zeros (p, n)."""
+    n = qp.q.size
+    for j in range(qp.b.size):
+        if priorities.rows[j] == priorities.numbers[k]:
             for i in range(n):
-                program.q[i] -= E[j, i] * wanted
-                for c in range(n):
-                    program.P[i, c] += E[j, i] * E[j, c]
+                rows[j, i] = qp.A[j, i]
+    if k > 0:
+        _leave_out_fixed(rows, program)
+        for j in range(qp.b.size):
+            for r in range(program.b.size):
+                _subtract(rows, j, program.A, r)
+    rest = rows.copy()
+    basis = np.empty((n, n))
+    write_orthonormal(rest, basis)
+    # What is left of a row has no direction of its own: it is rounding.
+    for j in range(qp.b.size):
+        for i in range(n):
+            rows[j, i] -= rest[j, i]
 
 
 @compiled

@@ -23,6 +23,8 @@ import iiwa_dnn
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.failures import failures
 
+pytestmark = pytest.mark.realtime
+
 FOLDER = Path(__file__).resolve().parents[3] / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
 PACKAGES = (

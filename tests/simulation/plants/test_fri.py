@@ -64,7 +64,7 @@ class Robot(threading.Thread):
 @pytest.fixture(autouse=True)
 def short_times(monkeypatch):
     """No test waits long for what does not come."""
-    monkeypatch.setattr(fri_robot, "_PATIENCE", 0.05)
+    monkeypatch.setattr(fri_robot, "_PATIENCE", 0.2)
     monkeypatch.setattr(fri, "CONNECT_TIME", 5.0)
 
 
