@@ -199,7 +199,9 @@ def resolve(qp: QPViews, priorities: Priorities) -> bool:
     for i in range(n):
         qp.lb[i] = lb[i]
         qp.ub[i] = ub[i]
-    _hold(qp.A.copy(), x, qp)
+    attained = qp.A
+    rows = attained.copy()
+    _hold(rows, x, qp)
     return True
 
 
