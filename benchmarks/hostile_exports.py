@@ -72,8 +72,10 @@ def hostile_row(name: str, steps: int, flags: tuple[str, ...]) -> dict[str, obje
 def main(steps: int, flags: tuple[str, ...]) -> None:
     """Print the table."""
     print(made_on(environment()), "\n")
+    print(tabulate(_COLUMNS, []), flush=True)
     for name in CHOSEN:
-        print(tabulate(_COLUMNS, [hostile_row(name, steps, flags)]), flush=True)
+        row = tabulate(_COLUMNS, [hostile_row(name, steps, flags)])
+        print(row.splitlines()[-1], flush=True)
 
 
 if __name__ == "__main__":
