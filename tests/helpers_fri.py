@@ -163,7 +163,7 @@ class Network(threading.Thread):
         link = self._links[side]
         address = (self._robot, self._client)[side]
         packets = [data]
-        if self._random.random() < self.share:
+        if self.share and self._random.random() < self.share:
             kind = self._random.choice(self.kinds)
             self.counts[kind] += 1
             if kind == "lose":
@@ -174,7 +174,8 @@ class Network(threading.Thread):
                 self._late[side] = data
                 return
             else:
-                packets = [data[: self._random.randrange(len(data))]]
+                # Cut between two fields it would be a message, without what the second one holds.
+                packets = [data[:-1]]
         if self._late[side] is not None:
             packets.append(self._late[side])
             self._late[side] = None

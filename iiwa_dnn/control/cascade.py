@@ -53,7 +53,7 @@ HELD = 1e-11
 
 
 class Priorities(NamedTuple):
-    """What compiled code needs of the levels, and their programs and answers, overwritten.
+    """Numbers and rows of the levels, and their programs and answers, overwritten.
 
     Attributes:
         numbers: Number of each level, (levels,), ascending, from 1.

@@ -470,7 +470,7 @@ class Controller:
 
     @property
     def priorities(self) -> Priorities:
-        """What compiled code needs of those levels."""
+        """Numbers, rows and programs of those levels, for compiled code."""
         return self._laid_out()[1].priorities
 
     def halt(self, command: Command | None = None) -> None:

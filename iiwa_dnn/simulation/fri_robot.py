@@ -86,7 +86,7 @@ class Connection:
 
     @property
     def answered(self) -> bool:
-        """Whether a new command came in this period."""
+        """Test whether a new command came in this period."""
         return self._fresh
 
     def header(self) -> dict[str, int]:

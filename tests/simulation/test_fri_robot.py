@@ -210,8 +210,10 @@ def test_a_client_may_begin_anew_while_it_is_monitored(client) -> None:
     for _ in range(10):
         client.look()
         client.period(client.answer())
+    assert client.look()["state"] != COMMANDING_ACTIVE
     client.counter = 0
     client.activate()
+    assert client.look()["state"] == COMMANDING_ACTIVE
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,20 @@ A `RealPlant` is a robot in the world. It has a clock of its own and goes on wit
 """
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+import numpy as np
+
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
+
+Feedback = Literal["commanded", "measured"]
+FEEDBACKS: tuple[Feedback, ...] = ("commanded", "measured")
+"""Joint angles of a real arm that its controller gets: summed commands, or encoders."""
+
+NEAR = 0.01
+"""Largest distance of a joint of a real arm from the start posture of a run [rad]."""
 
 
 class Plant(ABC):
@@ -93,6 +103,26 @@ class RealPlant(Plant):
 
         None if it got every command in time.
         """
+
+    def check_start(self, robot: Robot, q0: Vector, dt: float, joints: int) -> None:
+        """Raise InvalidInputError unless a run of a robot fits the arm, which has so many joints.
+
+        Args:
+            robot: The robot of the run, n joints.
+            q0: Its start posture [rad], (n,).
+            dt: Its control period [s].
+            joints: Number of the arm's joints.
+        """
+        if robot.dof != joints:
+            raise InvalidInputError("robot", f"has {robot.dof} joints, the arm {joints}", robot)
+        period = self.period
+        if abs(dt - period) > 1e-9 * period:
+            raise InvalidInputError("dt", f"must be the robot's {period:g} s, not {dt:g} s", dt)
+        away = np.abs(q0 - self.posture)
+        if not away.max() <= NEAR:
+            joint = int(away.argmax())
+            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
+            raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
 
     def with_room(self, robot: Robot) -> Robot:
         """Return a robot with limits inside of which commands may also come too late."""

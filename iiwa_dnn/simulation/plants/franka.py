@@ -13,7 +13,7 @@ Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,18 +23,12 @@ from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.simulation.plants.base import RealPlant
-
-Feedback = Literal["commanded", "measured"]
-FEEDBACKS: tuple[Feedback, ...] = ("commanded", "measured")
+from iiwa_dnn.simulation.plants.base import FEEDBACKS, Feedback, RealPlant
 
 PERIOD = 1e-3
 """Period of a control cycle [s]."""
 
 JOINTS = 7
-
-_NEAR = 0.01
-"""Distance from the measured joint angles up to which a run may begin [rad]."""
 
 _ACCELERATION = 0.8
 _JERK = 0.25
@@ -53,7 +47,7 @@ _ROUNDING = 1e-6
 
 @dataclass
 class _Motion:
-    """What is known of a motion of an arm, beside its last state.
+    """Progress of a motion of an arm, beside its last state.
 
     Attributes:
         commanded: Sum of the commands, from the measured start [rad], (7,).
@@ -160,17 +154,7 @@ class FrankaPlant(RealPlant):
             InvalidInputError: No robot answers, it stands elsewhere, or the robot of the run has
                 other joints or another control period.
         """
-        if robot.dof != JOINTS:
-            raise InvalidInputError(
-                "robot", f"has {robot.dof} joints, a Franka arm {JOINTS}", robot
-            )
-        if abs(dt - PERIOD) > 1e-9 * PERIOD:
-            raise InvalidInputError("dt", f"must be the robot's {PERIOD:g} s, not {dt:g} s", dt)
-        away = np.abs(q0 - self.posture)
-        if not away.max() <= _NEAR:
-            joint = int(away.argmax())
-            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
-            raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
+        self.check_start(robot, q0, dt, JOINTS)
         self._motion.commanded = np.array(q0)
         self._check_model(robot)
 

@@ -20,8 +20,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.simulation.plants.base import RealPlant
-from iiwa_dnn.simulation.plants.franka import FEEDBACKS, Feedback
+from iiwa_dnn.simulation.plants.base import FEEDBACKS, Feedback, RealPlant
 from iiwa_dnn.simulation.plants.fri_messages import (
     COMMAND_ID,
     JOINTS,
@@ -39,9 +38,6 @@ CONNECT_TIME = 30.0
 
 SILENCE = 1.0
 """Time without a message after which the robot is given up [s]."""
-
-_NEAR = 0.01
-"""Distance from the measured joint angles up to which a run may begin [rad]."""
 
 _WRAP = 2**32  # sequence counters begin again here
 
@@ -89,7 +85,7 @@ class FriClient:
 
     @property
     def is_open(self) -> bool:
-        """Whether the client listens."""
+        """Test whether the client listens."""
         return self._link.fileno() >= 0
 
     def receive(self, patience: float) -> int:
@@ -236,16 +232,7 @@ class FriPlant(RealPlant):
             InvalidInputError: No robot sends messages, it stands elsewhere, or the robot of the run
                 has other joints or another control period.
         """
-        if robot.dof != JOINTS:
-            raise InvalidInputError("robot", f"has {robot.dof} joints, an LBR arm {JOINTS}", robot)
-        period = self.period
-        if abs(dt - period) > 1e-9 * period:
-            raise InvalidInputError("dt", f"must be the robot's {period:g} s, not {dt:g} s", dt)
-        away = np.abs(q0 - self.posture)
-        if not away.max() <= _NEAR:
-            joint = int(away.argmax())
-            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
-            raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
+        self.check_start(robot, q0, dt, JOINTS)
 
     def _begin(self) -> None:
         """Repeat the robot's position until it lets itself be commanded."""

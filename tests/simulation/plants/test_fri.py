@@ -21,6 +21,7 @@ from iiwa_dnn.results.record import Record
 from iiwa_dnn.simulation import IdealPlant, fri_robot
 from iiwa_dnn.simulation.fri_robot import FriController, serve
 from iiwa_dnn.simulation.plants import fri
+from iiwa_dnn.simulation.plants.fri_messages import SessionState
 
 pytest.importorskip("google.protobuf", reason="pip install 'iiwa-dnn[fri]'")
 
@@ -137,7 +138,14 @@ def test_the_client_s_bytes_by_the_wire_rules(port, monkeypatch) -> None:
 
 @pytest.mark.parametrize("kind", ["lose", "double", "delay", "garble"])
 def test_a_bad_network_does_not_make_the_motion_unsafe(kind, port) -> None:
-    with Network(port, 0.03, (kind,), seed=3) as network, Robot(network.port) as robot:
+    network = Network(port, 0.0, (kind,), seed=3)
+
+    def disturb(controller):
+        # From the motion on: how many packets go before it depends on the machine.
+        if controller.state == SessionState.COMMANDING_ACTIVE:
+            network.share = 0.03
+
+    with network, Robot(network.port, observe=disturb) as robot:
         record = track(FriPlant(port=port))
     assert network.counts[kind] > 5
     assert (robot.speeds() <= paper_robot().dq_max * (1 + 1e-9)).all()
