@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -16,15 +18,40 @@ settings.register_profile("iiwa_dnn", derandomize=True, deadline=None)
 settings.load_profile("iiwa_dnn")
 
 
+def _imported(source: Path, package: Path) -> set[Path]:
+    """Files of a package that one of its files imports."""
+    names = []
+    for node in ast.walk(ast.parse(source.read_text())):
+        if isinstance(node, ast.Import):
+            names += [(name.name,) for name in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names += [(f"{node.module}.{name.name}", node.module) for name in node.names]
+    found = set()
+    for candidates in names:  # a module of that name, or the name of something in the module
+        paths = [package.parent.joinpath(*name.split(".")) for name in candidates]
+        files = [file for at in paths for file in (at.with_suffix(".py"), at / "__init__.py")]
+        found |= set([file for file in files if file.is_file() and package in file.parents][:1])
+    return found
+
+
 def _forget_stale_kernels() -> None:
-    """Delete compiled code that is older than a kernel's source.
+    """Delete compiled code that is older than a file that its own file imports, by others too.
 
     numba looks at a function's own file only, and would go on with what it once made of others.
     """
-    folder = Path(__file__).parents[1] / "iiwa_dnn"
-    newest = max((source.stat().st_mtime for source in folder.rglob("*.py")), default=0.0)
-    for index in folder.rglob("__pycache__/*.nbi"):
-        if index.stat().st_mtime < newest:
+    package = Path(__file__).parents[1] / "iiwa_dnn"
+    imports = {source: _imported(source, package) for source in package.rglob("*.py")}
+    newest = {source: source.stat().st_mtime for source in imports}
+    changed = True
+    while changed:
+        changed = False
+        for source, others in imports.items():
+            latest = max([newest[source], *(newest[other] for other in others)])
+            changed |= latest > newest[source]
+            newest[source] = latest
+    for index in package.rglob("__pycache__/*.nbi"):
+        source = index.parents[1] / f"{index.name.split('.')[0]}.py"
+        if index.stat().st_mtime < newest.get(source, np.inf):
             index.unlink()
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import threading
+import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal
@@ -59,7 +60,7 @@ class Controller:
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags.
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`). At
-            the acceleration level ``slow`` acts as ``relax``.
+            the acceleration level ``slow`` acts as ``relax``, with a warning when it does.
         solver: Network, integrators and tolerance; keeps the network's state between steps.
         estimator: Noise of encoders and drives, and delay of the drives, which a Kalman filter of
             the measured joint positions in `step` reckons with; None: they are taken as they are.
@@ -363,6 +364,8 @@ class Controller:
             layout.view(row, "blocking")[:] = halted
         if step.program.accelerates:
             self._send(step, row)
+            if policy == "slow" and taken == Action.RELAX:
+                warnings.warn(_NOT_SLOWED, stacklevel=4)
         return Command(row, layout, Action(taken))
 
     def _raise_unless_solved(self, qp: QP, step: ControlStep) -> None:
@@ -535,8 +538,14 @@ class Controller:
         self._state.reset()
         self._derived = None
 
-    def warm_up(self) -> None:
-        """Compile all that a step needs, so that the first one is as quick as the others."""
+    def warm_up(self, q: ArrayLike | None = None, t: float = 0.0) -> None:
+        """Compile all that a step needs, so that the first one is as quick as the others.
+
+        Args:
+            q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
+                has none; None: the first step lays the program out for them, in milliseconds.
+            t: Time of the first step [s].
+        """
         twin = copy.copy(self)
         twin._state.begun = True  # warnings are for the first step
         home = self.robot.start_posture()
@@ -551,6 +560,8 @@ class Controller:
             twin.policy = "relax"
             far = {name: Target(at.position + 99.0, at.rotation) for name, at in frames.items()}
             twin.step(home, 0.0, far)
+        if q is not None:
+            self._prepare(q, t, None if self.reference is not None else {})
 
     def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
         """Return the targets of a time of the reference's clock [s], (k, 18), or those given.
@@ -605,6 +616,11 @@ def _is_plain(q: ArrayLike, dof: int) -> bool:
         type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,) and q.flags.c_contiguous
     )
 
+
+_NOT_SLOWED = (
+    "a step has no solution: at the acceleration level the clock of an arm in motion cannot be "
+    "slowed at once, so the policy 'slow' acts as 'relax'"
+)
 
 _DERIVED = ("_derived", "_lock")
 

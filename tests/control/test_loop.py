@@ -8,6 +8,7 @@ import pytest
 from helpers_kinematics import PAPER_Q0, dh_pose, rotation_angle
 from helpers_simulation import heart, paper_robot, paper_start, run
 from iiwa_dnn import (
+    Circle,
     Configuration,
     Controller,
     DNNSolver,
@@ -103,6 +104,19 @@ def test_warm_up_leaves_no_trace() -> None:
     warm.warm_up()
     np.testing.assert_array_equal(loop(warm, 30), loop(cold, 30))
     assert warm.scheme.home == PAPER_Q0
+
+
+def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
+    cold, warm = (Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT) for _ in range(2))
+    warm.warm_up(PAPER_Q0)
+    laid_out = warm.control_step
+    np.testing.assert_array_equal(loop(warm, 30), loop(cold, 30))
+    assert warm.control_step is laid_out
+    assert cold.control_step is not laid_out
+    with pytest.warns(UserWarning, match="the reference begins"):
+        Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT).warm_up(PAPER_Q0)
+    with pytest.raises(InvalidInputError, match=r"^q\b"):
+        warm.warm_up(PAPER_Q0[:6])
 
 
 def test_a_bad_reading_is_named_and_loses_nothing() -> None:

@@ -126,7 +126,8 @@ def test_limits_hold_exactly_at_any_gain_of_theirs() -> None:
     limits = (JointLimits(gain=1000.0), AccelerationLimits(2.0))
     path = Circle(radius=0.2, period=4.0).anchored(START)
     what = scheme(JointAcceleration(), limits=limits)
-    record = simulate(tight, what, path, START.q, dt=5e-3, duration=4.0, check=UNCHECKED)
+    options = {"dt": 5e-3, "duration": 4.0, "check": UNCHECKED, "policy": "relax"}
+    record = simulate(tight, what, path, START.q, **options)
     assert (record.action == Action.RELAX).sum() > 100
     assert (record.q <= tight.q_upper + 1e-12).all()
     assert (record.q >= tight.q_lower - 1e-12).all()
@@ -145,6 +146,16 @@ def test_stop_brakes_within_the_limits() -> None:
     assert "stopped" in record.settings["status"]
     assert np.abs(record.dq_solver[-1]).max() < 1e-12
     assert np.abs(record.ddq).max() <= 1.0 + 1e-9
+
+
+def test_slow_says_that_it_acts_as_relax() -> None:
+    weak = ROBOT.with_limits(acceleration=0.05)
+    limited = scheme(limits=(JointLimits(), AccelerationLimits()))
+    controller = Controller(weak, limited, heart(), dt=1e-3)
+    with pytest.warns(UserWarning, match="'slow' acts as 'relax'"):
+        command = controller.step(START.q, 0.0)
+    assert command.action is Action.RELAX
+    assert controller.delay == 0.0
 
 
 def test_a_robots_loop_gets_the_same_commands_and_may_measure_velocities() -> None:
