@@ -21,6 +21,7 @@ from iiwa_dnn.control.paths import (
     by_frame,
     paths_of,
     warn_if_far,
+    warn_if_lagging,
     warn_if_outside,
     warn_if_unstable,
 )
@@ -58,7 +59,8 @@ class Controller:
         reference: Path of the tip, or paths by frame name.
         dt: Control period [s].
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
-            one control period, as in the paper, and lags.
+            one control period, as in the paper, and lags: bounds of the joints hold, the rows of
+            other limits, of collisions for example, only where it has settled.
         policy: Action at a step without a solution in ``converged`` mode (`control.policies`). At
             the acceleration level ``slow`` acts as ``relax``, with a warning when it does.
         solver: Network, integrators and tolerance; keeps the network's state between steps.
@@ -518,6 +520,7 @@ class Controller:
         state.past[Q] = start.q
         if not state.begun:
             warn_if_unstable(self.program, self.dt, stacklevel=5)
+            warn_if_lagging(self.program, self.mode, stacklevel=5)
         state.begun = True
 
     def warn_if_far(

@@ -16,6 +16,7 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.motion_limits import largest_gain
+from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.tasks import GainTask
 
@@ -75,6 +76,18 @@ def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
         message = (
             f"a gain of {gain:.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with these "
             f"limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
+        )
+        warnings.warn(message, stacklevel=stacklevel + 1)
+
+
+def warn_if_lagging(program: StepProgram, mode: str, stacklevel: int) -> None:
+    """Warn where a network that lags behind cannot keep a limit: only bounds hold on its way."""
+    limits = [block.part for block in program.blocks if isinstance(block.part, Limit)]
+    names = [type(limit).__name__ for limit in limits if limit.row_count(program.robot)]
+    if mode == "continuous" and names:
+        message = (
+            f"in continuous mode the rows of {', '.join(names)} hold where the network has "
+            "settled, not on its way: only bounds of the joints are kept at every step"
         )
         warnings.warn(message, stacklevel=stacklevel + 1)
 

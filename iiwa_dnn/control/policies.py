@@ -25,8 +25,8 @@ contradict each other nevertheless, the arm stops.
 
 With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity on a
 straight line, the clock of ``slow`` by the share of it that is reached, and ``stop`` brakes until
-the arm stands (`iiwa_dnn.control.yielding`). At the acceleration level the clock of an arm in motion
-cannot be slowed at once: ``slow`` acts as ``relax`` there, and warns when it does.
+the arm stands (`iiwa_dnn.control.yielding`). At the acceleration level the clock of an arm in
+motion cannot be slowed at once: ``slow`` acts as ``relax`` there, and warns when it does.
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,

@@ -20,12 +20,14 @@ from iiwa_dnn.qp import Status
 from iiwa_dnn.references import Circle, Heart, MovingTarget, Reference, Target
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.schemes import (
+    CollisionAvoidance,
     CyclicMotion,
     DoubleIndicator,
     PoseTask,
     PositionTask,
     PseudoInverse,
     Scheme,
+    Sphere,
 )
 
 SCHEME = DoubleIndicator(home=PAPER_Q0)
@@ -227,3 +229,12 @@ def test_a_warm_up_takes_a_step_without_a_solution_too(monkeypatch: pytest.Monke
         controller.warm_up()
         assert controller.policy == policy
         assert taken.pop() == Action.RELAX
+
+
+def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
+    ball = Sphere(paper_start().position + [0.2, 0.0, 0.0], 0.05)
+    avoidance = CollisionAvoidance([ball], self_collision=False)
+    scheme = DoubleIndicator(home=PAPER_Q0, extra_limits=(avoidance,))
+    controller = controller_of(scheme, mode="continuous")
+    with pytest.warns(UserWarning, match="the rows of CollisionAvoidance hold where"):
+        controller.step(PAPER_Q0, 0.0, near_target(np.array(PAPER_Q0), 0, size=2e-3))
