@@ -373,7 +373,8 @@ def _constant_of(value: Value) -> Any:
     if not isinstance(kind, Array) or kind.content is None:
         return value.known
     shape = [int(size) for size in kind.shape]
-    return np.array(list(kind.content)[: math.prod(shape)]).reshape(shape)
+    content = kind.content[: math.prod(shape)]
+    return None if None in content else np.array(content).reshape(shape)
 
 
 class WideError(Exception):
