@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.resources import files
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Struct, Tuple, Value, integer
+from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Tuple, Value, integer
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
 from iiwa_dnn.networks.projection import is_projection
@@ -62,32 +63,6 @@ def filled(template: str, values: Mapping[str, object]) -> str:
     return text
 
 
-class _Handed(NamedTuple):
-    """A named tuple that the template hands to translated functions.
-
-    Attributes:
-        value: Pointer to it.
-        assignments: C statements that set its fields.
-    """
-
-    value: Value
-    assignments: str
-
-
-class _Motion(NamedTuple):
-    """Obstacle that moves with a constant velocity.
-
-    Attributes:
-        first: Index of its first point among the constants of all parts.
-        points: Its points at time 0 [m], (k, 3).
-        velocity: Its velocity [m/s], (3,).
-    """
-
-    first: int
-    points: Vector
-    velocity: Vector
-
-
 def code_of(controller: Controller) -> dict[str, Any]:
     """Translate a controller whose scheme is anchored.
 
@@ -104,11 +79,11 @@ def code_of(controller: Controller) -> dict[str, Any]:
     n, m, p = program.sizes
     is_warm = is_projection(controller.solver.network)
     motions = _motions(program)
-    lengths = _lengths(controller, moves=bool(motions))
+    lengths = _lengths(controller, len(motions) > 0)
     translator = Translator()
-    arrays = _arrays(translator, step, motions)
-    yielding = _handed(translator, "yielding", step.yielding, {"dt": "CONTROLLER_DT"})
-    _translate_step(translator, controller, arrays.value, yielding.value)
+    arrays, arrays_set = _arrays(translator, step, motions)
+    yielding, yielding_set = _handed(translator, "yielding", step.yielding, {"dt": "CONTROLLER_DT"})
+    _translate_step(translator, controller, lengths, arrays, yielding)
     columns = step.layout.columns
     places = {f"at_{name}": columns[name].start for name in ("decision", "dq", "point", "targets")}
     return {
@@ -123,7 +98,7 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
-        "systems": _own_budget(step) + (ATTEMPTS - 1) * BUDGET + _levels_budget(controller),
+        "systems": _systems(controller),
         "fields": _fields(lengths),
         "past_size": lengths["past"],
         "size": _DOUBLE * (sum(lengths.values()) + 1),
@@ -135,10 +110,10 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "guard": _GUARD * bool(step.yielding.stop),
         "point_size": 2 * n + m + p,
         "active_size": n + m,
-        "arrays": arrays.assignments,
-        "yielding": yielding.assignments,
+        "arrays": arrays_set,
+        "yielding": yielding_set,
         "levels_function": _levels(translator, controller),
-        "resolve": "    resolve_levels(c->row);\n" * bool(_levels_budget(controller)),
+        "resolve": "    resolve_levels(c->row);\n" * (controller.priorities.numbers.size > 0),
         "move_function": _move_function(translator, motions, lengths["constants"]),
         "move": "    move_obstacles(c->constants, t);\n" * bool(motions),
         "start": "    start_constants(c->constants);\n" * bool(motions),
@@ -185,28 +160,35 @@ def _check_motion(part: Any) -> None:
             raise InvalidInputError("obstacles", f"{problem}give it a velocity", obstacle)
 
 
-def _motions(program: StepProgram) -> list[_Motion]:
-    """List the obstacles that move."""
-    starts = [start for start, _ in program.constants_of(CollisionAvoidance)]
-    blocks = [block.part for block in program.compiled_blocks]
-    parts = [part for part in blocks if isinstance(part, CollisionAvoidance)]
-    return [
-        _Motion(start + own.start, obstacle.points, np.array(obstacle.velocity))
-        for part, start in zip(parts, starts, strict=True)
-        for obstacle, own in part.scene(program.robot).moving
-    ]
+def _motions(program: StepProgram) -> list[tuple[int, Vector, Vector]]:
+    """List the obstacles that move.
+
+    Returns:
+        For each the index of its first point among the constants of all parts, its points at time
+        0 [m], (k, 3), and its velocity [m/s], (3,).
+    """
+    starts = iter(program.constants_of(CollisionAvoidance))
+    found = []
+    for block in program.compiled_blocks:
+        if isinstance(block.part, CollisionAvoidance):
+            start, _ = next(starts)
+            for obstacle, own in block.part.scene(program.robot).moving:
+                velocity = np.array(obstacle.velocity)
+                found.append((start + own.start, obstacle.points, velocity))
+    return found
 
 
-def _lengths(controller: Controller, *, moves: bool) -> dict[str, int]:
-    """Count the numbers of each field of the struct."""
+def _lengths(controller: Controller, moves: bool) -> dict[str, int]:
+    """Count the numbers of each field of the struct; `moves` says that constants change."""
     step = controller.control_step
     program = step.program
     dof = controller.robot.dof
+    qp = QP.from_data(np.zeros(program.data_size), program.sizes)
     return {
         "row": step.layout.width,
         "past": 5 * dof,
         "following": 5 * dof,
-        "state": _state_size(controller),
+        "state": controller.solver.network.state_size(qp),
         "jacobian": 6 * dof,
         "placements": PLACEMENT * controller.robot.model.nframes,
         "inertia": dof * dof * program.needs_inertia,
@@ -214,13 +196,6 @@ def _lengths(controller: Controller, *, moves: bool) -> dict[str, int]:
         "steps": 1,
         "delay": 1,
     }
-
-
-def _state_size(controller: Controller) -> int:
-    """Count the states of a controller's network."""
-    program = controller.program
-    data = np.zeros(program.data_size)
-    return controller.solver.network.state_size(QP.from_data(data, program.sizes))
 
 
 def _fields(lengths: dict[str, int]) -> str:
@@ -234,28 +209,29 @@ def _fields(lengths: dict[str, int]) -> str:
 
 
 def _translate_step(
-    translator: Translator, controller: Controller, arrays: Value, yielding: Value
+    translator: Translator,
+    controller: Controller,
+    lengths: dict[str, int],
+    arrays: Value,
+    yielding: Value,
 ) -> None:
-    """Translate the functions of a control step for the sizes of a controller."""
+    """Translate the functions of a control step for the lengths of the struct's fields."""
     step = controller.control_step
     program = step.program
     dof = controller.robot.dof
     clock = Value(Tuple(DOUBLE, 2), "clock")
     translator.define(clock.kind)
-    row = _array("row", step.layout.width)
+    row = _array("row", lengths["row"])
     past = _array("past", 5, dof)
     following = _array("following", 5, dof)
-    network = _array("state", _state_size(controller))
     targets = _array("targets", len(program.target_frames), TARGET_SIZE)
     t = Value(DOUBLE, "t")
-    begin = integer(ANSWER)
-    translator.function(
-        control_step, [row, arrays, _array("q", dof), past, following, network, clock, begin]
-    )
+    own = [_array("state", lengths["state"]), clock, integer(ANSWER)]
+    translator.function(control_step, [row, arrays, _array("q", dof), past, following, *own])
     n, m, p = program.sizes
-    relaxed = _array("state", 3 * n + m + p)
     policy = [integer(_action(controller)), Value(BOOL, "yields")]
-    translator.function(yield_step, [row, arrays, past, following, relaxed, yielding, *policy])
+    own = [_array("state", 3 * n + m + p), yielding, *policy]
+    translator.function(yield_step, [row, arrays, past, following, *own])
     data = _array("data", program.data_size)
     translator.function(write_program, [data, arrays, past, targets, t])
     if step.yielding.stop:
@@ -277,9 +253,13 @@ def _bound(sizes: Sizes, data_size: int) -> str:
 
 
 def _handed(
-    translator: Translator, name: str, own: Any, variables: dict[str, str], **known: Value
-) -> _Handed:
-    """Hand a named tuple over, in C of the same name.
+    translator: Translator,
+    name: str,
+    own: Any,
+    variables: dict[str, str],
+    known: Mapping[str, Value] = MappingProxyType({}),
+) -> tuple[Value, str]:
+    """Hand a named tuple over to translated functions, in C of the same name.
 
     Args:
         translator: The translation.
@@ -287,6 +267,9 @@ def _handed(
         own: The named tuple: its arrays become tables, its integers are known.
         variables: C expressions of the fields that change.
         known: Values of fields that are none of these.
+
+    Returns:
+        The pointer to it, and the C statements that set its fields.
     """
     values = []
     for field, value in zip(own._fields, own, strict=True):
@@ -300,14 +283,16 @@ def _handed(
             values.append(_array(field, *value.shape))
         else:
             values.append(translator.table(f"{name}_{field}", value))
-    struct: Struct = translator.named_tuple(type(own), values)
+    struct = translator.named_tuple(type(own), values)
     texts = {field: variables.get(field, f"{name}_{field}") for field, _ in struct.members}
     lines = [f"    {name}.{field} = {text};" for field, text in texts.items()]
-    return _Handed(Value(struct, name, pointer=True), "\n".join(lines))
+    return Value(struct, name, pointer=True), "\n".join(lines)
 
 
-def _arrays(translator: Translator, step: ControlStep, motions: list[_Motion]) -> _Handed:
-    """Return the arrays of a program, of which those that do not change are tables."""
+def _arrays(
+    translator: Translator, step: ControlStep, motions: list[tuple[int, Vector, Vector]]
+) -> tuple[Value, str]:
+    """Hand the arrays of a program over; those that do not change are tables."""
     own = step.arrays
     variables = {name: f"c->{name}" for name in ("jacobian", "placements", "inertia")}
     variables["rate"] = "1.0 / CONTROLLER_DT"
@@ -321,37 +306,33 @@ def _arrays(translator: Translator, step: ControlStep, motions: list[_Motion]) -
     translator.table("arrays_constants", own.constants)
     variables["constants"] = "c->constants"
     constants = Value(Array(DOUBLE, (len(content),), content=tuple(content)), "constants")
-    return _handed(translator, "arrays", own, variables, constants=constants)
+    return _handed(translator, "arrays", own, variables, {"constants": constants})
 
 
-def _move_function(translator: Translator, motions: list[_Motion], size: int) -> str:
+def _move_function(
+    translator: Translator, motions: list[tuple[int, Vector, Vector]], size: int
+) -> str:
     """Translate the motion of obstacles, and write the functions that start and move them."""
-    if not motions:
-        return ""
     calls = []
     for number, (first, points, velocity) in enumerate(motions, 1):
-        tables = [translator.table(f"points_{number}", points)]
-        tables.append(translator.table(f"velocity_{number}", velocity))
-        made = translator.function(
-            shift_points, [*tables, Value(DOUBLE, "t"), _array("shifted", points.size)]
-        )
+        still = translator.table(f"points_{number}", points)
+        rate = translator.table(f"velocity_{number}", velocity)
+        shifted = _array("shifted", points.size)
+        made = translator.function(shift_points, [still, rate, Value(DOUBLE, "t"), shifted])
         assert made is not None
-        names = ", ".join(table.text for table in tables)
-        calls.append(f"    {made.name}({names}, t, constants + {first});")
-    return filled("moving.c", {"calls": "\n".join(calls), "size": size})
+        calls.append(f"    {made.name}({still.text}, {rate.text}, t, constants + {first});")
+    values = {"calls": "\n".join(calls), "size": size}
+    return filled("moving.c", values) if motions else ""
 
 
-def _own_budget(step: ControlStep) -> int:
-    """Return the largest number of linear systems that the step's own program may take."""
-    entry = step.program.table[1 + step.program.table[0, 4]]
-    budget = step.program.constants[entry[4] + OWN_BUDGET]
-    return int(budget)
-
-
-def _levels_budget(controller: Controller) -> int:
-    """Return the largest number of linear systems that the levels of priority may take."""
-    own = controller.priorities
-    return 2 * own.numbers.size * int(own.settings[OWN_BUDGET])
+def _systems(controller: Controller) -> int:
+    """Return the largest number of linear systems that a step may take."""
+    program = controller.program
+    entry = program.table[1 + program.table[0, 4]]
+    levels = controller.priorities
+    own = int(program.constants[entry[4] + OWN_BUDGET])
+    own += 2 * levels.numbers.size * int(levels.settings[OWN_BUDGET])
+    return own + (ATTEMPTS - 1) * BUDGET
 
 
 def _action(controller: Controller) -> Action:
@@ -368,11 +349,11 @@ def _levels(translator: Translator, controller: Controller) -> str:
         return ""
     n, m, p = controller.program.sizes
     scratch = {name: name for name in ("data", "x", "missing")}
-    levels = _handed(translator, "priorities", own, {**scratch, "tol": repr(own.tol)})
+    levels, levels_set = _handed(translator, "priorities", own, {**scratch, "tol": repr(own.tol)})
     data = _array("data", controller.program.data_size)
-    translator.function(resolve_program, [data, *map(integer, (n, m, p)), levels.value])
+    translator.function(resolve_program, [data, *map(integer, (n, m, p)), levels])
     sizes = {name: getattr(own, name).size for name in scratch}
-    values = {**sizes, "n": n, "m": m, "p": p, "assignments": levels.assignments}
+    values = {**sizes, "n": n, "m": m, "p": p, "assignments": levels_set}
     return filled("levels.c", values)
 
 
