@@ -248,6 +248,13 @@ def _among_guided() -> Controller:
     return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball]),)))[0]
 
 
+class _Closing(iiwa_dnn.JointLimits):
+    moves = True
+
+    def move(self, robot: iiwa_dnn.Robot, constants: np.ndarray, t: float) -> None:
+        constants *= 0.99
+
+
 def _with_network(network: iiwa_dnn.Network) -> Controller:
     controller, _ = drawing()
     controller.solver = iiwa_dnn.DNNSolver(network)
@@ -271,6 +278,7 @@ def _with_estimator() -> Controller:
         (_accelerates, "acceleration level"),
         (_with_own_part, "Manipulability is written with numpy"),
         (_among_guided, "obstacles: Sphere moves by a function"),
+        (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing moves by numpy"),
         (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
         (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
         (_with_estimator, "estimator: is not exported"),
