@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 import iiwa_dnn
 from benchmarks.collisions import BALLS, DISTANCE, RADII
 from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task
 from iiwa_dnn.checks import Array
+from iiwa_dnn.networks.base import Network
+from iiwa_dnn.networks.integrators import ExplicitEuler
+from iiwa_dnn.qp.layout import QPViews, compiled
 from iiwa_dnn.studies.runs import paper_robot
 
 Made = tuple[Controller, Array]
@@ -183,7 +188,61 @@ def braking_among_balls() -> Made:
     )
 
 
+def among_moving() -> Made:
+    """Return the heart, out of whose way the elbow goes for a ball, and a box that moves by."""
+    ball = iiwa_dnn.Sphere((0.1, -0.1, 0.6), 0.06, velocity=(0.0, 0.1, 0.02))
+    box = iiwa_dnn.Box((0.4, 0.6, 0.9), (0.1, 0.05, 0.05), velocity=(0.02, -0.05, 0.0))
+    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball, box]),)))
+
+
+@compiled
+def damped_rates(qp: QPViews, constants: Array, state: Array, rates: Array) -> None:
+    """Write the rates (n + p,) at a state [x | y]: a saddle-point flow within the bounds."""
+    n = qp.q.size
+    for i in range(n):
+        slope = qp.q[i]
+        for k in range(n):
+            slope += qp.P[i, k] * state[k]
+        for j in range(qp.b.size):
+            slope += qp.A[j, i] * state[n + j]
+        aim = min(max(state[i] - constants[0] * slope, qp.lb[i]), qp.ub[i])
+        rates[i] = aim - state[i]
+    for j in range(qp.b.size):
+        missing = -qp.b[j]
+        for i in range(n):
+            missing += qp.A[j, i] * (state[i] + rates[i])
+        rates[n + j] = missing
+
+
+class SaddleFlow(Network):
+    """A network of one's own in compiled code, for programs without inequality rows."""
+
+    compiled_rates = staticmethod(damped_rates)
+
+    def constants(self, sizes: tuple[int, int, int]) -> Array:
+        """Return the length of the step towards x's aim, (1,)."""
+        return np.array([0.5])
+
+    def state_size(self, qp: iiwa_dnn.QP) -> int:
+        """Count the states."""
+        return int(qp.q.size + qp.b.size)
+
+    def stable_step(self, qp: iiwa_dnn.QP, state: Array | None = None) -> float:
+        """State none."""
+        return 0.0
+
+
+def own_network() -> Made:
+    """Return the heart in continuous mode with a compiled network of one's own."""
+    made = drawing(mode="continuous", dt=1e-4)
+    made[0].solver = iiwa_dnn.DNNSolver(SaddleFlow(), follower=ExplicitEuler(substeps=20))
+    return made
+
+
 SETTINGS |= {
+    "inertia": lambda: drawing(DoubleIndicator(kinetic="inertia")),
+    "obstacles that move": among_moving,
+    "a network of one's own": own_network,
     "without a solution: slow": without_solution("slow"),
     "without a solution: relax": without_solution("relax"),
     "without a solution: stop": without_solution("stop"),

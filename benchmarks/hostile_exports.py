@@ -26,6 +26,8 @@ CHOSEN = (
     "braking among balls",
     "priorities",
     "two arms",
+    "inertia",
+    "obstacles that move",
 )
 QUICK = ("-std=c99", "-O2")
 SANITIZED = (*QUICK, "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")

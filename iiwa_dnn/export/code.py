@@ -1,60 +1,73 @@
-"""A controller as C code: what is translated of it, and the numbers of its templates."""
+"""A controller as C code: what is translated of it, and the texts of its templates."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.resources import files
-from typing import Any, NamedTuple
+from types import MappingProxyType
+from typing import Any
 
-from iiwa_dnn.control.cascade import Priorities, resolve_program
+import numpy as np
+
+from iiwa_dnn.control.cascade import resolve_program
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.relaxed import BUDGET, Yielding
+from iiwa_dnn.control.relaxed import BUDGET
 from iiwa_dnn.control.step import ANSWER, ControlStep, control_step, sample_targets
 from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
 from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Tuple, Value, integer
+from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
+from iiwa_dnn.networks.projection import is_projection
+from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.layout import Sizes, qp_views
+from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import prove_point
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.foreign import ForeignProgram
-from iiwa_dnn.schemes.program import ProgramArrays, write_program
+from iiwa_dnn.schemes.program import StepProgram, write_program
+from iiwa_dnn.schemes.scene import shift_points
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _DOUBLE = 8
 """Bytes of a number."""
 
-
-GUARD = "\n            && guard_step(&arrays, c->past, c->following, &yielding)"
+_GUARD = "\n            && guard_step(&arrays, c->past, c->following, &yielding)"
 """Condition on a command where braking has to keep clear of obstacles."""
 
-
-class Code(NamedTuple):
-    """A controller in C.
-
-    Attributes:
-        values: Texts by the names of the places in the templates.
-        has_reference: Whether the reference is translated too.
-    """
-
-    values: dict[str, str]
-    has_reference: bool
-
-    def fill(self, template: str, more: Mapping[str, object] | None = None) -> str:
-        """Return a template with the values, and more of them, in its places."""
-        folder = files("iiwa_dnn.export") / "templates"
-        text = (folder / template).read_text(encoding="utf-8")
-        for name, value in {**self.values, **(more or {})}.items():
-            text = text.replace(f"@{name}@", str(value))
-        return text
+_FIELDS = {
+    "row": "program, answer, figures, placement, q, dq, targets",
+    "past": "joint positions, last command, the one before, and a wanted one",
+    "following": "the same for the next step",
+    "state": "of the network",
+    "jacobian": "joint Jacobian, row by row",
+    "placements": "of the frames",
+    "inertia": "joint-space inertia matrix",
+    "constants": "of the parts: obstacles that move are among them",
+    "steps": "steps since controller_init",
+    "delay": "time by which the reference's clock is behind [s]",
+}
+"""Numbers of the struct in C, in their order; those of length 0 are left out."""
 
 
-def code_of(controller: Controller) -> Code:
+def filled(template: str, values: Mapping[str, object]) -> str:
+    """Return a template with values in the places of their names."""
+    text = (files("iiwa_dnn.export") / "templates" / template).read_text(encoding="utf-8")
+    for name, value in values.items():
+        text = text.replace(f"@{name}@", str(value))
+    return text
+
+
+def code_of(controller: Controller) -> dict[str, Any]:
     """Translate a controller whose scheme is anchored.
+
+    Returns:
+        Texts by the names of their places in the templates.
 
     Raises:
         InvalidInputError: A part of it is not compiled, or has no translation; it is named.
@@ -64,68 +77,167 @@ def code_of(controller: Controller) -> Code:
     robot = controller.robot
     program = step.program
     n, m, p = program.sizes
-    state = 3 * n + m + p
+    is_warm = is_projection(controller.solver.network)
+    motions = _motions(program)
+    lengths = _lengths(controller, len(motions) > 0)
     translator = Translator()
-    arrays = _arrays(translator, step)
-    dof = robot.dof
-    clock = Value(Tuple(DOUBLE, 2), "clock")
-    translator.define(clock.kind)
-    row = _array("row", step.layout.width)
-    past = _array("past", 5, dof)
-    following = _array("following", 5, dof)
-    network = _array("state", state)
-    targets = _array("targets", len(program.target_frames), TARGET_SIZE)
-    data = _array("data", program.data_size)
-    t = Value(DOUBLE, "t")
-    arguments = [row, arrays, _array("q", dof), past, following, network, clock, integer(ANSWER)]
-    translator.function(control_step, arguments)
-    yielding = _yielding(translator, step)
-    further = [integer(_action(controller)), Value(BOOL, "yields")]
-    translator.function(yield_step, [row, arrays, past, following, network, yielding, *further])
-    translator.function(write_program, [data, arrays, past, targets, t])
-    if step.yielding.stop:
-        translator.function(guard_step, [arrays, past, following, yielding])
-    has_reference = step.samples
-    if has_reference:
-        translator.function(sample_targets, [arrays, t, targets])
-    frames = len(program.target_frames)
+    arrays, arrays_set = _arrays(translator, step, motions)
+    yielding, yielding_set = _handed(translator, "yielding", step.yielding, {"dt": "CONTROLLER_DT"})
+    _translate_step(translator, controller, lengths, arrays, yielding)
     columns = step.layout.columns
-    sizes = {
-        "width": step.layout.width,
-        "past": 5 * dof,
-        "state": state,
-        "jacobian": 6 * dof,
-        "placements": PLACEMENT * robot.model.nframes,
-    }
-    values: dict[str, Any] = {
-        **sizes,
+    places = {f"at_{name}": columns[name].start for name in ("decision", "dq", "point", "targets")}
+    return {
+        **places,
         "robot": robot.name,
         "version": version("iiwa-dnn"),
-        "dof": dof,
+        "dof": robot.dof,
         "n": n,
         "m": m,
         "p": p,
-        "frames": frames,
+        "frames": len(program.target_frames),
         "frame_names": ", ".join(program.target_frames),
         "joint_names": ", ".join(robot.joint_names),
         "dt": repr(controller.dt),
-        "systems": _own_budget(step) + (ATTEMPTS - 1) * BUDGET + _levels_budget(controller),
-        "size": _DOUBLE * (sum(sizes.values()) + 5 * dof + 3),
+        "systems": _systems(controller),
+        "fields": _fields(lengths),
+        "past_size": lengths["past"],
+        "size": _DOUBLE * (sum(lengths.values()) + 1),
         "actions": _actions(),
         "policy": _action(controller).value,
-        "at_decision": columns["decision"].start,
-        "guard": GUARD * bool(step.yielding.stop),
-        "at_dq": columns["dq"].start,
-        "at_point": columns["point"].start,
+        "cold": f"    double cold[{3 * n + m + p}] = {{0}};\n" * (not is_warm),
+        "state": "c->state" if is_warm else "cold",
+        "goes_on": str(controller.mode == "converged").lower(),
+        "guard": _GUARD * bool(step.yielding.stop),
         "point_size": 2 * n + m + p,
         "active_size": n + m,
-        "at_targets": columns["targets"].start,
-        **_levels(translator, controller),
+        "arrays": arrays_set,
+        "yielding": yielding_set,
+        "levels_function": _levels(translator, controller),
+        "resolve": "    resolve_levels(c->row);\n" * (controller.priorities.numbers.size > 0),
+        "move_function": _move_function(translator, motions, lengths["constants"]),
+        "move": "    move_obstacles(c->constants, t);\n" * bool(motions),
+        "start": "    start_constants(c->constants);\n" * bool(motions),
         "code": translator.text(),
         "bound_code": _bound(program.sizes, program.data_size),
-        "kinematics": kinematics_code(robot, program.kinematics.frame_ids),
+        "kinematics": kinematics_code(robot, program.kinematics.frame_ids, program.needs_inertia),
+        "inertia": ", c->inertia" * program.needs_inertia,
+        "has_reference": step.samples,
     }
-    return Code({name: str(value) for name, value in values.items()}, has_reference)
+
+
+def check(controller: Controller, step: ControlStep) -> None:
+    """Raise an InvalidInputError that names what of a controller is not compiled."""
+    program = step.program
+    if program.accelerates:
+        raise InvalidInputError("scheme", "is of the acceleration level, which is not compiled")
+    for block in getattr(program, "numpy_blocks", ()):
+        name = type(block.part).__name__
+        raise InvalidInputError("scheme", f"{name} is written with numpy, which is not exported")
+    if isinstance(program, ForeignProgram):
+        raise InvalidInputError("scheme", "is no Scheme of parts that are compiled")
+    for part, _ in program.moving:
+        _check_motion(part)
+    if controller.estimator is not None:
+        raise InvalidInputError("estimator", "is not exported: hand the estimated positions over")
+    network = controller.solver.network
+    if type(network).initial_state is not Network.initial_state:
+        problem = f"{type(network).__name__} starts from a state of its own, which is not exported"
+        raise InvalidInputError("network", problem, network)
+    if not step.has_network:
+        problem = "has no compiled answer: take the projection network with the default integrators"
+        problem += ", or in continuous mode a compiled network and ExplicitEuler with substeps"
+        raise InvalidInputError("solver", problem, controller.solver)
+
+
+def _check_motion(part: Any) -> None:
+    """Raise an InvalidInputError unless a limit moves by constant velocities alone."""
+    if not isinstance(part, CollisionAvoidance):
+        problem = f"{type(part).__name__} moves by numpy, which is not exported"
+        raise InvalidInputError("scheme", problem, part)
+    for obstacle in part.obstacles:
+        if obstacle.motion is not None:
+            problem = f"{type(obstacle).__name__} moves by a function, which is not exported: "
+            raise InvalidInputError("obstacles", f"{problem}give it a velocity", obstacle)
+
+
+def _motions(program: StepProgram) -> list[tuple[int, Vector, Vector]]:
+    """List the obstacles that move.
+
+    Returns:
+        For each the index of its first point among the constants of all parts, its points at time
+        0 [m], (k, 3), and its velocity [m/s], (3,).
+    """
+    starts = iter(program.constants_of(CollisionAvoidance))
+    found = []
+    for block in program.compiled_blocks:
+        if isinstance(block.part, CollisionAvoidance):
+            start, _ = next(starts)
+            for obstacle, own in block.part.scene(program.robot).moving:
+                velocity = np.array(obstacle.velocity)
+                found.append((start + own.start, obstacle.points, velocity))
+    return found
+
+
+def _lengths(controller: Controller, moves: bool) -> dict[str, int]:
+    """Count the numbers of each field of the struct; `moves` says that constants change."""
+    step = controller.control_step
+    program = step.program
+    dof = controller.robot.dof
+    qp = QP.from_data(np.zeros(program.data_size), program.sizes)
+    return {
+        "row": step.layout.width,
+        "past": 5 * dof,
+        "following": 5 * dof,
+        "state": controller.solver.network.state_size(qp),
+        "jacobian": 6 * dof,
+        "placements": PLACEMENT * controller.robot.model.nframes,
+        "inertia": dof * dof * program.needs_inertia,
+        "constants": step.arrays.constants.size * moves,
+        "steps": 1,
+        "delay": 1,
+    }
+
+
+def _fields(lengths: dict[str, int]) -> str:
+    """Declare the fields of the struct."""
+    lines = []
+    for name, length in lengths.items():
+        size = f"[{length}]" if length > 1 else ""
+        if length:
+            lines.append(f"    double {name}{size};  /* {_FIELDS[name]} */")
+    return "\n".join(lines)
+
+
+def _translate_step(
+    translator: Translator,
+    controller: Controller,
+    lengths: dict[str, int],
+    arrays: Value,
+    yielding: Value,
+) -> None:
+    """Translate the functions of a control step for the lengths of the struct's fields."""
+    step = controller.control_step
+    program = step.program
+    dof = controller.robot.dof
+    clock = Value(Tuple(DOUBLE, 2), "clock")
+    translator.define(clock.kind)
+    row = _array("row", lengths["row"])
+    past = _array("past", 5, dof)
+    following = _array("following", 5, dof)
+    targets = _array("targets", len(program.target_frames), TARGET_SIZE)
+    t = Value(DOUBLE, "t")
+    own = [_array("state", lengths["state"]), clock, integer(ANSWER)]
+    translator.function(control_step, [row, arrays, _array("q", dof), past, following, *own])
+    n, m, p = program.sizes
+    policy = [integer(_action(controller)), Value(BOOL, "yields")]
+    own = [_array("state", 3 * n + m + p), yielding, *policy]
+    translator.function(yield_step, [row, arrays, past, following, *own])
+    data = _array("data", program.data_size)
+    translator.function(write_program, [data, arrays, past, targets, t])
+    if step.yielding.stop:
+        translator.function(guard_step, [arrays, past, following, yielding])
+    if step.samples:
+        translator.function(sample_targets, [arrays, t, targets])
 
 
 def _bound(sizes: Sizes, data_size: int) -> str:
@@ -140,53 +252,87 @@ def _bound(sizes: Sizes, data_size: int) -> str:
     return translator.text()
 
 
-def check(controller: Controller, step: ControlStep) -> None:
-    """Raise an InvalidInputError that names what of a controller is not compiled."""
-    program = step.program
-    if program.accelerates:
-        raise InvalidInputError("scheme", "is of the acceleration level, which is not exported")
-    for block in getattr(program, "numpy_blocks", ()):
-        name = type(block.part).__name__
-        raise InvalidInputError("scheme", f"{name} is written with numpy, which is not exported")
-    if isinstance(program, ForeignProgram):
-        raise InvalidInputError("scheme", "is no Scheme of parts that are compiled")
-    if program.needs_inertia:
-        raise InvalidInputError("scheme", "has a cost of the inertia matrix, which is not exported")
-    if program.moving:
-        raise InvalidInputError("scheme", "has obstacles that move, which are not exported")
-    if controller.estimator is not None:
-        raise InvalidInputError("estimator", "is not exported: hand the estimated positions over")
-    if not step.has_network:
-        problem = "has no compiled answer: take the projection network with the default integrators"
-        raise InvalidInputError("solver", problem, controller.solver)
+def _handed(
+    translator: Translator,
+    name: str,
+    own: Any,
+    variables: dict[str, str],
+    known: Mapping[str, Value] = MappingProxyType({}),
+) -> tuple[Value, str]:
+    """Hand a named tuple over to translated functions, in C of the same name.
+
+    Args:
+        translator: The translation.
+        name: Its name.
+        own: The named tuple: its arrays become tables, its integers are known.
+        variables: C expressions of the fields that change.
+        known: Values of fields that are none of these.
+
+    Returns:
+        The pointer to it, and the C statements that set its fields.
+    """
+    values = []
+    for field, value in zip(own._fields, own, strict=True):
+        if field in known:
+            values.append(known[field])
+        elif isinstance(value, int):
+            values.append(Value(Known("int", value)))
+        elif isinstance(value, float):
+            values.append(Value(DOUBLE, field))
+        elif field in variables:
+            values.append(_array(field, *value.shape))
+        else:
+            values.append(translator.table(f"{name}_{field}", value))
+    struct = translator.named_tuple(type(own), values)
+    texts = {field: variables.get(field, f"{name}_{field}") for field, _ in struct.members}
+    lines = [f"    {name}.{field} = {text};" for field, text in texts.items()]
+    return Value(struct, name, pointer=True), "\n".join(lines)
 
 
-def _arrays(translator: Translator, step: ControlStep) -> Value:
-    """Return the arrays of a program, of which those that do not change are tables."""
+def _arrays(
+    translator: Translator, step: ControlStep, motions: list[tuple[int, Vector, Vector]]
+) -> tuple[Value, str]:
+    """Hand the arrays of a program over; those that do not change are tables."""
     own = step.arrays
-    values = [
-        translator.table("table", own.table),
-        translator.table("constants", own.constants),
-        _array("jacobian", *own.jacobian.shape),
-        _array("placements", *own.placements.shape),
-        translator.table("moves", own.moves),
-        _array("inertia", *own.inertia.shape),
-        Value(DOUBLE, "rate"),
-    ]
-    return Value(translator.named_tuple(ProgramArrays, values), "arrays", pointer=True)
+    variables = {name: f"c->{name}" for name in ("jacobian", "placements", "inertia")}
+    variables["rate"] = "1.0 / CONTROLLER_DT"
+    if not step.program.needs_inertia:
+        variables["inertia"] = "NULL"
+    if not motions:
+        return _handed(translator, "arrays", own, variables)
+    content: list[float | None] = own.constants.tolist()
+    for first, points, _ in motions:
+        content[first : first + points.size] = [None] * points.size
+    translator.table("arrays_constants", own.constants)
+    variables["constants"] = "c->constants"
+    constants = Value(Array(DOUBLE, (len(content),), content=tuple(content)), "constants")
+    return _handed(translator, "arrays", own, variables, {"constants": constants})
 
 
-def _own_budget(step: ControlStep) -> int:
-    """Return the largest number of linear systems that the step's own program may take."""
-    entry = step.program.table[1 + step.program.table[0, 4]]
-    budget = step.program.constants[entry[4] + OWN_BUDGET]
-    return int(budget)
+def _move_function(
+    translator: Translator, motions: list[tuple[int, Vector, Vector]], size: int
+) -> str:
+    """Translate the motion of obstacles, and write the functions that start and move them."""
+    calls = []
+    for number, (first, points, velocity) in enumerate(motions, 1):
+        still = translator.table(f"points_{number}", points)
+        rate = translator.table(f"velocity_{number}", velocity)
+        shifted = _array("shifted", points.size)
+        made = translator.function(shift_points, [still, rate, Value(DOUBLE, "t"), shifted])
+        assert made is not None
+        calls.append(f"    {made.name}({still.text}, {rate.text}, t, constants + {first});")
+    values = {"calls": "\n".join(calls), "size": size}
+    return filled("moving.c", values) if motions else ""
 
 
-def _levels_budget(controller: Controller) -> int:
-    """Return the largest number of linear systems that the levels of priority may take."""
-    own = controller.priorities
-    return 2 * own.numbers.size * int(own.settings[OWN_BUDGET])
+def _systems(controller: Controller) -> int:
+    """Return the largest number of linear systems that a step may take."""
+    program = controller.program
+    entry = program.table[1 + program.table[0, 4]]
+    levels = controller.priorities
+    own = int(program.constants[entry[4] + OWN_BUDGET])
+    own += 2 * levels.numbers.size * int(levels.settings[OWN_BUDGET])
+    return own + (ATTEMPTS - 1) * BUDGET
 
 
 def _action(controller: Controller) -> Action:
@@ -196,49 +342,19 @@ def _action(controller: Controller) -> Action:
     return {"slow": Action.SLOW, "relax": Action.RELAX}.get(controller.policy, Action.STOP)
 
 
-def _yielding(translator: Translator, step: ControlStep) -> Value:
-    """Return what relaxed programs need beside a step's own."""
-    own = step.yielding
-    values = [
-        translator.table("row_weights", own.weights),
-        translator.table("elastic_rows", own.elastic),
-        translator.table("motion_constants", own.limits),
-        translator.table("relaxed_settings", own.settings),
-        translator.table("scenes", own.scenes),
-        Value(DOUBLE, "dt"),
-        *(Value(Known("int", address)) for address in own[-5:]),
-    ]
-    return Value(translator.named_tuple(Yielding, values), "yielding", pointer=True)
-
-
-def _levels(translator: Translator, controller: Controller) -> dict[str, str]:
-    """Translate the levels of priority; texts for the places of their call, empty without any."""
+def _levels(translator: Translator, controller: Controller) -> str:
+    """Translate the levels of priority, and write the function that resolves them, if any."""
     own = controller.priorities
-    count = own.numbers.size
-    if not count:
-        return {"levels_function": "", "resolve": ""}
+    if not own.numbers.size:
+        return ""
     n, m, p = controller.program.sizes
-    values = [
-        translator.table("level_numbers", own.numbers),
-        translator.table("level_of_rows", own.rows),
-        _array("data", *own.data.shape),
-        _array("x", *own.x.shape),
-        _array("missing", *own.missing.shape),
-        translator.table("level_settings", own.settings),
-        Value(DOUBLE, "tol"),
-        Value(Known("int", own.answer)),
-    ]
-    levels = Value(translator.named_tuple(Priorities, values), "priorities", pointer=True)
+    scratch = {name: name for name in ("data", "x", "missing")}
+    levels, levels_set = _handed(translator, "priorities", own, {**scratch, "tol": repr(own.tol)})
     data = _array("data", controller.program.data_size)
     translator.function(resolve_program, [data, *map(integer, (n, m, p)), levels])
-    text = (files("iiwa_dnn.export") / "templates" / "levels.c").read_text(encoding="utf-8")
-    sizes = {"data": own.data.size, "x": own.x.size, "missing": own.missing.size}
-    for name, size in {**sizes, "n": n, "m": m, "p": p}.items():
-        text = text.replace(f"@{name}@", str(size))
-    return {
-        "levels_function": text.replace("@tol@", repr(own.tol)),
-        "resolve": "    resolve_levels(c->row);\n",
-    }
+    sizes = {name: getattr(own, name).size for name in scratch}
+    values = {**sizes, "n": n, "m": m, "p": p, "assignments": levels_set}
+    return filled("levels.c", values)
 
 
 def _array(name: str, *shape: int) -> Value:

@@ -88,10 +88,10 @@ class Expressions:
         self.stored: set[str] = set()
         self._temporaries = 0
 
-    def require(self, holds: object, node: Any, problem: str = "") -> None:
+    def require(self, holds: object, node: Any, problem: str = "has no translation") -> None:
         """Raise an InvalidInputError with file and line of a node unless something holds."""
         if not holds:
-            what = problem or f"`{ast.unparse(node).splitlines()[0]}` has no translation"
+            what = f"`{ast.unparse(node).splitlines()[0]}` {problem}"
             raise InvalidInputError(self.function.__name__, f"{self.file}:{node.lineno}: {what}")
 
     def value(self, node: ast.expr) -> Value:
@@ -104,13 +104,13 @@ class Expressions:
     def scalar(self, node: ast.expr) -> Value:
         """Translate an expression that is a number."""
         value = self.value(node)
-        self.require(isinstance(value.kind, Scalar), node, f"`{ast.unparse(node)}` is no number")
+        self.require(isinstance(value.kind, Scalar), node, "is no number")
         return value
 
     def condition(self, node: ast.expr) -> Value:
         """Translate a condition."""
         value = self.scalar(node)
-        self.require(value.kind is not DOUBLE, node, f"`{ast.unparse(node)}` is no condition")
+        self.require(value.kind is not DOUBLE, node, "is no condition")
         return value
 
     def written(self, value: Value) -> Value:
@@ -147,7 +147,7 @@ class Expressions:
             raise WideError(node.id)
         own = self.function.__globals__
         known = own if node.id in own else vars(builtins)
-        self.require(node.id in known, node, f"`{node.id}` is not known here")
+        self.require(node.id in known, node, "is not known here")
         return self.constant(known[node.id], node.id)
 
     def constant(self, found: Any, name: str) -> Value:
@@ -291,7 +291,7 @@ class Expressions:
         known = content[0] if content else None
         if not array.is_table:
             return Value(array.element, f"{owner.at(ATOM)}[{offset.text}]", known=known)
-        self.require(content, parts[0], "a table is read at an index that is not known")
+        self.require(content, parts[0], "is no known index of a table")
         return integer(int(known or 0))
 
     def _offset(self, array: Array, parts: list[ast.expr]) -> tuple[Value, tuple[int | str, ...]]:
@@ -312,7 +312,7 @@ class Expressions:
         """Return the first index along an axis, and how many there are; None for an index alone."""
         if not isinstance(part, ast.Slice):
             return self.scalar(part), None
-        self.require(part.step is None, part.step, "a slice with a step has no translation")
+        self.require(part.step is None, part, "is a slice with a step")
         start = self.scalar(part.lower) if part.lower else integer(0)
         stop = self.scalar(part.upper) if part.upper else length(size)
         width = stop if start.text == "0" else self.operation(ast.Sub, stop, start)
@@ -320,12 +320,12 @@ class Expressions:
 
     def on_call(self, node: ast.Call) -> Value:
         """Translate a call."""
-        self.require(not node.keywords, node, "keyword arguments have no translation")
+        self.require(not node.keywords, node, "has keyword arguments")
         arguments = [self.value(argument) for argument in node.args]
         if isinstance(node.func, ast.Attribute) and node.func.attr == "reshape":
             owner = self.value(node.func.value)
             shape = tuple(size.known for size in arguments)
-            self.require(None not in shape, node, "the shape is not known when the code is made")
+            self.require(None not in shape, node, "has a shape that is not known")
             return replace(owner, kind=replace(owner.kind, shape=shape))
         called = self.value(node.func).kind
         self.require(isinstance(called, Object), node)
@@ -349,7 +349,7 @@ class Expressions:
                 return self.constant(result, "")
         made = self.translator.function(function, arguments)
         if made is None:
-            self.require(False, node, f"{function.__name__} calls itself")
+            self.require(False, node, "calls itself")
             raise AssertionError
         if made.constant is not None:
             return made.constant
@@ -373,7 +373,8 @@ def _constant_of(value: Value) -> Any:
     if not isinstance(kind, Array) or kind.content is None:
         return value.known
     shape = [int(size) for size in kind.shape]
-    return np.array(list(kind.content)[: math.prod(shape)]).reshape(shape)
+    content = kind.content[: math.prod(shape)]
+    return None if None in content else np.array(content).reshape(shape)
 
 
 class WideError(Exception):

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import MissingDependencyError
-from iiwa_dnn.export.code import Code, code_of
+from iiwa_dnn.export.code import code_of, filled
 from iiwa_dnn.export.load import tested
 from iiwa_dnn.files import plain, prepare_folder, write_csv, write_text
 from iiwa_dnn.qp import Matrix, Vector
@@ -86,16 +86,18 @@ def c99(
         FileError: The folder cannot be written.
     """
     twin, start = _anchored(controller, q0)
-    code = code_of(twin)
+    texts = code_of(twin)
     vectors = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
-    code = code._replace(values=code.values | _texts(twin, start, code, vectors))
+    texts |= _texts(twin, start, vectors, texts["has_reference"])
     write_csv(folder / "vectors.csv", _head(twin), vectors.table)
     for name in _FILES:
-        write_text(folder / name, code.fill(name, {"verified": "not yet: `make test`"}))
+        write_text(folder / name, filled(name, texts | {"verified": "not yet: `make test`"}))
     with suppress(MissingDependencyError):
         if verify:
-            write_text(folder / "README.md", code.fill("README.md", {"verified": tested(folder)}))
+            write_text(
+                folder / "README.md", filled("README.md", texts | {"verified": tested(folder)})
+            )
     return folder
 
 
@@ -144,16 +146,16 @@ def _head(controller: Controller) -> list[str]:
 
 
 def _texts(
-    controller: Controller, start: Configuration, code: Code, vectors: Vectors
-) -> dict[str, str]:
+    controller: Controller, start: Configuration, vectors: Vectors, has_reference: bool
+) -> dict[str, Any]:
     """Return the texts of the templates that are about the run and the settings."""
     robot = controller.robot
     limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
     settings = plain(settings_of(controller))
     sample = "        controller_target(&c, k * CONTROLLER_DT, target);\n"
     sample_of_fri = "        controller_target(&controller_, t_, target);\n"
-    has_reference = code.has_reference
-    texts: dict[str, Any] = {
+    reference = {"reference": json.dumps(settings["reference"])}
+    return {
         "steps": len(vectors.t),
         "velocity_limits": _numbers(limits),
         "q0": _numbers(start.q),
@@ -161,16 +163,11 @@ def _texts(
         "sample": sample * has_reference,
         "fri_sample": sample_of_fri * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
-        "target_declaration": "",
-        "target_function": "",
-        "reference": json.dumps(settings["reference"]),
+        "target_declaration": filled("target.h", reference) * has_reference,
+        "target_function": filled("target.c", {}) * has_reference,
         "settings": json.dumps(settings, indent=2),
         "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
     }
-    if has_reference:
-        texts["target_declaration"] = code.fill("target.h", {"reference": texts["reference"]})
-        texts["target_function"] = code.fill("target.c")
-    return {name: str(value) for name, value in texts.items()}
 
 
 def _numbers(values: Vector) -> str:

@@ -6,6 +6,7 @@ import ast
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,7 +108,7 @@ class Body(Expressions):
         items = value.items or [value]
         for item in items:
             is_own = isinstance(item.kind, Array) and item.kind.storage.owner is self.function
-            self.require(not is_own, node, "an array of the function itself cannot be returned")
+            self.require(not is_own, node, "cannot be returned: the array is the function's own")
         if self.lines.only_declare and all(_is_known(item) for item in items):
             literals = [integer(item.known) for item in items]
             self.known_result = Value(value.kind, items=literals) if value.items else literals[0]
@@ -187,8 +188,10 @@ class Body(Expressions):
     def _limits(self, node: ast.For, call: ast.Call, name: str) -> tuple[Value, Value, int]:
         """Return start, stop and step of a range, which the loop leaves as they are."""
         self.require(self.value(call.func).kind == Object(range), node)
-        changed = set(_stored(ast.Module(node.body, [])))
-        self.require(not changed & (_names(call) | {name}), node, "the loop changes its own range")
+        changed = list(_stored(node))
+        changed.remove(name)
+        kept = _names(call) | {name}
+        self.require(kept.isdisjoint(changed), node, "changes its own range")
         limits = [self.scalar(argument) for argument in call.args]
         if len(limits) == 1:
             limits.insert(0, integer(0))
@@ -257,7 +260,7 @@ class Body(Expressions):
             items = [self._kept(item) for item in value.items]
         else:
             items = value.items or self.temporary(value).parts()
-        self.require(len(items) == len(target.elts), target, "another number of values")
+        self.require(len(items) == len(target.elts), target, "has another number of values")
         for each, item in zip(target.elts, items, strict=True):
             if getattr(each, "id", "") != "_":
                 self._store_at(each, item)
@@ -297,8 +300,8 @@ class Body(Expressions):
     ) -> None:
         """Declare an array of the function."""
         is_known = all(isinstance(size, int) for size in shape)
-        self.require(is_known, target, "the size of an array is not known when the code is made")
-        self.require(target.id not in self.names, target, "an array is allocated once")
+        self.require(is_known, target, "has a size that is not known")
+        self.require(target.id not in self.names, target, "is allocated already")
         storage = Storage(self.function)
         storage.write()
         variable = Value(Array(element, shape, storage), identifier(target.id))
@@ -351,7 +354,7 @@ class Body(Expressions):
         if isinstance(kind, Array) and isinstance(value.kind, Array):
             kind.storage.pass_to(value.kind.storage)
         is_narrow = kind is INT and value.kind is DOUBLE
-        self.require(not is_narrow, target, "an integer before: write it as a float")
+        self.require(not is_narrow, target, "was an integer before: write it as a float")
         self.lines.add(f"{own.text} = {value.text};", stored=own.text)
 
     def do_augassign(self, node: ast.AugAssign) -> None:
@@ -367,7 +370,7 @@ class Body(Expressions):
         self.lines.add(f"{own.text} {sign} {value.text};", stored=own.text)
 
     def _write(self, target: ast.Subscript, sign: str, value: Value) -> None:
-        self.require(isinstance(value.kind, Scalar), target, "only numbers are written")
+        self.require(isinstance(value.kind, Scalar), target, "is written with what is no number")
         owner = self.value(target.value)
         element = self.scalar(target)
         self.require(isinstance(owner.kind, Array), target)
@@ -379,6 +382,7 @@ _ALLOCATORS = {"np.empty": "", "np.zeros": " = {0}"}
 """Functions that make an array, and how it begins."""
 
 
+@lru_cache(maxsize=10_000)
 def _stored(tree: ast.AST) -> list[str]:
     """List the names that are written in a tree."""
     names = [node for node in ast.walk(tree) if isinstance(node, ast.Name)]

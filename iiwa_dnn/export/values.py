@@ -82,13 +82,13 @@ class Array:
         element: Type of a number.
         shape: Lengths along the axes: known ones, or a C expression.
         storage: Storage of the numbers.
-        content: The numbers themselves where they are known.
+        content: The numbers themselves where they are known; None for one that changes.
     """
 
     element: Scalar
     shape: tuple[int | str, ...]
     storage: Storage = field(default_factory=Storage, compare=False)
-    content: tuple[float, ...] | None = None
+    content: tuple[float | None, ...] | None = None
     tag = "array"
 
     @property

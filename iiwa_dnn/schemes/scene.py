@@ -63,7 +63,11 @@ class Scene(NamedTuple):
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
         for obstacle, part in self.moving:
-            constants[part] = (obstacle.points + obstacle.shift(t)).ravel()
+            if obstacle.motion is None:
+                points = self.constants[part].reshape(-1, 3)
+                shift_points(points, np.array(obstacle.velocity), t, constants[part])
+            else:
+                constants[part] = (obstacle.points + obstacle.shift(t)).ravel()
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
@@ -81,6 +85,14 @@ class Scene(NamedTuple):
             indices[k] = of_pairs.argmin()
             distances[k] = of_pairs[indices[k]]
         return distances, indices
+
+
+@compiled
+def shift_points(points: Matrix, velocity: Vector, t: float, shifted: Vector) -> None:
+    """Write points (k, 3) [m] that moved with a velocity (3,) [m/s] for a time into `shifted`."""
+    for k in range(points.shape[0]):
+        for i in range(3):
+            shifted[3 * k + i] = points[k, i] + t * velocity[i]
 
 
 class Damper(NamedTuple):

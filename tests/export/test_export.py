@@ -13,6 +13,7 @@ import iiwa_dnn
 from benchmarks.export_settings import SETTINGS, drawing, with_parts
 from helpers_export import WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
+from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
@@ -33,6 +34,10 @@ def loaded(folder: Path) -> ExportedController:
     return load(folder, QUICK, "gcc")
 
 
+REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move")
+"""Controllers whose limits become active within 2,000 steps."""
+
+
 @pytest.mark.parametrize("name", SETTINGS)
 def test_commands_are_pythons_in_closed_loop(name: str, tmp_path: Path) -> None:
     controller, q0 = SETTINGS[name]()
@@ -43,7 +48,7 @@ def test_commands_are_pythons_in_closed_loop(name: str, tmp_path: Path) -> None:
     theirs = q0.copy()
     active = 0
     actions = set()
-    reaches_limits = name in ("velocity limits active", "collisions, 21 pairs")
+    reaches_limits = name in REACHING
     yields = name.startswith(("without", "yielding", "braking"))
     for k in range(2000 if reaches_limits or yields else 500):
         targets = controller.targets(k * dt - controller.delay)
@@ -238,14 +243,32 @@ def _with_own_part() -> Controller:
     return drawing(iiwa_dnn.Scheme(costs, base.tasks, base.limits))[0]
 
 
-def _among_moving() -> Controller:
-    ball = iiwa_dnn.Sphere((1.0, 1.0, 1.0), 0.1, velocity=(0.1, 0.0, 0.0))
+def _among_guided() -> Controller:
+    ball = iiwa_dnn.Sphere((1.0, 1.0, 1.0), 0.1, motion=lambda t: (t, 0.0, 0.0), speed=1.0)
     return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball]),)))[0]
 
 
-def _with_other_network() -> Controller:
+class _Closing(iiwa_dnn.JointLimits):
+    moves = True
+
+    def move(self, robot: iiwa_dnn.Robot, constants: np.ndarray, t: float) -> None:
+        constants *= 0.99
+
+
+def _with_network(network: iiwa_dnn.Network) -> Controller:
     controller, _ = drawing()
-    controller.solver = iiwa_dnn.DNNSolver(iiwa_dnn.PrimalDualNetwork())
+    controller.solver = iiwa_dnn.DNNSolver(network)
+    return controller
+
+
+class _Eager(iiwa_dnn.ProjectionNetwork):
+    def initial_state(self, qp: iiwa_dnn.QP) -> np.ndarray:
+        return np.ones(self.state_size(qp))
+
+
+def _with_estimator() -> Controller:
+    controller, _ = drawing()
+    controller.estimator = NoiseModel()
     return controller
 
 
@@ -254,9 +277,11 @@ def _with_other_network() -> Controller:
     [
         (_accelerates, "acceleration level"),
         (_with_own_part, "Manipulability is written with numpy"),
-        (_among_moving, "obstacles that move"),
-        (lambda: drawing(DoubleIndicator(kinetic="inertia"))[0], "inertia matrix"),
-        (_with_other_network, "solver: has no compiled answer"),
+        (_among_guided, "obstacles: Sphere moves by a function"),
+        (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing moves by numpy"),
+        (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
+        (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
+        (_with_estimator, "estimator: is not exported"),
     ],
 )
 def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:

@@ -34,29 +34,36 @@ def odd_robot(folder: Path) -> iiwa_dnn.Robot:
         for name, parent, child, kind, axis, xyz, rpy in _JOINTS
     ]
     names = ["base", *(joint[2] for joint in _JOINTS)]
-    links = [f'<link name="{name}"/>' for name in names]
+    inertia = '<inertia ixx="0.3" ixy="0.02" ixz="-0.01" iyy="0.2" iyz="0.03" izz="0.25"/>'
+    links = [
+        f'<link name="{name}"><inertial><origin xyz="0.1 -0.02 0.0{k}" rpy="0.{k} 0.2 -0.3"/>'
+        f'<mass value="1.{k}"/>{inertia}</inertial></link>'
+        for k, name in enumerate(names)
+    ]
     path = folder / "odd.urdf"
     path.write_text(f'<robot name="odd">{"".join(links + joints)}</robot>', encoding="utf-8")
     return iiwa_dnn.load_robot(path, tip="tool")
 
 
 def compare(robot: iiwa_dnn.Robot, frames: list[str], folder: Path) -> None:
-    """Compare Jacobian and placements at random postures."""
-    kinematics = Kinematics(robot, frames)
-    text = kinematics_code(robot, kinematics.frame_ids)
-    head = "void entry(double *q, double *jacobian, double *placements)"
-    text += f"\n\n{head};\n{head}\n{{\n    kinematics(q, jacobian, placements);\n}}\n"
+    """Compare Jacobian, placements and inertia matrix at random postures."""
+    kinematics = Kinematics(robot, frames, dynamics=True)
+    text = kinematics_code(robot, kinematics.frame_ids, dynamics=True)
+    head = "void entry(double *q, double *jacobian, double *placements, double *inertia)"
+    text += f"\n\n{head};\n{head}\n{{\n    kinematics(q, jacobian, placements, inertia);\n}}\n"
     library = compiled_text(text, folder)
     rng = np.random.default_rng(0)
     jacobian = np.full((robot.dof, 6), np.nan)
     placements = np.zeros((robot.model.nframes, 12))
+    inertia = np.full((robot.dof, robot.dof), np.nan)
     rows = list(kinematics.frame_ids)
     for q in rng.uniform(-3.0, 3.0, (100, robot.dof)):
         kinematics.update(q)
-        call(library, "entry", q, jacobian, placements)
+        call(library, "entry", q, jacobian, placements, inertia)
         np.testing.assert_allclose(jacobian, kinematics.jacobian, rtol=0, atol=1e-13)
         expected = kinematics.placements[rows]
         np.testing.assert_allclose(placements[rows], expected, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(inertia, kinematics.inertia, rtol=0, atol=1e-12)
     assert np.abs(placements[rows]).max() > 0.1
 
 
@@ -67,7 +74,9 @@ def test_arms_move_as_pinocchio_says(name: str, tmp_path: Path) -> None:
 
 
 def test_every_kind_of_joint_moves_as_pinocchio_says(tmp_path: Path) -> None:
-    compare(odd_robot(tmp_path), ["tool", "camera", "one", "base"], tmp_path)
+    robot = odd_robot(tmp_path)
+    robot.model.armature[:] = 0.1  # the motors' share
+    compare(robot, ["tool", "camera", "one", "base"], tmp_path)
 
 
 def test_tool_and_locked_joints_are_folded(tmp_path: Path) -> None:

@@ -14,6 +14,8 @@
 #define AT_DECISION @at_decision@
 #define AT_DQ @at_dq@
 #define POLICY @policy@
+/* Whether a task that yielded goes on to do so until it has a solution. */
+#define GOES_ON @goes_on@
 #define ANSWER 2
 
 /* The size that the header states. */
@@ -23,32 +25,21 @@ typedef char controller_size[sizeof(struct controller) == CONTROLLER_SIZE ? 1 : 
 
 @kinematics@
 
+/* Assigned, and not initialized: compilers would keep a copy of that in memory. */
 static struct program_arrays controller_arrays(struct controller *c)
 {
-    const struct program_arrays arrays = {
-        .constants = constants,
-        .jacobian = c->jacobian,
-        .placements = c->placements,
-        .moves = moves,
-        .inertia = NULL,
-        .rate = 1.0 / CONTROLLER_DT,
-    };
+    struct program_arrays arrays;
+@arrays@
     return arrays;
 }
 
-/* Assigned, and not initialized: compilers would keep a copy of that in memory. */
 static struct yielding controller_yielding(void)
 {
     struct yielding yielding;
-    yielding.weights = row_weights;
-    yielding.elastic = elastic_rows;
-    yielding.limits = motion_constants;
-    yielding.settings = relaxed_settings;
-    yielding.dt = CONTROLLER_DT;
+@yielding@
     return yielding;
 }
-
-@levels_function@
+@levels_function@@move_function@
 static bool all_finite(const double *values, int count)
 {
     double sum = 0.0;
@@ -62,7 +53,7 @@ void controller_init(struct controller *c)
 {
     const struct controller zero = {0};
     *c = zero;
-}
+@start@}
 
 int controller_step(struct controller *c, const double *q, const double *target, double *dq)
 {
@@ -78,14 +69,14 @@ int controller_step(struct controller *c, const double *q, const double *target,
     const struct pair clock = {{t, c->delay}};
     bool solved = false;
     int action = 0;
-    kinematics(q, c->jacobian, c->placements);
+    kinematics(q, c->jacobian, c->placements@inertia@);
     for (int i = 0; i < 18 * CONTROLLER_FRAMES; i++) {
         c->row[AT_TARGETS + i] = target[i];
     }
     for (int i = 0; i < CONTROLLER_DOF; i++) {
         c->past[i] = q[i];
     }
-    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
+@move@    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
 @resolve@    if (c->yields) {
         for (int i = 0; i < 3; i++) {
             c->row[AT_DECISION + i] = 0.0;
@@ -94,10 +85,10 @@ int controller_step(struct controller *c, const double *q, const double *target,
         solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, ANSWER)@guard@;
     }
     if (!solved) {
-        action = yield_step(c->row, &arrays, c->past, c->following, c->state, &yielding, POLICY,
+@cold@        action = yield_step(c->row, &arrays, c->past, c->following, @state@, &yielding, POLICY,
             c->yields != 0);
-        c->yields =
-            action == CONTROLLER_SLOW || action == CONTROLLER_RELAX || action == CONTROLLER_STOP;
+        c->yields = GOES_ON
+            && (action == CONTROLLER_SLOW || action == CONTROLLER_RELAX || action == CONTROLLER_STOP);
     }
     if (action != 0) {
         c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);
@@ -105,7 +96,7 @@ int controller_step(struct controller *c, const double *q, const double *target,
     for (int i = 0; i < CONTROLLER_DOF; i++) {
         dq[i] = c->row[AT_DQ + i];
     }
-    for (int i = 0; i < @past@; i++) {
+    for (int i = 0; i < @past_size@; i++) {
         c->past[i] = c->following[i];
     }
     c->steps += 1.0;

@@ -21,14 +21,7 @@ extern "C" {
 
 /* All memory of a controller; its fields are the controller's own. */
 struct controller {
-    double row[@width@];        /* program, answer, figures, placement, q, dq, targets */
-    double past[@past@];        /* joint positions, last command, the one before, and a wanted one */
-    double following[@past@];   /* the same for the next step */
-    double state[@state@];       /* of the network */
-    double jacobian[@jacobian@];    /* joint Jacobian, row by row */
-    double placements[@placements@];  /* of the frames */
-    double steps;              /* steps since controller_init */
-    double delay;              /* time by which the reference's clock is behind [s] */
+@fields@
     int yields;                /* whether the task yielded at the last step */
     int unused;                /* keeps the size the same everywhere */
 };

@@ -6,12 +6,6 @@ static void resolve_levels(double *row)
     double x[@x@];
     double missing[@missing@];
     struct priorities priorities;
-    priorities.numbers = level_numbers;
-    priorities.rows = level_of_rows;
-    priorities.data = data;
-    priorities.x = x;
-    priorities.missing = missing;
-    priorities.settings = level_settings;
-    priorities.tol = @tol@;
+@assignments@
     resolve_program(row, @n@, @m@, @p@, &priorities);
 }
