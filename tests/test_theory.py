@@ -335,3 +335,27 @@ def test_the_integral_damps_below_the_root_of_half_its_gain() -> None:
     assert share(0.9 * edge) < 1.0 < share(1.1 * edge)
     assert share(np.sqrt(gain)) == pytest.approx(np.sqrt(1.25), rel=0.02)
     assert followed(gain, 0.0, 1.0).min() == pytest.approx(-np.exp(-2.0), rel=0.02)
+
+
+def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_row() -> None:
+    rng = np.random.default_rng(0)
+    A = rng.standard_normal((2, 4))
+    ends = {"lb": -np.ones(4), "ub": np.ones(4)}
+    qp = QP(np.eye(4), [-10.0, 0.0, 0.0, 0.0], A=A, b=np.zeros(2), **ends)
+    rest = equilibrium(qp)
+    assert np.flatnonzero(rest[6:]).tolist() == [0]  # the first joint, at its upper bound
+    rest[6:] *= 0.5  # the projection carries the other half
+
+    def eigenvalues(rows: Array) -> Array:
+        m, n = rows.shape
+        matrix = np.block([[-np.eye(n), -rows.T], [rows, np.zeros((m, m))]])
+        return np.linalg.eigvals(matrix)
+
+    for project, rows in ((True, A[:, 1:]), (False, np.vstack([A, np.eye(4)[:1]]))):
+        network = ProjectionNetwork(primal_projection=project)
+        found = np.linalg.eigvals(network.flow(qp).jacobian(rest))
+        expected = eigenvalues(rows)
+        for value in expected:
+            assert np.abs(found - value).min() < 1e-6
+        others = [value for value in found if np.abs(expected - value).min() > 1e-6]
+        np.testing.assert_allclose(others, 0.0 if project else -1.0, atol=1e-6)

@@ -20,11 +20,37 @@ from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.networks.activations import Activation, SignBiPower
-from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, settings_of
+from iiwa_dnn.networks.activations import Activation, SignBiPower, enter_magnitude
+from iiwa_dnn.networks.base import (
+    RATES,
+    Flow,
+    Network,
+    Rates,
+    difference_jacobian,
+    enter_rates,
+    settings_of,
+)
 from iiwa_dnn.networks.dual import DualNetwork
-from iiwa_dnn.qp.layout import Sizes, Triple, Vector
+from iiwa_dnn.qp.layout import QPViews, Sizes, Triple, Vector, compiled
 from iiwa_dnn.qp.program import QP
+
+
+@compiled
+def activated_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
+    """Write the rates (size,) of the network inside, scaled; see `ActivatedNetwork.prepare`.
+
+    An address below 2^53 is a float without rounding.
+    """
+    first = 3 + int(constants[2])
+    enter_rates(int(constants[0]), qp, constants[first:], state, rates)
+    square = 0.0
+    for i in range(state.size):
+        square += rates[i] * rates[i]
+    size = np.sqrt(square)
+    if 0.0 < size < np.inf:
+        scale = enter_magnitude(int(constants[1]), size, constants[3:first]) / size
+        for i in range(state.size):
+            rates[i] *= scale
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +64,7 @@ class ActivatedNetwork(Network):
 
     network: Network = field(default_factory=DualNetwork)
     activation: Activation = field(default_factory=SignBiPower)
+    compiled_rates = staticmethod(activated_rates)
 
     @property
     def carries_x(self) -> bool:  # type: ignore[override]
@@ -48,15 +75,29 @@ class ActivatedNetwork(Network):
         """Count the network's states."""
         return self.network.state_size(qp)
 
+    def rates_function(self) -> Rates | None:
+        """Return the compiled function, if the network inside has one."""
+        return None if self.network.rates_function() is None else super().rates_function()
+
+    def prepare(self, qp: QP) -> Vector:
+        """Return addresses and constants of activation and network inside, (k,)."""
+        inner = self.network.rates_function()
+        assert inner is not None  # of those with one `prepare` is asked
+        own = self.activation.constants
+        head = [float(RATES.address(inner)), float(self.activation.address), float(own.size)]
+        return np.concatenate([head, own, self.network.prepare(qp)])
+
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side for this program; its derivative by differences."""
+        if self.rates_function() is not None:
+            return super().flow(qp)
         inner = self.network.flow(qp).rates
 
         def rates(state: Vector) -> Vector:
             result = inner(state)
-            size = np.linalg.norm(result)
+            size = np.sqrt(result @ result)
             if 0.0 < size < np.inf:
-                result = self.activation(np.array([size])) / size * result
+                result *= self.activation(np.array([size])) / size
             return result
 
         return Flow(rates, lambda state: difference_jacobian(rates, state))

@@ -40,7 +40,7 @@ class Flow(NamedTuple):
     jacobian: Callable[[Vector], Matrix]
 
 
-_STOOD_IN_FOR = frozenset({"state_size", "flow", "moving_flow", "read", "stable_step"})
+_STOOD_IN_FOR = frozenset({"state_size", "flow", "moving_flow", "prepare", "read", "stable_step"})
 
 Rates = Callable[[QPViews, Vector, Vector, Vector], None]
 """Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
@@ -96,6 +96,14 @@ class Network(ABC):
         """Return the constants of `compiled_rates` for programs of these sizes (n, m, p)."""
         return np.empty(0)
 
+    def prepare(self, qp: QP) -> Vector:
+        """Return the constants of `compiled_rates` for one program, (k,).
+
+        By default they are those of its sizes. A network that sets its program up first
+        overrides this, and has no compiled answer then.
+        """
+        return self.constants(qp.sizes)
+
     def flow(self, qp: QP) -> Flow:
         """Make the right-hand side and its derivative for this program.
 
@@ -105,7 +113,7 @@ class Network(ABC):
         if function is None:
             raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
         address = RATES.address(function)
-        constants = self.constants(qp.sizes)
+        constants = self.prepare(qp)
         size = self.state_size(qp)
 
         def rates(state: Vector) -> Vector:

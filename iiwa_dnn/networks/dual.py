@@ -35,7 +35,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow, Network, read_point
+from iiwa_dnn.networks.base import read_point
+from iiwa_dnn.networks.clipped import Clipped, ClippedNetwork, clipped_rates
 from iiwa_dnn.qp.layout import Matrix, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
 
@@ -50,6 +51,7 @@ class _Dual(NamedTuple):
         base: E s, (rows,).
         lower: Lower limits of E x, (rows,).
         upper: Upper limits, (rows,).
+        equalities: P^-1 A^T S^-1 of the simplified network, (n, p).
     """
 
     lifted: Matrix
@@ -58,10 +60,11 @@ class _Dual(NamedTuple):
     base: Vector
     lower: Vector
     upper: Vector
+    equalities: Matrix
 
 
 @dataclass(frozen=True, kw_only=True)
-class DualNetwork(Network):
+class DualNetwork(ClippedNetwork):
     """The single-layer dual network, with p + m + n states: 14 for seven joints and rows.
 
     Raises:
@@ -70,6 +73,7 @@ class DualNetwork(Network):
 
     carries_x: ClassVar[bool] = False
     simplified: ClassVar[bool] = False
+    compiled_rates = staticmethod(clipped_rates)
 
     def state_size(self, qp: QP) -> int:
         """Count the states: one for each row and each variable."""
@@ -88,24 +92,11 @@ class DualNetwork(Network):
     def _dual(self, qp: QP) -> _Dual:
         return _lift(qp.data.tobytes(), qp.sizes, self.simplified)
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
-        _, _, gram, base, lower, upper = self._dual(qp)
-
-        def rates(state: Vector) -> Vector:
-            values = gram @ state + base
-            result: Vector = np.clip(values - state, lower, upper) - values
-            return result
-
-        def jacobian(state: Vector) -> Matrix:
-            aim = gram @ state + base - state
-            inside = (aim > lower) & (aim < upper)
-            result: Matrix = -gram
-            result[inside] = 0.0
-            result[inside, inside] = -1.0
-            return result
-
-        return Flow(rates, jacobian)
+    def arrays(self, qp: QP) -> Clipped:
+        """Set a program up."""
+        _, _, gram, base, lower, upper, _ = self._dual(qp)
+        eye = np.eye(len(gram))
+        return Clipped(gram - eye, base, lower, upper, eye, 1.0)
 
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
         """Write the point of a state (state_size,) into `point`; returns its residuals."""
@@ -116,7 +107,7 @@ class DualNetwork(Network):
         z = -state[: state.size - n]
         if self.simplified:
             gradient = qp.P @ x + qp.q - qp.G.T @ state[:m] - state[m:]
-            z = np.concatenate([np.linalg.lstsq(qp.A.T, -gradient, rcond=1e-10)[0], z])
+            z = np.concatenate([-dual.equalities.T @ gradient, z])
         return read_point(qp, np.concatenate([x, z]), point, n + m + p)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
@@ -149,11 +140,12 @@ def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
     rows = np.eye(qp.q.size)
     lower = qp.lb
     upper = qp.ub
+    equalities = np.empty((0, 0))
     if simplified:
         scaled = qp.A @ inverse.T
-        lifted = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
-        M = M - lifted @ scaled @ inverse
-        offset = lifted @ qp.b - M @ qp.q
+        equalities = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
+        M = M - equalities @ scaled @ inverse
+        offset = equalities @ qp.b - M @ qp.q
     if qp.h.size:
         rows = np.vstack([qp.G, rows])
         lower = np.append(np.full(qp.h.size, -np.inf), lower)
@@ -163,4 +155,4 @@ def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
         lower = np.append(qp.b, lower)
         upper = np.append(qp.b, upper)
     lifted = M @ rows.T
-    return _Dual(lifted, offset, rows @ lifted, rows @ offset, lower, upper)
+    return _Dual(lifted, offset, rows @ lifted, rows @ offset, lower, upper, equalities)

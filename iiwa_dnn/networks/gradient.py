@@ -14,11 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from iiwa_dnn.networks.activations import Linear
 from iiwa_dnn.networks.base import Flow, difference_jacobian, kkt_product
 from iiwa_dnn.networks.kkt_system import KktSystem
 from iiwa_dnn.networks.primal_dual import coupling
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
-from iiwa_dnn.qp.layout import Sizes, Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -39,7 +40,14 @@ class GradientNetwork(ZeroingNetwork):
             result: Vector = -system.matrix.T @ self.activation(error)
             return result
 
-        return Flow(rates, lambda state: difference_jacobian(rates, state))
+        def jacobian(state: Vector) -> Matrix:
+            if self.form == "smooth" or not isinstance(self.activation, Linear):
+                return difference_jacobian(rates, state)
+            system.evaluate(state)  # W is constant on an active set
+            result: Matrix = -system.matrix.T @ system.matrix
+            return result
+
+        return Flow(rates, jacobian)
 
     def moving_flow(self, qp: QP, rate: QP) -> Flow:
         """Make the same right-hand side: the rate of the program is not used."""

@@ -18,7 +18,16 @@ from typing import Literal
 
 import numpy as np
 
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.qp.dense import add_row, row_dot
+from iiwa_dnn.qp.layout import (
+    Matrix,
+    QPViews,
+    Sizes,
+    Vector,
+    check_size,
+    compiled,
+    qp_views,
+)
 from iiwa_dnn.qp.program import QP
 
 Form = Literal["projected", "smooth"]
@@ -53,9 +62,7 @@ class KktSystem:
         self._form = form
         self.size = system_size(qp, form)
         self.qp = qp
-        self._rate = rate
-        self._affine = _affine(qp, form, 1.0)
-        self._drift = None if rate is None else _affine(rate, form, 0.0)
+        self._rate: Vector = np.zeros(qp.data.size) if rate is None else rate.data
 
     def evaluate(self, s: Vector) -> tuple[Vector, Vector]:
         """Compute the residual at a point, and its drift: its rate at a point that stays.
@@ -67,71 +74,140 @@ class KktSystem:
             Residual and drift, (size,) both; `matrix` becomes the residual's derivative.
         """
         check_size("state", s, self.size)
-        n, _, p = self.qp.sizes
-        base, constant = self._affine
-        error: Vector = base @ s + constant
-        drift: Vector = np.zeros(self.size)
-        if self._drift is not None:
-            moved, shifted = self._drift
-            drift = moved @ s + shifted
-        self.matrix = base.copy()
-        np.einsum("ii->i", self.matrix)[n : n + p] = -REGULAR
-        (self._smooth if self._form == "smooth" else self._projected)(s, error, drift)
+        error = np.empty(self.size)
+        drift = np.empty(self.size)
+        self.matrix = np.zeros((self.size, self.size))
+        evaluate(self.qp.data, self._rate, self.qp.sizes, s, error, drift, self.matrix)
         return error, drift
 
-    def _smooth(self, s: Vector, error: Vector, drift: Vector) -> None:
-        """Put the complementarity in place of the rows C x - d."""
-        n, _, p = self.qp.sizes
-        at = np.arange(n + p, self.size)
-        w = s[n + p :]
-        ends = np.isfinite(error[at])
-        slack = np.where(ends, -error[at], 0.0)
-        root = np.sqrt(w**2 + slack**2 + EPSILON**2)
-        error[at] = np.where(ends, w + slack - root, w)
-        share = np.where(ends, 1.0 - slack / root, 0.0)
-        self.matrix[at, :n] *= -share[:, None]
-        self.matrix[at, at] = np.where(ends, 1.0 - w / root, 1.0)
-        drift[at] *= -share
 
-    def _projected(self, s: Vector, error: Vector, drift: Vector) -> None:
-        """Put the projections in place of the rows g and G x - h."""
-        n, m, p = self.qp.sizes
-        qp = self.qp
-        matrix = self.matrix
-        rate = self._rate
-        x = s[:n]
-        aim = x - error[:n]
-        for name, bound in ("lb", qp.lb), ("ub", qp.ub):
-            out = np.flatnonzero(aim <= bound if name == "lb" else aim >= bound)
-            if out.size:
-                error[out] = x[out] - bound[out]
-                matrix[out] = 0.0
-                matrix[out, out] = 1.0
-                drift[out] = 0.0 if rate is None else -getattr(rate, name)[out]
-        if m:
-            rows = np.arange(n + p, self.size)
-            z = s[n + p :]
-            idle = ~(z + error[rows] > 0.0)
-            error[rows] = np.where(idle, -z, error[rows])
-            matrix[rows[idle], :n] = 0.0
-            drift[rows[idle]] = 0.0
-            matrix[rows, rows] = np.where(idle, -1.0, -REGULAR)
+@compiled
+def evaluate(
+    data: Vector,
+    rate: Vector,
+    sizes: Sizes,
+    s: Vector,
+    error: Vector,
+    drift: Vector,
+    matrix: Matrix,
+) -> None:
+    """Write residual, drift (size,) and derivative (size, size), all zero before, at s (size,).
 
-
-def _affine(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
-    """Stack gradient and rows, A x - b and C x - d, as a matrix and a constant.
-
-    `unit` is 0 for a rate of change: the rows of the bounds stay.
+    The program and its rate are `QP.data`, of sizes (n, m, p); with n + p + m unknowns the form is
+    the projected one, with 2 n more the smooth one.
     """
+    n, m, p = sizes
+    qp = qp_views(data, n, m, p)
+    change = qp_views(rate, n, m, p)
+    for i in range(n):
+        error[i] = qp.q[i] + row_dot(qp.P, i, s)
+        drift[i] = change.q[i] + row_dot(change.P, i, s)
+        matrix[i, :n] = qp.P[i]
+    for j in range(p):
+        _put_row(qp.A, change.A, j, n + j, s, error, drift, matrix)
+        error[n + j] -= qp.b[j]
+        drift[n + j] -= change.b[j]
+    for j in range(m):
+        _put_row(qp.G, change.G, j, n + p + j, s, error, drift, matrix)
+        error[n + p + j] -= qp.h[j]
+        drift[n + p + j] -= change.h[j]
+    if s.size > n + m + p:
+        _put_bounds(qp, change, n + p + m, s, error, drift, matrix)
+        for row in range(n + p, s.size):
+            _smooth(row, n, s, error, drift, matrix)
+        return
+    for row in range(n + p, s.size):
+        if not s[row] + error[row] > 0.0:
+            _replace(row, -s[row], 0.0, -1.0, error, drift, matrix)
+    for i in range(n):
+        aim = s[i] - error[i]
+        if aim <= qp.lb[i]:
+            _replace(i, s[i] - qp.lb[i], -change.lb[i], 1.0, error, drift, matrix)
+        if aim >= qp.ub[i]:
+            _replace(i, s[i] - qp.ub[i], -change.ub[i], 1.0, error, drift, matrix)
+
+
+@compiled
+def _put_row(
+    rows: Matrix,
+    moved: Matrix,
+    j: int,
+    at: int,
+    s: Vector,
+    error: Vector,
+    drift: Vector,
+    matrix: Matrix,
+) -> None:
+    """Put row j of rows (k, n) that move at a rate (k, n) at a place, and take it to the gradient.
+
+    Arrays are those of `evaluate`, (size,) and (size, size).
+    """
+    n = rows.shape[1]
+    error[at] = row_dot(rows, j, s)
+    drift[at] = row_dot(moved, j, s)
+    add_row(error, s[at], rows, j)
+    add_row(drift, s[at], moved, j)
+    matrix[at, :n] = rows[j]
+    matrix[:n, at] = rows[j]
+    matrix[at, at] = -REGULAR
+
+
+@compiled
+def _put_bounds(
+    qp: QPViews,
+    change: QPViews,
+    at: int,
+    s: Vector,
+    error: Vector,
+    drift: Vector,
+    matrix: Matrix,
+) -> None:
+    """Put the rows x - ub and lb - x; arrays of `evaluate`, (size,) and (size, size)."""
     n = qp.q.size
-    matrix = np.zeros((system_size(qp, form),) * 2)
-    rows = [qp.A, qp.G]
-    constant = [qp.q, -qp.b, -qp.h]
-    if form == "smooth":
-        rows += [unit * np.eye(n), -unit * np.eye(n)]
-        constant += [-qp.ub, qp.lb]
-    stacked = np.vstack(rows)
-    matrix[:n, :n] = qp.P
-    matrix[:n, n:] = stacked.T
-    matrix[n:, :n] = stacked
-    return matrix, np.concatenate(constant)
+    for i in range(n):
+        upper = at + i
+        lower = at + n + i
+        error[i] += s[upper] - s[lower]
+        matrix[i, upper] = 1.0
+        matrix[upper, i] = 1.0
+        matrix[i, lower] = -1.0
+        matrix[lower, i] = -1.0
+        error[upper] = s[i] - qp.ub[i]
+        error[lower] = qp.lb[i] - s[i]
+        drift[upper] = -change.ub[i]
+        drift[lower] = change.lb[i]
+
+
+@compiled
+def _smooth(row: int, n: int, s: Vector, error: Vector, drift: Vector, matrix: Matrix) -> None:
+    """Put the complementarity in place of a row of C x - d; arrays (size,), (size, size)."""
+    w = s[row]
+    if not np.isfinite(error[row]):
+        matrix[row, :n] = 0.0
+        error[row] = w
+        drift[row] = 0.0
+        matrix[row, row] = 1.0
+        return
+    slack = -error[row]
+    root = np.sqrt(w**2 + slack**2 + EPSILON**2)
+    error[row] = w + slack - root
+    drift[row] *= slack / root - 1.0
+    matrix[row, :n] *= slack / root - 1.0
+    matrix[row, row] = 1.0 - w / root
+
+
+@compiled
+def _replace(
+    row: int,
+    value: float,
+    moved: float,
+    slope: float,
+    error: Vector,
+    drift: Vector,
+    matrix: Matrix,
+) -> None:
+    """Put a projection on a bound in place of a row; arrays (size,) and (size, size)."""
+    error[row] = value
+    drift[row] = moved
+    matrix[row] = 0.0
+    matrix[row, row] = slope

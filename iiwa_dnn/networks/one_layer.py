@@ -25,9 +25,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow
-from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, coupling, limits
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
+from iiwa_dnn.networks.clipped import Clipped, clipped_rates
+from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, constant, coupling, limits
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -42,6 +42,7 @@ class OneLayerNetwork(PrimalDualNetwork):
 
     share: float = 0.5
     corrected: bool = True
+    compiled_rates = staticmethod(clipped_rates)
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -54,27 +55,14 @@ class OneLayerNetwork(PrimalDualNetwork):
         setup, two = super().work(sizes)
         return setup, two if self.corrected else 0.5 * two
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side for this program; and its derivative."""
+    def arrays(self, qp: QP) -> Clipped:
+        """Set a program up."""
         H = coupling(qp)
-        lower, upper = limits(qp)
-        constant = np.concatenate([qp.q, qp.b, qp.h])
         alpha = self.share / float(np.linalg.norm(H, 2))
-
-        def rates(state: Vector) -> Vector:
-            step: Vector = np.clip(state - alpha * (H @ state + constant), lower, upper) - state
-            return step - alpha * (H @ step) if self.corrected else step
-
-        eye = np.eye(constant.size)
-        corrected = eye - alpha * H if self.corrected else eye
-
-        def jacobian(state: Vector) -> Matrix:
-            aim = state - alpha * (H @ state + constant)
-            inside = (aim > lower) & (aim < upper)
-            result: Matrix = corrected @ (np.where(inside[:, None], eye - alpha * H, 0.0) - eye)
-            return result
-
-        return Flow(rates, jacobian)
+        eye = np.eye(len(H))
+        matrix = eye - alpha * H
+        outer = matrix if self.corrected else eye
+        return Clipped(matrix, -alpha * constant(qp), *limits(qp), outer)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] that get nearer to every solution, of the corrected form."""

@@ -24,14 +24,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.networks.base import kkt_product
+from iiwa_dnn.networks.clipped import Clipped, ClippedNetwork, clipped_rates
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrimalDualNetwork(Network):
+class PrimalDualNetwork(ClippedNetwork):
     """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
+
+    compiled_rates = staticmethod(clipped_rates)
 
     def state_size(self, qp: QP) -> int:
         """Count the states: x and one multiplier for each row."""
@@ -42,26 +45,11 @@ class PrimalDualNetwork(Network):
         """Count no set-up and two products with H; sizes are (n, m, p)."""
         return 0.0, 2.0 * kkt_product(sizes)
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
+    def arrays(self, qp: QP) -> Clipped:
+        """Set a program up."""
         H = coupling(qp)
-        lower, upper = limits(qp)
-        constant = np.concatenate([qp.q, qp.b, qp.h])
-        eye = np.eye(constant.size)
-        outer = eye + H.T
-
-        def rates(state: Vector) -> Vector:
-            error = np.clip(state - (H @ state + constant), lower, upper) - state
-            result: Vector = outer @ error
-            return result
-
-        def jacobian(state: Vector) -> Matrix:
-            aim = state - (H @ state + constant)
-            inside = (aim > lower) & (aim < upper)
-            result: Matrix = outer @ (np.where(inside[:, None], eye - H, 0.0) - eye)
-            return result
-
-        return Flow(rates, jacobian)
+        eye = np.eye(len(H))
+        return Clipped(eye - H, -constant(qp), *limits(qp), eye + H.T)
 
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""
@@ -78,6 +66,11 @@ def coupling(qp: QP) -> Matrix:
     H[:n, n:] = rows.T
     H[n:, :n] = -rows
     return H
+
+
+def constant(qp: QP) -> Vector:
+    """Return c, (n + p + m,)."""
+    return np.concatenate([qp.q, qp.b, qp.h])
 
 
 def limits(qp: QP) -> tuple[Vector, Vector]:

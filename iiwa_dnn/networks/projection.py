@@ -104,6 +104,36 @@ def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vecto
 
 
 @compiled
+def differentiate(
+    data: Vector, sizes: Sizes, project: bool, s: Vector, rates: Vector, jacobian: Matrix
+) -> None:
+    """Write the derivative of the rates, (size, size), zero before, at a state and rates (size,).
+
+    The program is `QP.data` of sizes (n, m, p).
+    """
+    n, m, p = sizes
+    qp = qp_views(data, n, m, p)
+    at_z = n + p
+    at_u = at_z + m
+    jacobian[:n, :n] = -qp.P
+    jacobian[:n, n:at_z] = -qp.A.T
+    jacobian[n:at_z, :n] = qp.A
+    jacobian[:n, at_z:at_u] = -qp.G.T
+    jacobian[at_z:at_u, :n] = qp.G
+    for i in range(n):
+        for row, sign in ((at_u + i, 1.0), (at_u + n + i, -1.0)):
+            jacobian[i, row] = -sign
+            jacobian[row, i] = sign
+        if project and not qp.lb[i] - s[i] < rates[i] < qp.ub[i] - s[i]:
+            jacobian[i] = 0.0
+            jacobian[i, i] = -1.0
+    for row in range(at_z, s.size):
+        if not s[row] + rates[row] > 0.0:
+            jacobian[row] = 0.0
+            jacobian[row, row] = -1.0
+
+
+@compiled
 def stable_step(qp: QPViews, active: Vector) -> float:
     """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
     n = qp.q.size
@@ -196,21 +226,8 @@ class ProjectionNetwork(Network):
 
     def _jacobian(self, qp: QP, state: Vector, rates: Vector) -> Matrix:
         """Differentiate the rates, (state_size, state_size)."""
-        n, m, p = qp.sizes
-        rows = np.vstack([qp.A, qp.G, np.eye(n), -np.eye(n)])
-        active = np.empty(m + 2 * n)
-        mark_active(state, rates, active)
-        follows = np.concatenate([np.ones(p), active]) > 0.0
         jacobian = np.zeros((state.size, state.size))
-        jacobian[:n, :n] = -qp.P
-        jacobian[:n, n:] = -rows.T
-        jacobian[n:, :n] = np.where(follows[:, None], rows, 0.0)
-        jacobian[n:, n:] = -np.diag(np.where(follows, 0.0, 1.0))
-        if self.primal_projection:
-            aim = state[:n] - (qp.P @ state[:n] + qp.q + rows.T @ state[n:])
-            outside = np.flatnonzero((aim <= qp.lb) | (aim >= qp.ub))
-            jacobian[outside] = 0.0
-            jacobian[outside, outside] = -1.0
+        differentiate(qp.data, qp.sizes, self.primal_projection, state, rates, jacobian)
         return jacobian
 
 

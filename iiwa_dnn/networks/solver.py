@@ -168,7 +168,8 @@ class DNNSolver:
         settler = self.settler
         follower = self.follower
         rates = network.rates_function()
-        if rates is None or type(network).read is not Network.read:
+        kind = type(network)
+        if rates is None or kind.read is not Network.read or kind.prepare is not Network.prepare:
             return None
         builtin = is_projection(network)
         budget = 0

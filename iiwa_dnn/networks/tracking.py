@@ -120,7 +120,8 @@ class TrackingSolver(DNNSolver):
         known = self._programs[: self.formula.order]
         if len(known) < 2:
             return np.zeros(known[0].size)
-        finite = np.nan_to_num(np.array(known), posinf=0.0, neginf=0.0)
+        programs = np.array(known)
+        finite = np.where(np.isfinite(programs), programs, 0.0)
         rate: Vector = np.array(_BACKWARD[len(known) - 2]) @ finite / duration
         return rate
 

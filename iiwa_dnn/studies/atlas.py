@@ -93,11 +93,7 @@ class Paced(ExplicitEuler):
         step = self.share * network.linear_limit(qp, state)
         if not step > 0.0:
             raise InvalidInputError("network", "has no stable step: take `settled`", network)
-        rates = network.flow(qp).rates
-        count = self.substeps or 1
-        for _ in range(count):
-            state += step * rates(state)
-        return count
+        return super().advance(network, qp, state, step * (self.substeps or 1))
 
 
 @dataclass(frozen=True)

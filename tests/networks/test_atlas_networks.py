@@ -16,7 +16,9 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.networks import (
     ActivatedNetwork,
+    Flow,
     GradientNetwork,
+    Network,
     OneLayerNetwork,
     SimplifiedDualNetwork,
     ZeroingNetwork,
@@ -129,6 +131,44 @@ def test_an_activated_network_has_the_direction_of_the_one_inside() -> None:
     assert network.stable_step(qp) == 0.0
     assert not network.carries_x
     assert network.settings()["activation"]["name"] == "FixedTime"
+
+
+class OwnDual(DualNetwork):
+    """A network without a compiled function: it overrides the right-hand side."""
+
+    def flow(self, qp: QP) -> Flow:
+        return super().flow(qp)
+
+
+@pytest.mark.parametrize(
+    "network",
+    [
+        PrimalDualNetwork(), OneLayerNetwork(), OneLayerNetwork(corrected=False), DualNetwork(),
+        SimplifiedDualNetwork(), ActivatedNetwork(), ActivatedNetwork(activation=FixedTime()),
+    ],
+    ids=repr,
+)  # fmt: skip
+def test_compiled_steps_are_those_of_the_rates(network: Network) -> None:
+    rng = np.random.default_rng(7)
+    qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
+    assert network.rates_function() is not None
+    state = rng.standard_normal(network.state_size(qp))
+    expected = state.copy()
+    rates = network.flow(qp).rates
+    for _ in range(7):
+        expected += 0.01 * rates(expected)
+    assert ExplicitEuler(substeps=7).advance(network, qp, state, 0.07) == 7
+    np.testing.assert_allclose(state, expected, rtol=1e-12)
+    assert DNNSolver(network).compiled_answer(qp.sizes, 0.1) is None  # no program is set up there
+
+
+def test_an_activated_network_of_ones_own_has_no_compiled_function_and_the_same_rates() -> None:
+    rng = np.random.default_rng(8)
+    qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
+    own = ActivatedNetwork(network=OwnDual())
+    assert own.rates_function() is None
+    state = rng.standard_normal(own.state_size(qp))
+    np.testing.assert_allclose(own.rates(qp, state), ActivatedNetwork().rates(qp, state))
 
 
 def test_the_yardstick_reaches_the_solution_and_starts_warm() -> None:

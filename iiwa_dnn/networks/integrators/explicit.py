@@ -90,14 +90,14 @@ def _steps(network: Network, qp: QP, state: Vector, step: float, count: int, tol
     function = network.rates_function()
     if function is not None:
         check_size("state", state, network.state_size(qp))
-        constants = network.constants(qp.sizes)
+        constants = network.prepare(qp)
         limits = np.array([step, count, tol])
         address = RATES.address(function)
         return explicit_program(qp.data, *qp.sizes, address, constants, state, limits)
     flow = network.flow(qp)
     for done in range(count):
         rates = flow.rates(state)
-        if not np.abs(rates).max() > tol:
+        if tol >= 0.0 and not np.abs(rates).max() > tol:
             return done
         state += step * rates
     return count
