@@ -218,7 +218,7 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
 
 
 def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> None:
-    """Print a line if a path of poses begins elsewhere than the tip."""
+    """Print where a path of poses begins if not at the tip, and a posture to start it from."""
     target = reference.at(0.0)
     if _is_at(start, target):
         return
@@ -228,10 +228,11 @@ def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Schem
     advice = f"no posture was found there: {answer}"
     if answer.q is not None:
         posture = " ".join(f"{value:.6f}" for value in answer.q)
-        advice = f"to begin there, with another --out or --overwrite: --q0 {posture}"
+        advice = f"to start there, run again with --overwrite --q0 {posture}"
+    turned = f", turned by {angle:.3g} rad" if angle > _NEAR_ANGLE else ""
     print(
-        f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, "
-        f"at {np.round(target.position, 4).tolist()} m; {advice}",
+        f"the path begins at {np.round(target.position, 4).tolist()} m, {distance:.3g} m from the "
+        f"tip{turned}: the arm goes there first; {advice}",
         file=sys.stderr,
     )
 

@@ -121,8 +121,9 @@ class ReplayPanel:
         ]
         curves = []
         for title, color, t, values in quantities:
-            if values is not None and (values > 0.0).sum() > 1:
-                times, _, _, largest = envelope(t, np.nan_to_num(values, posinf=0.0), _POINTS)
+            if values is not None and np.isfinite(values).sum() > 1:
+                known = np.where(np.isfinite(values), values, -np.inf)
+                times, _, _, largest = envelope(t, known, _POINTS)
                 curve = Curves(gui, title, (color,), (self.playback.start, self.playback.end))
                 curve.show(times, largest)
                 curves.append(curve)
