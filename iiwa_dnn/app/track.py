@@ -26,7 +26,6 @@ from iiwa_dnn.references import (
     Lissajous,
     OnSurface,
     Reference,
-    Target,
     Tilting,
     Waypoints,
 )
@@ -220,10 +219,10 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
 def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> None:
     """Print where a path of poses begins if not at the tip, and a posture to start it from."""
     target = reference.at(0.0)
-    if _is_at(start, target):
-        return
     distance = np.linalg.norm(target.position - start.position)
     angle = rotation_angle(start.rotation, target.rotation)
+    if distance <= _NEAR_POSITION and angle <= _NEAR_ANGLE:
+        return
     answer = solve_pose(start.robot, target, start.q, obstacles=avoidance_of(scheme) or ())
     advice = f"no posture was found there: {answer}"
     if answer.q is not None:
@@ -235,13 +234,6 @@ def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Schem
         f"tip{turned}: the arm goes there first; {advice}",
         file=sys.stderr,
     )
-
-
-def _is_at(conf: Configuration, target: Target) -> bool:
-    """Compare the pose of the tip with a target."""
-    distance = float(np.linalg.norm(conf.position - target.position))
-    angle = float(rotation_angle(conf.rotation, target.rotation))
-    return distance <= _NEAR_POSITION and angle <= _NEAR_ANGLE
 
 
 def _refuse_set(options: TrackOptions, name: str, problem: str) -> None:

@@ -16,8 +16,10 @@ from iiwa_dnn.robot.shapes import Shape, joint_poses, visual_shapes
 VIEWS = ("arm", "top", "side", "tool")
 """Directions from which the camera looks: at the whole arm, or at the path from near by."""
 
+SEEN_THROUGH = 0.2
+"""Opacity of the arm from above, where it would hide the path."""
+
 _PIECES = 400  # straight pieces that a path is drawn with, at most
-_SEEN_THROUGH = 0.2  # opacity of the arm from above, where it would hide the path
 
 
 class Stage:
@@ -132,7 +134,7 @@ class Stage:
         camera.position = tuple(position)  # moves the point looked at along
         camera.look_at = tuple(middle)
         for shape in self._shapes:
-            shape.opacity = _SEEN_THROUGH if view == "top" else None
+            shape.opacity = SEEN_THROUGH if view == "top" else None
 
 
 def camera_pose(
@@ -149,7 +151,7 @@ def camera_pose(
     up = np.array([0.0, 0.0, 1.0])
     side = np.array([point[1], -point[0], 0.0])  # across the way from the base to the path
     side /= max(float(np.linalg.norm(side)), 1e-9)
-    distance = max(0.5, 3.0 * float(np.ptp(path, axis=0).max()))
+    distance = max(0.5, (4.5 if upright else 3.0) * float(np.ptp(path, axis=0).max()))
     away = {
         "arm": (2.0 if upright else 1.0) * (0.95 * side + 0.35 * point + 0.55 * up),
         "top": distance * up + 1e-3 * side,
