@@ -1,4 +1,4 @@
-"""Postures for random poses beside Pink's iterated solver and Pinocchio's: share, error, time.
+"""Postures for random poses beside PlaCo's, Pink's and Pinocchio's iterated solvers.
 
 ``python -m benchmarks poses`` prints a table. A pose is that of a random posture within the joints'
 limits, so that it can be reached. Every solver gets the same poses and the same starts, the arm's
@@ -6,14 +6,18 @@ start posture, whose CPU time is measured, and up to 19 random ones until one le
 answer counts if Pinocchio finds its tip within 1e-9 m and 1e-9 rad of the pose and its joints
 within their limits. From each start a solver has 100 iterations, as `iiwa_dnn.solve_pose` has. Pink
 takes whole steps (gain 1 in a step of 1 s), with the damping of its examples; Pinocchio's loop is
-that of its inverse kinematics example, damped by 1e-12, its joints
-clipped to their limits.
+that of its inverse kinematics example, damped by 1e-12, its joints clipped to their limits. PlaCo
+(``--placo-python``) has a soft frame task of weight 1 beside a regularization of 1e-6, as in its
+examples, and runs in a process of its own.
 """
 
 import argparse
+import tempfile
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pink
@@ -22,7 +26,9 @@ from pink.limits import ConfigurationLimit
 from pink.tasks import FrameTask
 
 import iiwa_dnn
+from benchmarks.arms import write_urdf
 from benchmarks.braking import ARMS
+from benchmarks.control import Driver, Loop
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.results.markdown import markdown_table
 
@@ -33,6 +39,9 @@ STARTS = 20
 ITERATIONS = 100
 
 Solver = Callable[[iiwa_dnn.Robot, pin.SE3, Vector], Vector]
+
+Ask = Callable[[int, int], tuple[Vector, float]]
+"""Looks for a pose from a start, both by number; returns joint positions and CPU time [s]."""
 
 ROUNDED = 1.01
 """Ratio of an error to `TOL` that still counts: Pinocchio's rounding is another one."""
@@ -98,7 +107,51 @@ def error_of(robot: iiwa_dnn.Robot, q: Vector, pose: pin.SE3) -> float:
     return float(max(off, turned)) if not robot.outside(q) else np.inf
 
 
-def measure(robot: iiwa_dnn.Robot, count: int) -> list[list[str]]:
+def asked(solver: Solver, robot: iiwa_dnn.Robot, poses: Sequence[pin.SE3], starts: Matrix) -> Ask:
+    """Return a solver as `measure` asks it, compiled."""
+
+    def ask(pose: int, start: int) -> tuple[Vector, float]:
+        began = time.process_time()
+        q = solver(robot, poses[pose], starts[start])
+        return q, time.process_time() - began
+
+    ask(0, 0)
+    return ask
+
+
+def placo_postures(
+    python: Path,
+    robot: iiwa_dnn.Robot,
+    poses: Sequence[pin.SE3],
+    starts: Matrix,
+    stack: ExitStack,
+) -> Ask:
+    """Return PlaCo's solver in a process of its own, which ends with the stack."""
+    folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+    task = {
+        "urdf": str(write_urdf(robot, folder)),
+        "tip": robot.tip,
+        "names": robot.joint_names,
+        "lower": robot.q_lower,
+        "upper": robot.q_upper,
+        "poses": [pose.homogeneous for pose in poses],
+        "starts": starts,
+        "iterations": ITERATIONS,
+        "tol": TOL,
+    }
+    np.savez(folder / "task.npz", **task)
+    driver = Driver(Loop("PlaCo", "placo", "placo_poses"), python, folder / "task.npz")
+    stack.callback(driver.close)
+
+    def ask(pose: int, start: int) -> tuple[Vector, float]:
+        step = pose * len(starts) + start
+        answer = np.array(driver.take(step, step + 1)["q"][0])
+        return answer[:-1], float(answer[-1])
+
+    return ask
+
+
+def measure(robot: iiwa_dnn.Robot, count: int, placo: Path | None = None) -> list[list[str]]:
     """Let each solver look for `count` random poses; returns the table's rows."""
     poses = [
         pin.SE3(at.rotation.copy(), at.position.copy())
@@ -106,24 +159,31 @@ def measure(robot: iiwa_dnn.Robot, count: int) -> list[list[str]]:
     ]
     starts = np.vstack([robot.start_posture(), drawn(robot, STARTS - 1, seed=0)])
     rows = []
-    for name, solver in SOLVERS.items():
-        solver(robot, poses[0], starts[0])  # compiles
-        errors = np.full((count, STARTS), np.inf)
-        times = np.empty(count)
-        for k, pose in enumerate(poses):
-            for i, start in enumerate(starts):
-                began = time.process_time()
-                q = solver(robot, pose, start)
-                if i == 0:
-                    times[k] = time.process_time() - began
-                errors[k, i] = error_of(robot, q, pose)
-                if errors[k, i] <= ROUNDED * TOL:
-                    break
-        found = errors <= ROUNDED * TOL
-        cells = [f"{found.any(axis=1).sum():,} of {count:,}", f"{found[:, 0].sum():,}"]
-        cells += [f"{errors[found].max(initial=0.0):.1e}", f"{1e3 * np.median(times):.1f}"]
-        rows.append([robot.name, name, *cells, f"{1e3 * np.percentile(times, 99):.0f}"])
+    with ExitStack() as stack:
+        solvers = {name: asked(each, robot, poses, starts) for name, each in SOLVERS.items()}
+        if placo is not None:
+            solvers["PlaCo"] = placo_postures(placo, robot, poses, starts, stack)
+        for name, ask in solvers.items():
+            errors = np.full((count, STARTS), np.inf)
+            times = np.empty(count)
+            for k, pose in enumerate(poses):
+                for i in range(STARTS):
+                    q, seconds = ask(k, i)
+                    if i == 0:
+                        times[k] = seconds
+                    errors[k, i] = error_of(robot, q, pose)
+                    if errors[k, i] <= ROUNDED * TOL:
+                        break
+            rows.append([robot.name, name, *cells_of(errors, times)])
     return rows
+
+
+def cells_of(errors: Matrix, times: Vector) -> list[str]:
+    """Return the cells of a solver from its errors (count, starts) and CPU times (count,) [s]."""
+    found = errors <= ROUNDED * TOL
+    cells = [f"{found.any(axis=1).sum():,} of {len(errors):,}", f"{found[:, 0].sum():,}"]
+    cells += [f"{errors[found].max(initial=0.0):.1e}", f"{1e3 * np.median(times):.1f}"]
+    return [*cells, f"{1e3 * np.percentile(times, 99):.0f}"]
 
 
 def drawn(robot: iiwa_dnn.Robot, count: int, seed: int) -> Matrix:
@@ -135,8 +195,10 @@ def bench_poses(arguments: Sequence[str] | None = None, prog: str = "poses") -> 
     """Look for random poses with every solver and print a table; returns 0."""
     parser = argparse.ArgumentParser(prog, description=bench_poses.__doc__)
     parser.add_argument("--poses", type=int, default=1000, help="number of poses of each arm")
-    count = parser.parse_args(arguments).poses
-    rows = [row for name in ARMS for row in measure(iiwa_dnn.load_robot(name), count)]
+    parser.add_argument("--placo-python", type=Path, help="Python interpreter with PlaCo")
+    options = parser.parse_args(arguments)
+    robots = map(iiwa_dnn.load_robot, ARMS)
+    rows = [row for robot in robots for row in measure(robot, options.poses, options.placo_python)]
     head = ["arm", "solver", "found", "from the first start", "largest error m, rad"]
     print(markdown_table([*head, "median ms", "p99 ms of CPU"], rows))
     return 0

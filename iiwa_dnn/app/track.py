@@ -26,7 +26,6 @@ from iiwa_dnn.references import (
     Lissajous,
     OnSurface,
     Reference,
-    Target,
     Tilting,
     Waypoints,
 )
@@ -218,29 +217,23 @@ def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
 
 
 def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> None:
-    """Print a line if a path of poses begins elsewhere than the tip."""
+    """Print where a path of poses begins if not at the tip, and a posture to start it from."""
     target = reference.at(0.0)
-    if _is_at(start, target):
-        return
     distance = np.linalg.norm(target.position - start.position)
     angle = rotation_angle(start.rotation, target.rotation)
+    if distance <= _NEAR_POSITION and angle <= _NEAR_ANGLE:
+        return
     answer = solve_pose(start.robot, target, start.q, obstacles=avoidance_of(scheme) or ())
     advice = f"no posture was found there: {answer}"
     if answer.q is not None:
         posture = " ".join(f"{value:.6f}" for value in answer.q)
-        advice = f"to begin there, with another --out or --overwrite: --q0 {posture}"
+        advice = f"to start there, run again with --overwrite --q0 {posture}"
+    turned = f", turned by {angle:.3g} rad" if angle > _NEAR_ANGLE else ""
     print(
-        f"the path begins {distance:.3g} m and {angle:.3g} rad from the tip, "
-        f"at {np.round(target.position, 4).tolist()} m; {advice}",
+        f"the path begins at {np.round(target.position, 4).tolist()} m, {distance:.3g} m from the "
+        f"tip{turned}: the arm goes there first; {advice}",
         file=sys.stderr,
     )
-
-
-def _is_at(conf: Configuration, target: Target) -> bool:
-    """Compare the pose of the tip with a target."""
-    distance = float(np.linalg.norm(conf.position - target.position))
-    angle = float(rotation_angle(conf.rotation, target.rotation))
-    return distance <= _NEAR_POSITION and angle <= _NEAR_ANGLE
 
 
 def _refuse_set(options: TrackOptions, name: str, problem: str) -> None:

@@ -122,13 +122,14 @@ def warn_if_far(
         if distance <= FAR and angle <= TURNED:
             continue
         where = "tip" if name == start.robot.tip else f"frame {name}"
-        message = f"begins {distance:.3g} m from the {where}, {angle:.3g} rad turned"
+        turned = f", turned by {angle:.3g} rad" if angle > TURNED else ""
+        message = f"begins {distance:.3g} m from the {where}{turned}"
         if getattr(reference, "quaternions", None) is None:
-            advice = "to begin where it is: reference.anchored(configuration)"
+            advice = "reference.anchored(configuration) begins there"
         else:
-            advice = "a posture there: iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
+            advice = "start at iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
             if refuses:
-                problem = f"{message}; {advice}, or to go there first: far_start=True"
+                problem = f"{message}; {advice}, or pass far_start=True to go there first"
                 raise InvalidInputError("reference", problem, reference)
         warnings.warn(f"the reference {message}; {advice}", stacklevel=stacklevel)
 

@@ -178,9 +178,11 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
     if check["reference_failures"] and check["solver"] == PROOF:
         reasons.append(f"{_count(check['reference_failures'])} not proven")
     elif check["reference_failures"]:
+        missing = check["reference_failures"]
+        answers = "answer" if missing == 1 else "answers"
         reasons.append(
-            f"{check['reference_failures']:,} reference answers missing or not accurate enough "
-            f"to judge by ({check['solver']})"
+            f"{missing:,} reference {answers} missing or not accurate enough to judge by "
+            f"({check['solver']})"
         )
     if check["steps_checked"] < steps:
         reasons.append(f"only {check['steps_checked']:,} of {_count(steps)} were checked")

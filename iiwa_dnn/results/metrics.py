@@ -330,7 +330,7 @@ def _incidents(record: Record) -> dict[str, Any]:
             "path_time_s": record.path_time,
             "needed": _needed(record, action, blocking),
             "first": _first_action(record, action),
-            "blocking": _spells(record, _bounds(record, blocking, np.abs(blocking))),
+            "blocking": _spells(record, _blocking(record)),
             "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
             "active_bounds": _spells(record, active, sized=True),
             "active_rows": _spells(record, _rows(record, "row_multiplier"), sized=True),
@@ -398,6 +398,17 @@ def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
         of_kind = kinds[:, joint] == code
         name = bound_name(joint, sign * code, words)
         yield name, np.where(of_kind, sign * signed[:, joint], 0)
+
+
+def blocking_limits(record: Record) -> Iterator[Named]:
+    """Name the bounds and rows of a run, each with steps above 0 where it was in the way, (N,)."""
+    yield from _blocking(record)
+    yield from _rows(record, "blocking_rows")
+
+
+def _blocking(record: Record) -> Iterator[Named]:
+    blocking = record.filled("blocking")
+    return _bounds(record, blocking, np.abs(blocking))
 
 
 def _rows(record: Record, column: str) -> Iterator[Named]:

@@ -13,10 +13,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.files import prepare_folder, write_atomically
-from iiwa_dnn.results.envelope import BUCKETS, envelope
-from iiwa_dnn.results.metrics import frame_errors, limits, orientation_error, position_error
+from iiwa_dnn.naming import describe
+from iiwa_dnn.results.envelope import BUCKETS, envelope, stretches
+from iiwa_dnn.results.metrics import (
+    blocking_limits,
+    frame_errors,
+    limits,
+    orientation_error,
+    position_error,
+)
 from iiwa_dnn.results.record import FloatArray, Record
 
 if TYPE_CHECKING:
@@ -29,6 +37,7 @@ STYLE = Path(__file__).with_name("style.mplstyle")
 
 _ROUGH = 40.0  # sum of the ups and downs of a rough curve, over its largest value
 _COARSE = 60  # stretches that a rough curve is drawn in
+_MOST_BARS = 6  # limits below the path's time
 
 _JOINTS = {
     "q": (r"$q_{}$", "Joint angle [rad]"),
@@ -48,13 +57,14 @@ def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
 
     The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
     ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
-    of a run in physics ``torques``, of one that avoids collisions ``distance`` and of one that
-    tracks several frames ``frames``. The same record gives the same bytes.
+    of a run in physics ``torques``, of one that avoids collisions ``distance``, of one that tracks
+    several frames ``frames`` and of one that was slowed ``path_time``. The same record gives the
+    same bytes.
     """
     drawable = {
         name: partial(draw, record)
         for name, draw in FIGURES.items()
-        if name not in _COLUMN_OF or getattr(record, _COLUMN_OF[name]) is not None
+        if name not in _DRAWN_IF or _DRAWN_IF[name](record)
     }
     return write_figures(drawable, folder)
 
@@ -154,6 +164,42 @@ def frames_figure(record: Record) -> Figure:
     panels[1].get_legend().remove()
     time_axis(panels[1], record)
     return figure
+
+
+def path_time_figure(record: Record) -> Figure:
+    """Draw the path's time over time, slowed stretches shaded, and the limits that slowed it.
+
+    Each limit has a bar where it was in the way, the longest of `_MOST_BARS` first.
+    """
+    slowed = is_slowed(record)
+    bars = [(describe(name), steps > 0) for name, steps in blocking_limits(record)]
+    bars = sorted(bars, key=lambda bar: -bar[1].sum())[:_MOST_BARS]
+    bars = [bar for bar in bars if bar[1].any()] or [("no limit: a singular pose", slowed)]
+    figure = new_figure(COLUMN, 2.4 + 0.25 * len(bars))
+    heights = (1.9, 0.25 * len(bars))
+    clock, limit = figure.subplots(2, 1, sharex=True, height_ratios=heights)
+    start = record.t[0]
+    reached = np.append(0.0, np.cumsum(record.settings["dt"] * record.filled("fraction")))
+    times, reached, _, _ = envelope(record.t, reached)
+    span = record.t[[0, -1]]
+    clock.plot(span, span - start, color="0.55", linestyle="--", label="as planned")
+    clock.plot(times, reached, color="0.0", label="reached")
+    for number, (begin, end) in enumerate(start + np.ptp(span) * stretches(slowed)):
+        clock.axvspan(begin, end, color="0.88", label="" if number else "slowed")
+    clock.set_ylabel("Path time [s]")
+    legend_above(clock, columns=3)
+    for row, (name, steps) in enumerate(bars):
+        begin, end = (start + np.ptp(span) * stretches(steps)).T
+        limit.broken_barh(list(zip(begin, end - begin, strict=True)), (row, 0.35), color="0.35")
+        limit.text(0.01, row - 0.15, name, transform=limit.get_yaxis_transform(), fontsize=7)
+    limit.set(ylim=(len(bars) - 0.5, -0.75), yticks=[])
+    time_axis(limit, record)
+    return figure
+
+
+def is_slowed(record: Record) -> NDArray[np.bool_]:
+    """Test for each step whether the path's time went slower than time, (N,)."""
+    return np.asarray(record.filled("fraction") < 1.0)
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -372,7 +418,13 @@ FIGURES: dict[str, Callable[[Record], Figure]] = {
     "torques": partial(_single, draw_joints, name="torque"),
     "distance": partial(_single, draw_distance),
     "frames": frames_figure,
+    "path_time": path_time_figure,
 }
 """Figures of a run by the names of their files."""
 
-_COLUMN_OF = {"torques": "torque", "distance": "distance", "frames": "frame_position"}
+_DRAWN_IF: dict[str, Callable[[Record], bool]] = {
+    "torques": lambda record: record.torque is not None,
+    "distance": lambda record: record.distance is not None,
+    "frames": lambda record: record.frame_position is not None,
+    "path_time": lambda record: bool(is_slowed(record).any()),
+}

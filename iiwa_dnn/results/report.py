@@ -46,6 +46,7 @@ _CAPTIONS = {
     "position_error": "Position error, actual minus desired.",
     "frames": "Errors of all tracked frames.",
     "distance": "Distance of the nearest pair of bodies, and the least that is allowed.",
+    "path_time": "The path's time over time, grey where it was slowed, and the limits in the way.",
     "convergence": "KKT residual of the network and gap to the reference: the line is the largest "
     "value, the band the range, of each short stretch of time.",
 }

@@ -16,12 +16,13 @@ from matplotlib import image
 
 from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError
-from iiwa_dnn.results.envelope import envelope
+from iiwa_dnn.results.envelope import envelope, stretches
 from iiwa_dnn.results.plots import (
     FIGURES,
     convergence_figure,
     overview_figure,
     path_figure,
+    path_time_figure,
     save_figures,
 )
 
@@ -242,3 +243,61 @@ def test_a_spike_of_the_path_is_drawn_and_a_gap_left_out(heart, tmp_path):
     gap[5000:7000] = np.nan
     assert ink(spike) > ink(heart.position) + 50
     assert ink(gap) < ink(heart.position) - 50
+
+
+def test_stretches_are_where_something_acts() -> None:
+    action = np.zeros(1000, int)
+    action[200:300] = 2
+    action[990:] = 4
+    for pieces in (10, 100, 1000, 5000):
+        first, last = stretches(action, pieces)
+        width = 1.0 / min(pieces, 1000)
+        assert first == pytest.approx([0.2, 0.3], abs=1e-12)
+        assert last == pytest.approx([min(0.99, 1.0 - width), 1.0], abs=1e-12)
+    assert stretches(np.zeros(10)).shape == (0, 2)
+    assert stretches([]).shape == (0, 2)
+
+
+@pytest.fixture(scope="module")
+def slowed():
+    """A run of 1,000 steps, whose second quarter goes at half speed for joint 4 and row 2."""
+    fraction = np.ones(1000)
+    fraction[250:500] = 0.5
+    blocking = np.zeros((1000, 7), int)
+    blocking[250:500, 3] = -2
+    rows = np.zeros((1000, 2), int)
+    rows[400:500, 1] = 1
+    return make_record(
+        steps=1000,
+        fraction=fraction,
+        action=2 * (fraction < 1.0),
+        blocking=blocking,
+        blocking_rows=rows,
+        settings={"rows": [{"part": "CollisionAvoidance", "row": row} for row in (1, 2)]},
+    )
+
+
+def test_the_paths_time_is_drawn_of_slowed_runs_alone(slowed, tmp_path):
+    assert tmp_path / "path_time.png" in save_figures(slowed, tmp_path)
+    assert tmp_path / "path_time.png" not in save_figures(make_record(), tmp_path)
+
+
+def test_the_paths_time_lags_by_what_the_slowed_steps_cost(slowed):
+    clock, limit = path_time_figure(slowed).axes
+    curves = {line.get_label(): line.get_xydata() for line in clock.lines}
+    dt = slowed.settings["dt"]
+    assert curves["as planned"][-1].tolist() == pytest.approx([1000 * dt, 1000 * dt])
+    assert curves["reached"][-1, 1] == pytest.approx(875 * dt, rel=1e-2)
+    (shade,) = clock.patches
+    assert shade.get_x() == pytest.approx(250 * dt, rel=1e-2)
+    assert shade.get_width() == pytest.approx(250 * dt, rel=1e-2)
+    named = [text.get_text() for text in limit.texts]
+    assert named[0] == "joint 4 lower velocity limit"
+    assert named[1] == "row 2 of CollisionAvoidance"
+    starts = [bars.get_paths()[0].vertices[:, 0].min() for bars in limit.collections]
+    assert starts == pytest.approx([250 * dt, 400 * dt], rel=1e-2)
+
+
+def test_a_slowed_run_without_a_limit_in_the_way_is_at_a_singular_pose():
+    limit = path_time_figure(make_record(fraction=np.full(10, 0.5))).axes[1]
+    assert [text.get_text() for text in limit.texts] == ["no limit: a singular pose"]

@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.results.record import FloatArray
 
+LEAST = 1e-15
+"""Smaller values are rounding errors, and drawn as this one."""
+
 COLORS = ("#d6001c", "#1c7ed6", "#2b8a3e", "#e8590c", "#862e9c", "#0b7285", "#5c3d2e")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -59,22 +62,23 @@ class Curves:
         )
 
     def show(self, times: FloatArray, values: FloatArray, now: float | None = None) -> None:
-        """Draw curves; values that have no logarithm are left out.
+        """Draw curves; values that are not finite are left out.
 
         Args:
             times: Times [s], or their logarithms, (M,).
-            values: Values in the unit of the title, (M,) or (M, k).
+            values: Values in the unit of the title, not negative, (M,) or (M, k).
             now: Time of the vertical line; None: there is none.
         """
         values = values.reshape(len(times), -1)
-        good = np.isfinite(values) & (values > 0.0)
+        good = np.isfinite(values)
         some = good.any(axis=1)
         self._times = times[some]
-        self._values = np.where(good, values, np.nan)[some]
+        self._values = np.where(good, np.maximum(values, LEAST), np.nan)[some]
         if some.any():
-            low = float(np.floor(np.log10(np.nanmin(self._values))))
-            high = float(np.ceil(np.log10(np.nanmax(self._values))))
-            self._scale(low, max(high, low + 1.0))
+            powers = np.log10(self._values)
+            # Half a decade beyond the curves at least, also where they are constant.
+            low = np.floor(np.nanmin(powers) - 0.5)
+            self._scale(float(low), float(np.ceil(np.nanmax(powers) + 0.5)))
             self.mark(now)
 
     def mark(self, now: float | None) -> None:

@@ -37,7 +37,6 @@ _TITLES = {
 }
 _SETTLING = "states to answer [rad/s] over time [ρ]"
 _SETTLING_PERIOD = 10  # samples between two diagrams of the settling
-_LEAST = 1e-12  # smaller values are rounding errors
 _PATH_POINTS = 600
 _PATH_COLOR = (220, 0, 30)
 _BALL_COLOR = (60, 110, 200)
@@ -67,11 +66,10 @@ class LiveDiagrams:
         times, *columns = np.split(np.array(self._samples), [1, 3, 4, 5], axis=1)
         if len(times) > 1:
             for curves, column in zip(self.recent, columns, strict=True):
-                curves.show(times[:, 0] - follower.time, np.maximum(column, _LEAST), 0.0)
+                curves.show(times[:, 0] - follower.time, column, 0.0)
                 curves.handle.visible = bool(np.isfinite(column).any())
         if self._count % _SETTLING_PERIOD == 0:
-            times, distances = follower.settling()
-            self.settling.show(times, np.maximum(distances, _LEAST))
+            self.settling.show(*follower.settling())
         self._count += 1
 
 

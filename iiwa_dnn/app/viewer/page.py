@@ -17,7 +17,7 @@ import numpy as np
 from iiwa_dnn.app.viewer.follower import Follower
 from iiwa_dnn.app.viewer.live import LivePanel
 from iiwa_dnn.app.viewer.replay import ReplayPanel
-from iiwa_dnn.app.viewer.stage import VIEWS, Stage, first_view
+from iiwa_dnn.app.viewer.stage import VIEWS, Stage, camera_pose
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.results.record import FloatArray, Record
@@ -29,6 +29,8 @@ TICK = 1.0 / 30.0
 """Time between two pictures [s]."""
 
 _MODES = ("replay", "live")
+# On a phone viser's controls would cover 60 % of the height.
+_STYLE = '<style>[style*="max-height: 60%"] { max-height: 40% !important }</style>'
 
 
 class Session:
@@ -50,9 +52,9 @@ class Session:
     ) -> None:
         """Put the robot and all controls into a browser; q0 (n,) [rad] and others as of `Page`."""
         follower = Follower(robot, q0, scheme)
-        self.stage = Stage(host, robot, _middle(robot, q0, record))
+        self.stage = Stage(host, robot, _path(robot, q0, record))
         if getattr(getattr(host, "camera", None), "aspect", 1.0) < 1.0:  # a phone, upright
-            self.stage.turn_to("phone")
+            self.stage.turn_to("arm")
         view: Any = host.gui.add_button_group("view", VIEWS)
         view.on_click(lambda event: self.stage.turn_to(event.target.value))
         self.replay: ReplayPanel | None = None
@@ -112,10 +114,9 @@ class Page:
             MissingDependencyError: If viser is not installed.
             InvalidInputError: If the address cannot be listened on, or `q0` is not acceptable.
         """
-        point = _middle(robot, q0, record)
         self.server = _open_server(f"{robot.name} · iiwa_dnn", host, port)
         camera = self.server.initial_camera
-        position, middle = first_view(point)
+        position, middle = camera_pose("arm", _path(robot, q0, record))
         camera.position = tuple(position)
         camera.look_at = tuple(middle)
         camera.fov = 0.95  # rad, from top to bottom
@@ -159,10 +160,11 @@ class Page:
             self.server.stop()
 
 
-def _middle(robot: Robot, q0: Vector, record: Record | None) -> FloatArray:
-    """Return the middle of the path, or where the tip is at the start (3,) [m]."""
-    start = Configuration(robot, q0).position
-    return start if record is None else np.asarray(record.position_desired.mean(axis=0))
+def _path(robot: Robot, q0: Vector, record: Record | None) -> FloatArray:
+    """Return the points of the path, or where the tip is at the start, (M, 3) [m]."""
+    if record is None:
+        return Configuration(robot, q0).position[np.newaxis]
+    return record.position_desired
 
 
 def _open_server(title: str, host: str, port: int) -> Any:
@@ -176,9 +178,10 @@ def _open_server(title: str, host: str, port: int) -> Any:
         control_width="large", show_logo=False, show_share_button=False, brand_color=(255, 102, 0)
     )
     server.gui.set_panel_label(title)
-    # The window's title can only be set from within the page.
+    # Title and style can only be set from within the page.
     script = html.escape(f"document.title = {json.dumps(title)}")
-    server.gui.add_html(f'<img src="data:," style="display:none" onerror="{script}">')
+    head = f'<img src="data:," style="display:none" onerror="{script}">{_STYLE}'
+    server.gui.add_html(head)
     server.scene.set_up_direction("+z")
     # A browser that goes away amid a tick needs no more pictures.
     warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")

@@ -11,7 +11,7 @@ from iiwa_dnn.app.viewer.readout import Readout
 from iiwa_dnn.app.viewer.stage import Stage
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.references import Target
-from iiwa_dnn.results.envelope import envelope
+from iiwa_dnn.results.envelope import envelope, stretches
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.results.record import Record
@@ -100,9 +100,9 @@ class ReplayPanel:
         length = max(self.playback.end - start, 1e-6)
         self._play = gui.add_button("Play")
         self._slider = gui.add_slider("time [s]", start, start + length, length / 1000.0, start)
-        stretches = acted_stretches(self.record, _POINTS)
-        if stretches:
-            gui.add_html(readout.marks(stretches))
+        acted = stretches(self.record.filled("action"), _POINTS)
+        if acted.size:
+            gui.add_html(readout.marks(acted.tolist()))
         gui.add_html(readout.verdict(failures(self.record)))
         speed = gui.add_dropdown("speed", SPEEDS, initial_value="1")
         self._play.on_click(lambda _: self.playback.toggle())
@@ -121,8 +121,9 @@ class ReplayPanel:
         ]
         curves = []
         for title, color, t, values in quantities:
-            if values is not None and (values > 0.0).sum() > 1:
-                times, _, _, largest = envelope(t, np.nan_to_num(values, posinf=0.0), _POINTS)
+            if values is not None and np.isfinite(values).sum() > 1:
+                known = np.where(np.isfinite(values), values, -np.inf)
+                times, _, _, largest = envelope(t, known, _POINTS)
                 curve = Curves(gui, title, (color,), (self.playback.start, self.playback.end))
                 curve.show(times, largest)
                 curves.append(curve)
@@ -199,19 +200,6 @@ class ReplayPanel:
         if event.client is not None:
             self.playback.playing = False
             self.playback.seek(float(event.target.value))
-
-
-def acted_stretches(record: Record, most: int) -> list[tuple[float, float]]:
-    """Find the stretches of a run, as fractions of it, in which a policy acted.
-
-    The run is cut into `most` pieces at most, and a piece counts as a whole.
-    """
-    steps = np.flatnonzero(record.filled("action"))
-    pieces = max(min(most, record.steps), 1)
-    acted = np.zeros(pieces + 2, bool)
-    acted[1 + steps * pieces // max(record.steps, 1)] = True
-    edges = np.flatnonzero(acted[1:] != acted[:-1]) / pieces
-    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
 def policy_words(record: Record, step: int) -> str:

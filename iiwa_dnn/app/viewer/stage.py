@@ -14,7 +14,10 @@ from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import Shape, joint_poses, visual_shapes
 
 VIEWS = ("arm", "top", "side", "tool")
-"""Directions from which the camera looks: at the whole arm, or at the tip from near by."""
+"""Directions from which the camera looks: at the whole arm, or at the path from near by."""
+
+SEEN_THROUGH = 0.2
+"""Opacity of the arm from above, where it would hide the path."""
 
 _PIECES = 400  # straight pieces that a path is drawn with, at most
 
@@ -27,11 +30,11 @@ class Stage:
         robot: The robot.
     """
 
-    def __init__(self, host: Any, robot: Robot, point: FloatArray) -> None:
-        """Put the robot's shapes and a floor on the page; views turn to a point (3,) [m]."""
+    def __init__(self, host: Any, robot: Robot, path: FloatArray) -> None:
+        """Put the robot's shapes and a floor on the page; views turn to a path (M, 3) [m]."""
         self.host = host
         self.robot = robot
-        self._point = point
+        self._path = path
         self._data = robot.model.createData()
         scene = host.scene
         scene.add_grid(
@@ -50,8 +53,9 @@ class Stage:
         ]
         self._ghost = scene.add_frame("/ghost", show_axes=False, visible=False)
         last = robot.model.frames[robot.tip_id].parentJoint
+        self._shapes: list[Any] = []
         for number, shape in enumerate(visual_shapes(robot)):
-            self._add(shape, f"/robot/{shape.joint}/shape_{number}")
+            self._shapes.append(self._add(shape, f"/robot/{shape.joint}/shape_{number}"))
             if shape.joint == last:
                 self._add(shape, f"/ghost/shape_{number}", opacity=0.35)
         self._lines: dict[str, Any] = {}
@@ -66,7 +70,7 @@ class Stage:
                 )
                 self._obstacles.append((node, obstacle))
 
-    def _add(self, shape: Shape, name: str, **options: Any) -> None:
+    def _add(self, shape: Shape, name: str, **options: Any) -> Any:
         """Put a shape on the page, under the frame that its name begins with."""
         scene = self.host.scene
         options |= {
@@ -76,13 +80,12 @@ class Stage:
             "wxyz": wxyz(shape.rotation),
         }
         if shape.mesh is not None:
-            scene.add_mesh_simple(vertices=shape.mesh[0], faces=shape.mesh[1], **options)
-        elif shape.kind == "cylinder":
-            scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **options)
-        elif shape.kind == "sphere":
-            scene.add_icosphere(radius=shape.size[0], subdivisions=4, **options)
-        else:
-            scene.add_box(dimensions=shape.size, **options)
+            return scene.add_mesh_simple(vertices=shape.mesh[0], faces=shape.mesh[1], **options)
+        if shape.kind == "cylinder":
+            return scene.add_cylinder(radius=shape.size[0], height=shape.size[1], **options)
+        if shape.kind == "sphere":
+            return scene.add_icosphere(radius=shape.size[0], subdivisions=4, **options)
+        return scene.add_box(dimensions=shape.size, **options)
 
     def ghost(self, target: Target | None, distance: float = np.inf, angle: float = np.inf) -> None:
         """Show the last link, translucent, as it is at a target; hide it for None.
@@ -125,29 +128,43 @@ class Stage:
             self._lines[name].visible = visible
 
     def turn_to(self, view: str) -> None:
-        """Let the browser's camera look as one of ``VIEWS`` says."""
-        side = _beside(self._point)
-        up = np.array([0.0, 0.0, 1.0])
-        away = {"top": 0.7 * up + 1e-3 * side, "side": 0.7 * side, "tool": 0.25 * (side + up)}
-        position, middle = first_view(self._point)
-        if view == "phone":  # the controls cover the lower part
-            position = middle + 2.2 * (position - middle) - 0.55 * up
-            middle = middle - 0.55 * up
-        elif view in away:
-            position = self._point + away[view]
-            middle = self._point
-        self.host.camera.position = tuple(position)  # moves the point looked at along
-        self.host.camera.look_at = tuple(middle)
+        """Let the browser's camera look as one of ``VIEWS`` says; from above through the arm."""
+        camera = self.host.camera
+        position, middle = camera_pose(view, self._path, upright=camera.aspect < 1.0)
+        camera.position = tuple(position)  # moves the point looked at along
+        camera.look_at = tuple(middle)
+        for shape in self._shapes:
+            shape.opacity = SEEN_THROUGH if view == "top" else None
 
 
-def first_view(point: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a camera's position and the point that it looks at, for the arm and a point, (3,)."""
-    side = _beside(point)
-    middle = 0.5 * point + np.array([0.0, 0.0, 0.25])
-    away = 0.95 * side + 0.35 * point + np.array([0.0, 0.0, 0.55])
-    right = np.cross([0.0, 0.0, 1.0], away)
-    middle += 0.2 * right / np.linalg.norm(right)  # the controls cover the right of the page
-    return middle + away, middle
+def camera_pose(
+    view: str, path: FloatArray, upright: bool = False
+) -> tuple[FloatArray, FloatArray]:
+    """Return a camera's position and the point that it looks at, (3,) each [m].
+
+    Args:
+        view: One of ``VIEWS``.
+        path: Points of the path, or of the tip alone, (M, 3) [m].
+        upright: The window is a phone's: the controls cover its lower part, else its right.
+    """
+    point = path.mean(axis=0)
+    up = np.array([0.0, 0.0, 1.0])
+    side = np.array([point[1], -point[0], 0.0])  # across the way from the base to the path
+    side /= max(float(np.linalg.norm(side)), 1e-9)
+    distance = max(0.5, (4.5 if upright else 3.0) * float(np.ptp(path, axis=0).max()))
+    away = {
+        "arm": (2.0 if upright else 1.0) * (0.95 * side + 0.35 * point + 0.55 * up),
+        "top": distance * up + 1e-3 * side,
+        "side": distance * side,
+        "tool": 0.5 * distance * (side + up),
+    }[view]
+    if view == "arm":
+        point = 0.5 * point + 0.25 * up
+    right = np.cross(up, away)
+    right *= np.linalg.norm(away) / np.linalg.norm(right)
+    hidden = np.cross(right, away) / np.linalg.norm(away) if upright else right
+    point = point + 0.2 * hidden  # the middle of the part that the controls leave free
+    return point + away, point
 
 
 def _move(node: Any, pose: pin.SE3) -> None:
@@ -157,12 +174,6 @@ def _move(node: Any, pose: pin.SE3) -> None:
 
 def _rgb(color: Iterable[float]) -> tuple[int, ...]:
     return tuple(round(255 * part) for part in color)
-
-
-def _beside(point: FloatArray) -> FloatArray:
-    """Return the horizontal direction (3,) across the way from the base to a point."""
-    side = np.array([point[1], -point[0], 0.0])
-    return np.asarray(side / max(float(np.linalg.norm(side)), 1e-9))
 
 
 def wxyz(rotation: FloatArray) -> FloatArray:

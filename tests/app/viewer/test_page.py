@@ -14,6 +14,7 @@ from helpers_browser import needs_browser, open_browser, picture, requested, wai
 from helpers_physics import START, heart_without_physics, papers_robot
 from iiwa_dnn import Configuration, InvalidInputError, Target
 from iiwa_dnn.app.viewer.page import Page, Session
+from iiwa_dnn.app.viewer.stage import SEEN_THROUGH
 from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.robot.shapes import joint_poses
 
@@ -136,10 +137,14 @@ def test_views_turn_the_camera_of_this_browser(browser, session):
         unit = np.array(direction) / np.linalg.norm(direction)
 
         def looks(unit=unit) -> bool:
-            sight = np.array(camera.position) - tip
-            return bool(sight @ unit > 0.99 * np.linalg.norm(sight) > 0.1)
+            sight = np.array(camera.position) - np.array(camera.look_at)
+            distance = np.linalg.norm(sight)
+            beside = np.linalg.norm(np.array(camera.look_at) - tip)
+            return bool(sight @ unit > 0.99 * distance > 0.1 and beside < 0.25 * distance)
 
         assert wait_for(looks, f"the view {view!r}")
+        opacity = {shape.opacity for shape in session.stage._shapes}
+        assert opacity == ({None} if view == "side" else {SEEN_THROUGH})
     click(browser, "arm")
     assert wait_for(
         lambda: np.allclose([camera.position, camera.look_at], first, atol=1e-3), "the first view"
@@ -337,8 +342,16 @@ def test_on_a_phone_the_arm_stands_above_the_controls(browser, page, session):
     browser.get(page.address)
     wait_for(lambda: buttons(browser, "Play"), "the page's controls")
 
+    top = browser.execute_script(
+        "let part = [...document.querySelectorAll('button')].find("
+        "button => button.innerText.trim() === 'Play');"
+        "while (getComputedStyle(part).position !== 'fixed') part = part.parentElement;"
+        "return part.getBoundingClientRect().top"
+    )
+    assert top > 0.59 * 844  # the scene has more than half
+
     def seen() -> bool:
-        rows, columns = np.nonzero(arm(picture(browser)[:330]))  # the controls begin below
+        rows, columns = np.nonzero(arm(picture(browser)[: int(top)]))
         return len(rows) > 500 and bool(columns.min() > 0 and columns.max() < 389)
 
     assert wait_for(seen, "the whole arm above the controls")

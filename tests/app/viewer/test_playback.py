@@ -7,7 +7,7 @@ import pytest
 
 from helpers_records import make_record
 from iiwa_dnn.app.viewer import readout
-from iiwa_dnn.app.viewer.replay import Playback, acted_stretches, policy_words
+from iiwa_dnn.app.viewer.replay import Playback, policy_words
 
 
 def test_it_stands_still_until_it_is_told_to_play():
@@ -47,21 +47,6 @@ def test_seeking_stays_inside_the_record():
     for asked, time in ((-5.0, 1.0), (1.5, 1.5), (9.0, 2.0)):
         playback.seek(asked)
         assert playback.time == time
-
-
-def test_stretches_of_a_policy_are_marked_where_they_are() -> None:
-    action = np.zeros(1000, int)
-    action[200:300] = 2
-    action[990:] = 4
-    record = make_record(steps=1000, action=action)
-    for pieces in (10, 100, 1000, 5000):
-        first, last = acted_stretches(record, pieces)
-        width = 1.0 / min(pieces, 1000)
-        assert first == pytest.approx((0.2, 0.3), abs=1e-12)
-        assert last[0] == pytest.approx(min(0.99, 1.0 - width), abs=1e-12)
-        assert last[1] == pytest.approx(1.0)
-    assert acted_stretches(make_record(), 10) == []
-    assert acted_stretches(make_record(steps=0), 10) == []
 
 
 def test_a_slowed_step_says_by_which_joint() -> None:
