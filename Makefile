@@ -3,6 +3,7 @@
 PYTHON ?= python3
 VENV := .venv
 VENV_PYTHON := $(VENV)/bin/python
+PACKAGES := $(VENV)/.packages
 STAMP := $(VENV)/.installed
 ARGS ?=
 # Where it is set, each process compiles the source of all that it imports: 5 s in place of 1.5.
@@ -10,7 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 EXTRAS ?= robots,sim,view,dev
 
 .DEFAULT_GOAL := help
-.PHONY: help force setup heart physics view test bounds realtime notebooks docs coverage lint format types clean
+.PHONY: help force packages setup heart physics view test bounds realtime notebooks docs coverage lint format types clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -18,8 +19,10 @@ help:  ## list what can be made
 
 setup: $(STAMP)  ## make .venv and install the package in it; EXTRAS= names some extras only
 
-# The stamp comes last, so that a setup cut short is done again; other extras are installed anew.
-$(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS)),force)
+packages: $(PACKAGES)  ## the same, but for the numerical code, which is compiled at its first use
+
+# A stamp comes last, so that a setup cut short is done again; other extras are installed anew.
+$(PACKAGES): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS)),force)
 	@command -v $(PYTHON) >/dev/null || \
 		{ echo 'setup: $(PYTHON) not found; name a Python >= 3.10: make setup PYTHON=...' >&2; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
@@ -35,6 +38,9 @@ $(STAMP): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS))
 		pip=$$!; seconds=0; while kill -0 $$pip 2>/dev/null; do \
 		printf '\rsetup: %s s, %s MB in $(VENV)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
 		sleep 3; seconds=$$((seconds + 3)); done; echo; wait $$pip
+	@touch $@
+
+$(STAMP): $(PACKAGES)
 	@echo 'setup: compiling the numerical code, once; a minute or two'
 	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
@@ -52,7 +58,7 @@ test: $(STAMP)  ## run the tests
 	$(VENV_PYTHON) -m pytest -n auto --dist worksteal $(ARGS)
 
 # One process: two would compile everything twice. A long test tries values, not other code.
-bounds: $(STAMP)  ## enter all compiled code with every index checked
+bounds: $(PACKAGES)  ## enter all compiled code with every index checked
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -q -m "not long and not realtime" \
 		tests/control tests/networks tests/qp tests/references tests/schemes tests/test_kernels.py
 
@@ -63,21 +69,21 @@ realtime: $(STAMP)  ## drive a Franka arm's server, of the package index, at 1 k
 notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
 
-docs: $(STAMP)  ## build the documentation into site/, any warning an error
+docs: $(PACKAGES)  ## build the documentation into site/, any warning an error
 	$(VENV_PYTHON) -m sphinx -W --keep-going -q -b html docs site $(ARGS)
 
 coverage: $(STAMP)  ## run the tests and show which lines of the package they reach
 	$(VENV_PYTHON) -m pytest -n auto --cov --cov-report=term-missing $(ARGS)
 
-lint: $(STAMP)  ## look for slips and for untidy layout
+lint: $(PACKAGES)  ## look for slips and for untidy layout
 	$(VENV_PYTHON) -m ruff check .
 	$(VENV_PYTHON) -m ruff format --check .
 
-format: $(STAMP)  ## mend what can be mended by itself
+format: $(PACKAGES)  ## mend what can be mended by itself
 	$(VENV_PYTHON) -m ruff check --fix .
 	$(VENV_PYTHON) -m ruff format .
 
-types: $(STAMP)  ## check the types of the package
+types: $(PACKAGES)  ## check the types of the package
 	$(VENV_PYTHON) -m mypy
 
 clean:  ## remove .venv, caches and what was built; runs/ stays

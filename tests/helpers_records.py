@@ -5,10 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
+from iiwa_dnn.results import plots
 from iiwa_dnn.results.record import Record
 
 DOF = 7
+
+
+def draw_only(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
+    """Let a run draw these figures alone: each takes half a second to be written."""
+    monkeypatch.setattr(plots, "FIGURES", {name: plots.FIGURES[name] for name in names})
 
 
 def make_settings(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
 
@@ -18,8 +19,9 @@ radius = 0.05
 
 
 def test_a_run_keeps_away_and_its_report_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    draw_only(monkeypatch, "distance")
     (tmp_path / "obstacles.toml").write_text(FILE, encoding="utf-8")
     words = ["track", "--obstacles", str(tmp_path / "obstacles.toml"), "--dt", "5e-3"]
     assert main([*words, "--duration", "3", "--out", str(tmp_path / "run")]) == 0

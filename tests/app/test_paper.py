@@ -63,6 +63,10 @@ def test_again_nothing_is_computed_and_the_tables_keep_their_bytes(
 
 
 def test_two_workers_write_the_same_tables(folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "cells").mkdir()
+    cells = sorted((folder / "cells").iterdir())
+    for path in cells[: 3 * len(cells) // 4]:  # the last quarter is theirs to compute
+        shutil.copy(path, tmp_path / "cells")
     command = [*TINY, "--workers", "2", "--out", str(tmp_path), "--quiet", "--no-plots"]
     assert run("paper", command) == 0
     for name in TABLES:
@@ -85,7 +89,10 @@ def test_figures_are_drawn_from_the_runs_that_they_name() -> None:
 
 
 def test_a_run_that_ends_early_is_said_and_exits_1(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    folder: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     whole = Sweep.run
 
@@ -95,6 +102,7 @@ def test_a_run_that_ends_early_is_said_and_exits_1(
         return found
 
     monkeypatch.setattr(Sweep, "run", ended_early)
+    shutil.copytree(folder / "cells", tmp_path / "cells")
     command = [*TINY, "--workers", "1", "--out", str(tmp_path), "--quiet", "--no-plots"]
     assert run("paper", command) == 1
     assert "1 runs ended early, the first: stopped at step 7" in capsys.readouterr().err

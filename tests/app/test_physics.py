@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers_physics import needs_opengl, run_python
+from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
 from iiwa_dnn.results import pictures
@@ -39,6 +40,7 @@ def run(capsys, *arguments: str) -> tuple[int, str, str]:
 @needs_opengl
 def test_everything_is_written(capsys, tmp_path, monkeypatch):
     # What the pictures show is a matter of tests/results/test_pictures.py.
+    draw_only(monkeypatch, "overview", "torques")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
     monkeypatch.setattr(pictures, "FRAME_RATE", 10)
     arguments = ("--duration", "0.2", "--out", str(tmp_path), "--disturb", "--push", "0", "10", "0")

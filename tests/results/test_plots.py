@@ -169,27 +169,26 @@ def test_convergence_marks_answers_that_never_came(heart):
 
 
 def odd_records():
-    yield "no steps", make_record(steps=0)
-    yield "one step", make_record(steps=1)
-    yield (
-        "nothing positive",
-        make_record(kkt_residual=np.zeros(10), solution_gap=np.full((10, 1), np.nan)),
-    )
-    yield (
-        "a single value",
-        make_record(kkt_residual=np.full(10, 1e-4), settings={"mode": "continuous"}),
-    )
+    """Records and a figure that shows what is odd; these two figures hold every panel."""
+    for name in ("overview", "convergence"):
+        yield "no steps", make_record(steps=0), name
+        yield "one step", make_record(steps=1), name
+    nothing = {"kkt_residual": np.zeros(10), "solution_gap": np.full((10, 1), np.nan)}
+    yield "nothing positive", make_record(**nothing), "convergence"
+    single = {"kkt_residual": np.full(10, 1e-4), "settings": {"mode": "continuous"}}
+    yield "a single value", make_record(**single), "convergence"
     broken = heart_record(steps=3000)
     position, dq = np.array(broken.position), np.array(broken.dq)
     position[1000:], dq[1000:] = np.nan, np.inf
-    yield "not finite", dataclasses.replace(broken, position=position, dq=dq)
+    yield "not finite", dataclasses.replace(broken, position=position, dq=dq), "overview"
     position[1000:] = np.inf
-    yield "infinite", dataclasses.replace(broken, position=position)
-    yield "many solvers", make_record(solvers=("a", "b", "c", "d"))
+    yield "infinite", dataclasses.replace(broken, position=position), "overview"
+    yield "many solvers", make_record(solvers=("a", "b", "c", "d")), "convergence"
 
 
-@pytest.mark.parametrize("name", ["overview", "convergence"])  # together they hold every panel
-@pytest.mark.parametrize("record", [pytest.param(r, id=i) for i, r in odd_records()])
+@pytest.mark.parametrize(
+    ("record", "name"), [pytest.param(r, name, id=f"{i}-{name}") for i, r, name in odd_records()]
+)
 @pytest.mark.filterwarnings("error::UserWarning", "error::RuntimeWarning")
 def test_odd_records_are_drawn_too(record, name, tmp_path):
     FIGURES[name](record).savefig(tmp_path / "x.png")

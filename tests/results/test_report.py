@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from helpers_records import heart_record, make_record
+from helpers_records import draw_only, heart_record, make_record
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
@@ -24,7 +24,9 @@ def record():
 @pytest.fixture(scope="module")
 def run(record, tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    return folder, save_run(record, folder)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        draw_only(monkeypatch, "path", "convergence")
+        return folder, save_run(record, folder)
 
 
 def rows_of(text):
@@ -37,7 +39,7 @@ def rows_of(text):
 def test_a_run_leaves_its_files_and_nothing_else(run, record):
     folder, metrics = run
     assert {"record.npz", "metrics.json", "report.md"} < {path.name for path in folder.iterdir()}
-    assert len(list(folder.iterdir())) == 3 + 12
+    assert len(list(folder.iterdir())) == 3 + 4
     assert json.loads((folder / "metrics.json").read_text()) == metrics
     np.testing.assert_array_equal(Record.load(folder / "record.npz").q, record.q)
 
@@ -93,7 +95,7 @@ def test_the_report_shows_the_figures_that_exist(run):
     links = re.findall(
         r"!\[[^\]]+\]\(([^)]+)\)", (folder / "report.md").read_text(encoding="utf-8")
     )
-    assert len(links) == 6
+    assert len(links) == 2
     assert all((folder / link).is_file() for link in links)
 
 

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from helpers_physics import needs_opengl, run_python
+from helpers_physics import heart_without_physics, needs_opengl, papers_robot, run_python
 from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.robot import offscreen
 
@@ -60,14 +60,15 @@ def test_without_mujoco_one_line_says_what_to_install(monkeypatch):
 @needs_opengl
 @linux
 @pytest.mark.parametrize("library", ["egl", "osmesa"])
-def test_each_library_that_is_there_draws(library):
+def test_each_library_that_is_there_draws(library, tmp_path):
     if not offscreen.opens(library):
         pytest.skip(f"no {library}: on Debian, apt-get install libosmesa6 libegl1 libgl1")
+    record = tmp_path / "record.npz"
+    heart_without_physics(papers_robot(), 500).save(record)
     result = run_python(
-        "import sys; sys.path.insert(0, 'tests')\n"
-        "from helpers_physics import papers_robot, heart_without_physics\n"
+        "from iiwa_dnn import Record, load_robot\n"
         "from iiwa_dnn.results.pictures import ArmRenderer\n"
-        "robot = papers_robot(); record = heart_without_physics(robot, 500)\n"
+        f"robot = load_robot('iiwa7'); record = Record.load({str(record)!r})\n"
         "with ArmRenderer(robot, record, 80, 60) as renderer: image = renderer.draw(9)\n"
         "print('spread', image.std())",
         MUJOCO_GL=library,

@@ -78,11 +78,12 @@ def test_just_outside_where_the_papers_formula_crosses() -> None:
     np.testing.assert_array_equal(ub, -robot.dq_max)
 
 
-@pytest.mark.parametrize("gain", [20.0, 1000.0])
+@pytest.mark.parametrize("gain", [20.0, 200.0])
 def test_steps_never_pass_a_limit_while_gain_times_dt_is_at_most_one(gain: float) -> None:
     robot = paper_robot()
-    q, dt = np.array([2.49, -2.49, 2.3, -2.3, 2.0, -2.0, 0.0]), 1e-3
-    for _ in range(3000):
+    q = np.array([2.49, -2.49, 2.3, -2.3, 2.0, -2.0, 0.0])
+    dt = 5e-3
+    for _ in range(600):
         lb, ub = velocity_bounds(Configuration(robot, q), gain)
         q = q + dt * np.where(np.arange(7) % 2 == 0, ub, lb)
         assert (np.abs(q) <= 2.5 + 1e-12).all()
