@@ -366,8 +366,7 @@ class Controller:
             layout.view(row, "blocking")[:] = halted
         if step.program.accelerates:
             self._send(step, row)
-            if policy == "slow" and taken == Action.RELAX:
-                warnings.warn(_NOT_SLOWED, stacklevel=4)
+            _warn_if_not_slowed(policy, taken, stacklevel=4)
         return Command(row, layout, Action(taken))
 
     def _raise_unless_solved(self, qp: QP, step: ControlStep) -> None:
@@ -613,17 +612,22 @@ def _check_estimator(name: str, value: Any) -> None:
         raise InvalidInputError(name, problem, value)
 
 
+def _warn_if_not_slowed(policy: Policy, taken: int, stacklevel: int) -> None:
+    """Warn where the acceleration level has put another action in the place of ``slow``."""
+    if policy == "slow" and taken == Action.RELAX:
+        message = (
+            "a step has no solution: at the acceleration level the clock of an arm in motion "
+            "cannot be slowed at once, so the policy 'slow' acts as 'relax'"
+        )
+        warnings.warn(message, stacklevel=stacklevel + 1)
+
+
 def _is_plain(q: ArrayLike, dof: int) -> bool:
     """Tell whether joint positions are an array as compiled code takes it."""
     return (
         type(q) is np.ndarray and q.dtype is _FLOAT and q.shape == (dof,) and q.flags.c_contiguous
     )
 
-
-_NOT_SLOWED = (
-    "a step has no solution: at the acceleration level the clock of an arm in motion cannot be "
-    "slowed at once, so the policy 'slow' acts as 'relax'"
-)
 
 _DERIVED = ("_derived", "_lock")
 
