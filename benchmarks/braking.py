@@ -1,5 +1,8 @@
 """Hostile targets, obstacles, acceleration limits: ``python -m benchmarks.braking STEPS [SEED]``.
 
+With ``--exported`` C that `iiwa_dnn.export` wrote drives the arms, each ten times as long, among
+obstacles that stand still.
+
 Arms among random obstacles, still and moving, with random control periods and limits, are asked for
 targets that jump behind, into and past what is in the way and beyond the joints' limits, and in the
 end back to their start. coal judges the distances, at every step and half-way between steps; finite
@@ -9,10 +12,12 @@ minimum. An obstacle that has moved may bar that path; then a state is a trap if
 can be had.
 """
 
+import argparse
 import sys
+import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,6 +26,7 @@ import numpy as np
 
 import iiwa_dnn
 from benchmarks.random_motion import Judge
+from iiwa_dnn.control.policies import Action
 from iiwa_dnn.qp import Matrix, Vector
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
@@ -39,6 +45,9 @@ SLACK = 1e-6
 HOSTILE = 6.0
 MOST = 20_000
 """Time for hostile targets [s], and steps at most."""
+
+LONGER = 10
+"""Factor of that time for exported controllers."""
 
 BACK = 20.0
 """Time that an arm has for the way back to its start [s]."""
@@ -68,6 +77,10 @@ class Case(NamedTuple):
     dt: float
     hostile: int
     moving: bool
+
+
+Stepper = Callable[[Vector, float, iiwa_dnn.Target], tuple[Vector, bool]]
+"""``step(q, t, target)``, which returns a command [rad/s] and whether the step had a solution."""
 
 
 class Drive(NamedTuple):
@@ -124,14 +137,14 @@ def draw_obstacle(random: np.random.Generator, tip: Vector, move: dict[str, Any]
     return iiwa_dnn.HalfSpace(normal, offset, **move)
 
 
-def draw_case(seed: int) -> Case:
-    """Draw a case from a seed."""
+def draw_case(seed: int, exported: bool = False) -> Case:
+    """Draw a case from a seed, for an exported controller a longer one, without motion."""
     random = np.random.default_rng(seed)
     robot = arm(ARMS[random.integers(len(ARMS))])
     start = iiwa_dnn.Configuration(robot, robot.start_posture())
     dt = float(10.0 ** random.uniform(-4.0, np.log10(2e-2)))
-    hostile = min(int(HOSTILE / dt), MOST)
-    moving = bool(random.random() < 0.3)
+    hostile = min(int(HOSTILE / dt), MOST) * (LONGER if exported else 1)
+    moving = bool(random.random() < 0.3) and not exported
     obstacles = [
         draw_obstacle(random, start.position, sway(random, hostile * dt) if moving else {})
         for _ in range(random.integers(1, 4))
@@ -174,16 +187,52 @@ def hostile_targets(case: Case, seed: int) -> Iterator[iiwa_dnn.Target]:
         yield iiwa_dnn.Target(goal, start.rotation)
 
 
-def drive(case: Case, seed: int, times: list[float]) -> Drive:
-    """Drive an arm among hostile targets, and ask it back; times of the steps [s] are appended."""
-    robot, avoidance, limits, orientation, policy, dt, hostile, _ = case
-    scheme = iiwa_dnn.DoubleIndicator(orientation=orientation, extra_limits=(*limits, avoidance))
-    controller = iiwa_dnn.Controller(robot, scheme, dt=dt, policy=policy)
+def stepper(case: Case, times: list[float]) -> Stepper:
+    """Return the step of a controller; the times of its steps [s] are appended."""
+    controller = controller_of(case)
+
+    def step(q: Vector, t: float, target: iiwa_dnn.Target) -> tuple[Vector, bool]:
+        began = time.perf_counter()
+        command = controller.step(q, t, target)
+        times.append(time.perf_counter() - began)
+        return command.dq, command.ok
+
+    return step
+
+
+def exported_stepper(case: Case, times: list[float]) -> Stepper:
+    """Return the step of an exported controller; the times of its steps [s] are appended."""
+    with tempfile.TemporaryDirectory() as folder:
+        iiwa_dnn.export.c99(controller_of(case), folder, verify=False)
+        exported = iiwa_dnn.export.load(folder)
+
+    def step(q: Vector, t: float, target: iiwa_dnn.Target) -> tuple[Vector, bool]:
+        began = time.perf_counter()
+        dq, action = exported.step(q, target.data)
+        times.append(time.perf_counter() - began)
+        return dq, action == Action.NONE
+
+    return step
+
+
+def controller_of(case: Case) -> iiwa_dnn.Controller:
+    """Return the controller of a case."""
+    limits = (*case.limits, case.avoidance)
+    scheme = iiwa_dnn.DoubleIndicator(orientation=case.orientation, extra_limits=limits)
+    return iiwa_dnn.Controller(case.robot, scheme, dt=case.dt, policy=case.policy)
+
+
+def drive(case: Case, seed: int, step: Stepper) -> Drive:
+    """Drive an arm among hostile targets, and ask it back."""
+    robot = case.robot
+    dt = case.dt
+    hostile = case.hostile
     start = iiwa_dnn.Configuration(robot, robot.start_posture())
     home = iiwa_dnn.Target(start.position, start.rotation)
     targets = hostile_targets(case, seed)
     target = next(targets)
     hold = max(1, int(0.4 / dt))
+    look = max(1, int(0.02 / dt))
     q = start.q
     path = [q]
     ok = []
@@ -193,15 +242,15 @@ def drive(case: Case, seed: int, times: list[float]) -> Drive:
             target = home
         elif k < hostile and k % hold == 0:
             target = next(targets)
-        began = time.perf_counter()
-        command = controller.step(q, k * dt, target)
-        times.append(time.perf_counter() - began)
-        left = float(np.linalg.norm(command.placement[9:] - start.position))
-        if k >= hostile and left < ARRIVED:
-            break
-        q = q + dt * command.dq
+        if k >= hostile and k % look == 0:
+            tip = iiwa_dnn.Configuration(robot, q).position
+            left = float(np.linalg.norm(tip - start.position))
+            if left < ARRIVED:
+                break
+        dq, solved = step(q, k * dt, target)
+        q = q + dt * dq
         path.append(q)
-        ok.append(command.ok)
+        ok.append(solved)
     return Drive(np.array(path), np.array(ok), left)
 
 
@@ -331,8 +380,9 @@ def judge_distances(case: Case, judge: Judge, driven: Drive) -> Verdict:
     return Verdict(least, broken)
 
 
-def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
+def main(steps: int, first: int, report: int, exported: bool) -> int:
     """Drive until so many steps are done; print what was broken, and the times of a step."""
+    make = exported_stepper if exported else stepper
     times: list[float] = []
     spent = Counter[str]()
     counts = Counter[str]()
@@ -341,12 +391,12 @@ def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
     done = 0
     while done < steps:
         seed += 1
-        case = draw_case(seed)
+        case = draw_case(seed, exported)
         robot = case.robot
         judge = Judge(robot, case.avoidance)
         if judge.distance(robot.start_posture(), 0.0) < DISTANCE + 1e-3:
             continue
-        driven = drive(case, seed, times)
+        driven = drive(case, seed, make(case, times))
         found = judge_distances(case, judge, driven)
         jerk = case.limits[1].limit if len(case.limits) > 1 else np.inf
         kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
@@ -363,7 +413,8 @@ def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
             print(
                 f"{about}: {wrong[:2]}, {found.broken} distances, {found.least:.7f} m", flush=True
             )
-        covered = judge.distance(robot.start_posture(), HOSTILE) < DISTANCE + 1e-3
+        ended = case.hostile * case.dt
+        covered = judge.distance(robot.start_posture(), ended) < DISTANCE + 1e-3
         if driven.left > 1e-2 and not covered:
             counts["tips not back"] += 1
             what = name_stop(case, driven.path)
@@ -379,4 +430,9 @@ def main(steps: int = 100_000, first: int = 0, report: int = 25) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*(int(word) for word in sys.argv[1:])))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("steps", type=int, nargs="?", default=100_000)
+    parser.add_argument("first", type=int, nargs="?", default=0, help="seed before the first one")
+    parser.add_argument("report", type=int, nargs="?", default=25, help="runs between two lines")
+    parser.add_argument("--exported", action="store_true")
+    sys.exit(main(**vars(parser.parse_args())))
