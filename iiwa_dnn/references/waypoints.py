@@ -108,9 +108,9 @@ class Waypoints(Reference):
     first point. Before the start and after the end the path rests at its first and last point; a
     closed path repeats instead.
 
-    A path of points keeps the orientation of the pose that it is anchored at. A path of poses is
-    in the robot's base frame as it is; anchored, it is moved to begin at that position, and its
-    turns, about the base frame's axes, begin from that orientation.
+    A path of points is relative: `anchored` moves its first point to a pose, whose orientation it
+    keeps. A path of poses is absolute, in the robot's base frame; `anchored` moves it all the same,
+    and its turns, about the base frame's axes, then begin from the orientation of that pose.
 
     Attributes:
         times: Times of the points [s], shape (m,), increasing, m >= 2.

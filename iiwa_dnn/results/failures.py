@@ -11,19 +11,17 @@ from iiwa_dnn.files import percent
 from iiwa_dnn.naming import describe
 from iiwa_dnn.results.markdown import number
 from iiwa_dnn.results.metrics import (
+    FAR,
     JOINT_LIMITS,
     PROOF,
     compute_metrics,
     limits,
-    position_error,
+    start_distance,
 )
 from iiwa_dnn.results.record import Record
 
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
-
-FAR = 1e-3
-"""Distance between tip and path at the start of a run [m] from which on it is worth a word."""
 
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
 
@@ -131,7 +129,7 @@ def _blocking(metrics: Mapping[str, Any]) -> str:
 
 def _far_start(record: Record | None) -> str:
     """State a distance between tip and path at the start that is worth a word."""
-    distance = 0.0 if record is None else float(np.linalg.norm(position_error(record)[0]))
+    distance = 0.0 if record is None else start_distance(record)
     return f"; the path begins {_show(distance)} m from the tip" if distance > FAR else ""
 
 

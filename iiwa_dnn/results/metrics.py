@@ -23,6 +23,9 @@ ACTIONS = {1: "fallback", _SLOW: "slow", 3: "relax", 4: "stop", 5: "euler"}
 SETTLED_AFTER = 0.5
 """Time until an arm in physics has settled [s]; it starts at rest, its weight unknown."""
 
+FAR = 1e-3
+"""Distance between tip and path at the start of a run [m] from which on it is worth a word."""
+
 RECOVERED_BELOW = 1e-3
 """Largest distance to the path of a tip that has recovered from a push [m]."""
 
@@ -36,6 +39,11 @@ Named = tuple[dict[str, Any], Codes]
 def position_error(record: Record) -> FloatArray:
     """Compute the tip position minus the desired tip position [m], (N+1, 3)."""
     return record.position - record.position_desired
+
+
+def start_distance(record: Record) -> float:
+    """Compute the distance between tip and path at the start of a run [m]."""
+    return float(np.linalg.norm(position_error(record)[0]))
 
 
 def orientation_error(record: Record) -> FloatArray:
@@ -343,13 +351,16 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
 
     With its velocity over the fraction of the path's speed that it had, a slowed step would have
     followed the path at its own speed. The time is that of the whole path at the mean pace. What is
-    left of an incomplete path may need more.
+    left of an incomplete path may need more. A tip that begins far from the path was slowed on its
+    way there, which says nothing of the path.
     """
     slow = action == _SLOW
     acting = np.abs(blocking[slow])
     others = (acting != 0) & (acting != KINDS.index("velocity") + 1)
     nothing = ~acting.any(axis=1)
-    if not slow.any() or others.any() or nothing.any() or record.filled("blocking_rows").any():
+    far = start_distance(record) > FAR
+    rows = record.filled("blocking_rows").any()
+    if not slow.any() or others.any() or nothing.any() or rows or far:
         return None
     fraction = record.filled("fraction")[slow, np.newaxis]
     ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)

@@ -353,6 +353,9 @@ def test_what_would_suffice_is_not_said_of_other_limits():
     fast = np.zeros((10, 7), int)
     fast[:4, 3] = 2
     assert "needs" in failures(slowed(fraction, blocking=fast))[-1]
+    away = np.zeros((11, 3))
+    away[:3, 0] = 0.1  # slowed on the way to a path that begins elsewhere
+    assert "needs" not in failures(slowed(fraction, blocking=fast, position=away))[-1]
     fast[2, 1] = 1  # a position limit: speed alone does not help
     assert "needs" not in failures(slowed(fraction, blocking=fast))[-1]
     assert "needs" not in failures(slowed(fraction))[-1]
