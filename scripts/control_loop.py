@@ -19,6 +19,7 @@ from iiwa_dnn.app.command_line import run_script
 from iiwa_dnn.control.estimation import NoiseModel
 
 DT = 1e-3  # control period [s]
+ACCELERATION = 10.0  # limit of every joint beside a jerk limit [rad/s^2]
 
 
 class Arm:
@@ -50,13 +51,18 @@ def main(steps: tyro.conf.Positional[int] = 1000, noise: float = 0.0, jerk: floa
     checks.not_negative("noise", noise)
     robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     limits = ()
+    gain = 10.2  # [1/s]
     if jerk < math.inf:
-        robot = robot.with_limits(acceleration=10.0, jerk=jerk)
+        robot = robot.with_limits(acceleration=ACCELERATION, jerk=jerk)
         limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+        # A loop with these limits is stable below 1 / (acceleration / jerk + dt): docs/limits.md
+        gain = min(gain, 0.9 / (ACCELERATION / jerk + DT))
     arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise)
     start = iiwa_dnn.Configuration(robot, arm.q)
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
-    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
+    scheme = iiwa_dnn.DoubleIndicator(
+        position_gain=gain, orientation_gain=gain, extra_limits=limits
+    )
     model = NoiseModel(velocity=1e-3, measurement=noise) if noise else None
     controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT, estimator=model)
     controller.warm_up()  # compiles, so that the first step is as quick as the others

@@ -648,8 +648,8 @@ def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
         arguments = ["--reference", str(tmp_path / "poses.csv"), "--tool-speed", "0.01"]
         call([*arguments, "--duration", "0.01", "--dt", "1e-3", "--no-plots", "--out", str(out)])
         told = capsys.readouterr().err
-        assert ("begins 0.02 m and" in told) == (shift > 0.0)
-        assert ("another --out or --overwrite: --q0" in told) == (shift > 0.0)
+        assert ("m, 0.02 m from the tip: the arm goes there first" in told) == (shift > 0.0)
+        assert ("run again with --overwrite --q0" in told) == (shift > 0.0)
         desired = Record.load(out / "record.npz").position_desired[0]
         np.testing.assert_allclose(desired, place + [shift, 0.0, 0.0], rtol=0, atol=1e-15)
     # Begun where it says, the run has nothing to say, and begins there.
