@@ -55,7 +55,9 @@ def _forget_stale_kernels() -> None:
             index.unlink()
 
 
-_forget_stale_kernels()
+# The processes of pytest-xdist begin after the one that starts them, which has done it.
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    _forget_stale_kernels()
 
 
 def _skipped(config: pytest.Config) -> list[pytest.TestReport | pytest.CollectReport]:

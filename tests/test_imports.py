@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from helpers_physics import run_python
+
 PACKAGE = Path(__file__).parents[1] / "iiwa_dnn"
 
 # A room imports only from the rooms before it; its own modules may import each other.
@@ -131,3 +133,13 @@ def test_the_root_of_the_package_is_small() -> None:
     folders = {path.name for path in PACKAGE.iterdir() if path.is_dir()} - {"__pycache__"}
     assert len(folders) <= 11
     assert len(list(PACKAGE.glob("*.py"))) <= 6
+
+
+def test_the_package_needs_no_extra_and_imports_no_command_and_no_second_reader() -> None:
+    code = (
+        "import sys; sys.modules.update(mujoco=None, viser=None, imageio_ffmpeg=None)\n"
+        "import iiwa_dnn; iiwa_dnn.load_robot('iiwa7')\n"
+        "print({'tyro', 'tomli_w', 'iiwa_dnn.app.track', 'yourdfpy'} & set(sys.modules))"
+    )
+    result = run_python(code)
+    assert result.stdout == "set()\n", result.stderr

@@ -65,7 +65,11 @@ def end(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, st
         ("track", LONG, signal.SIGTERM),
         ("track", [*LONG[:-1], "--check", "none", "--out"], signal.SIGINT),
         ("physics", ["--no-pictures", "--no-video", *LONG], signal.SIGTERM),
-        ("paper", ["--quick", "--workers", "2", "--quiet", "--out"], signal.SIGINT),
+        (
+            "paper",
+            ["--quick", "--duration", "0.3", "--workers", "2", "--quiet", "--out"],
+            signal.SIGINT,
+        ),
     ],
     ids=["checked by workers", "unchecked", "physics", "sweep"],
 )

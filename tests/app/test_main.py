@@ -115,11 +115,3 @@ def test_after_the_warm_up_runs_compile_nothing(
         for arguments, code in runs:
             assert main(["track", *short, *arguments, "--out", str(tmp_path)]) == code
     assert [entry.data["dispatcher"] for _, entry in compiled.buffer] == []
-
-
-def test_importing_the_package_does_not_import_the_command_line() -> None:
-    code = (
-        "import sys, iiwa_dnn; print({'tyro', 'tomli_w', 'iiwa_dnn.app.track'} & set(sys.modules))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "set()\n"

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from helpers_physics import needs_opengl, run_python
+from helpers_physics import needs_opengl
 from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
@@ -43,6 +43,8 @@ def test_everything_is_written(capsys, tmp_path, monkeypatch):
     draw_only(monkeypatch, "overview", "torques")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
     monkeypatch.setattr(pictures, "FRAME_RATE", 10)
+    for name, pixels in {"WIDTH": 480, "HEIGHT": 270, "SIDE": 210}.items():
+        monkeypatch.setattr(pictures, name, pixels)
     arguments = ("--duration", "0.2", "--out", str(tmp_path), "--disturb", "--push", "0", "10", "0")
     code, out, err = run(capsys, *arguments, "--push-at", "0.1", "--push-for", "0.05")
     assert (code, err) == (0, "")
@@ -161,19 +163,18 @@ def test_without_opengl_one_line_names_the_package_before_the_run(capsys, tmp_pa
 @pytest.mark.parametrize(
     ("missing", "arguments"), [("mujoco", DRY), ("imageio_ffmpeg", (*QUICK, "--no-pictures"))]
 )
-def test_without_the_extra_one_line_says_what_to_install(tmp_path, missing, arguments):
+def test_without_the_extra_one_line_says_what_to_install(
+    capsys, tmp_path, monkeypatch, missing, arguments
+):
     if missing == "imageio_ffmpeg":
         pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
         if offscreen_is_missing():
             pytest.skip("no OpenGL: on Debian, apt-get install libosmesa6")
-    result = run_python(
-        f"import sys; sys.modules['{missing}'] = None\n"
-        "from iiwa_dnn.app.main import main\n"
-        f"sys.exit(main({['physics', *arguments, '--out', str(tmp_path)]!r}))"
-    )
-    assert result.returncode == 2
-    assert "pip install 'iiwa-dnn[sim]'" in result.stderr
-    assert result.stderr.count("\n") == 1
+    monkeypatch.setitem(sys.modules, missing, None)
+    code, _, err = run(capsys, *arguments, "--out", str(tmp_path))
+    assert code == 2
+    assert "pip install 'iiwa-dnn[sim]'" in err
+    assert err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
 
 

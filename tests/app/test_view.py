@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+import sys
 import urllib.request
 
 import numpy as np
 import pytest
 
-from helpers_physics import heart_without_physics, papers_robot, run_python
+from helpers_physics import heart_without_physics, papers_robot
 from helpers_records import make_record
 from iiwa_dnn import Configuration, DoubleIndicator, PseudoInverse, load_robot
 from iiwa_dnn.app.command_line import run_command
@@ -97,14 +98,12 @@ def test_a_folder_without_a_run_and_a_robot_that_does_not_fit(capsys, tmp_path, 
     assert "6 free joints, the record 7" in err
 
 
-def test_without_the_extra_one_line_says_what_to_install():
-    result = run_python(
-        "import sys; sys.modules['viser'] = None\n"
-        "from iiwa_dnn.app.main import main; sys.exit(main(['view']))"
-    )
-    assert result.returncode == 2
-    assert "pip install 'iiwa-dnn[view]'" in result.stderr
-    assert result.stderr.count("\n") == 1
+def test_without_the_extra_one_line_says_what_to_install(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "viser", None)
+    code, _, err = opened(capsys)
+    assert code == 2
+    assert "pip install 'iiwa-dnn[view]'" in err
+    assert err.count("\n") == 1
 
 
 def test_scheme_and_limits_are_the_records():

@@ -79,12 +79,6 @@ def test_each_library_that_is_there_draws(library, tmp_path):
     assert float(result.stdout.split()[-1]) > 5.0
 
 
-def test_the_package_needs_no_extra():
-    blocked = "import sys; sys.modules.update(mujoco=None, viser=None, imageio_ffmpeg=None)"
-    result = run_python(f"{blocked}; import iiwa_dnn; print(iiwa_dnn.__version__)")
-    assert result.returncode == 0, result.stderr
-
-
 @linux
 def test_an_opengl_library_that_is_asked_for_and_not_there(monkeypatch):
     def broken(name):

@@ -10,7 +10,6 @@ import pinocchio as pin
 import pytest
 
 from helpers_kinematics import example_urdf
-from helpers_physics import run_python
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.robot import Robot, load_robot
 from iiwa_dnn.robot.arms import ARMS
@@ -104,10 +103,3 @@ def test_what_cannot_be_compared(robot: Robot) -> None:
         verify_robot(dataclasses.replace(robot, path=None))
     with pytest.raises(FileError, match="yourdfpy cannot read it"):
         verify_robot(dataclasses.replace(robot, urdf="<robot>"))
-
-
-def test_the_second_reader_is_imported_only_where_it_is_asked_for() -> None:
-    result = run_python(
-        "import sys, iiwa_dnn; iiwa_dnn.load_robot('iiwa7'); print('yourdfpy' in sys.modules)"
-    )
-    assert result.stdout == "False\n", result.stderr

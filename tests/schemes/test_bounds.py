@@ -18,6 +18,7 @@ joints = arrays(np.float64, 7, elements=st.floats(-1e3, 1e3))
 limits = arrays(np.float64, 7, elements=st.one_of(st.floats(0.01, 1e3), st.just(np.inf)))
 
 
+@pytest.mark.long
 @given(q=joints, lower=limits, upper=limits, speed=limits, gain=st.floats(1e-3, 1e4))
 def test_lower_never_exceeds_upper(
     q: Array, lower: Array, upper: Array, speed: Array, gain: float
@@ -78,6 +79,7 @@ def test_just_outside_where_the_papers_formula_crosses() -> None:
     np.testing.assert_array_equal(ub, -robot.dq_max)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gain", [20.0, 200.0])
 def test_steps_never_pass_a_limit_while_gain_times_dt_is_at_most_one(gain: float) -> None:
     robot = paper_robot()

@@ -85,8 +85,8 @@ def test_what_an_example_does_not_take_is_told_in_one_line(
     assert said in error
 
 
-def test_a_control_loop(tmp_path: Path) -> None:
-    text = process(tmp_path, "control_loop.py", "200")
+def test_a_control_loop(example: Example) -> None:
+    text = example("control_loop.py", "200")
     assert 0.0 < number(r"median ([\d.]+) us", text) <= number(r"p99 ([\d.]+) us", text)
     assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-5
 
@@ -126,7 +126,7 @@ def test_a_published_network(example: Example) -> None:
 
 
 def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
-    text = process(tmp_path, "sweep_weight.py")
+    text = process(tmp_path, "sweep_weight.py", "runs/sweep_weight", "5e-2")
     drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]
     index = [float(value) for value in re.findall(r"kinetic index (\S+) rad", text)]
     assert len(drift) == len(index) == 7
