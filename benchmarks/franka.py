@@ -6,6 +6,7 @@ that sends nothing but zero, for 2 s before each run, shows what the machine los
 
 import sys
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -52,26 +53,31 @@ def bench_franka(arguments: Sequence[str], prog: str) -> int:
     host = arguments[0] if arguments else "127.0.0.1"
     seconds = float(arguments[1]) if len(arguments) > 1 else 600.0
     rows = []
+    driven = 0.0
     rng = np.random.default_rng(0)
     robot = iiwa_dnn.load_robot("fr3")
-    for k in range(round(seconds / RUN)):
-        policy = ("slow", "relax")[k % 2]
-        row = [k, policy]
+    while driven < seconds:
+        policy = ("slow", "relax")[len(rows) % 2]
+        row = [len(rows), policy]
         for reference in (None, Jumps(rng)):
             plant = iiwa_dnn.FrankaPlant(host)
-            row += drive(plant, plant.with_room(robot), reference, policy)
-        rows.append(row)
-        print(*row, file=sys.stderr, flush=True)
-    head = ["run", "policy", "lost at rest", "end", "lost", "largest rate", "end"]
+            record, figures = drive(plant, plant.with_room(robot), reference, policy)
+            row += figures
+        driven += record.t[-1]
+        rows.append([*row, datetime.now().isoformat(" ", "milliseconds")])
+        print(*rows[-1], file=sys.stderr, flush=True)
+    head = ["run", "policy", "lost at rest", "end", "lost", "largest rate", "end", "at"]
     print(markdown_table(head, [[str(cell) for cell in row] for row in rows]))
+    print(f"{driven:.0f} s in {len(rows)} runs")
     return 0
 
 
-def drive(plant: Any, robot: Any, reference: Any, policy: Any) -> list[Any]:
-    """Return late commands of a run, ratio of its commands to the limits if they move, its end."""
+def drive(plant: Any, robot: Any, reference: Any, policy: Any) -> tuple[iiwa_dnn.Record, list[Any]]:
+    """Return a run, and its late commands, ratio to the limits if it moves, and end."""
     start = iiwa_dnn.Configuration(robot, plant.posture)
     path = iiwa_dnn.Still() if reference is None else reference
-    limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+    tip_speed = iiwa_dnn.TipSpeedLimit(plant.tip_speed, "link8")
+    limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(), tip_speed)
     scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=limits)
     record = iiwa_dnn.simulate(
         robot,
@@ -87,5 +93,6 @@ def drive(plant: Any, robot: Any, reference: Any, policy: Any) -> list[Any]:
     late = len(record.settings["plant"]["late_s"])
     end = record.settings["status"]
     if reference is None:
-        return [late, end]
-    return [late, f"{np.abs(record.dq_solver / robot.dq_max).max():.2f}", end]
+        return record, [late, end]
+    rate = np.abs(record.dq_solver / robot.dq_max).max()
+    return record, [late, f"{rate:.2f}", end]

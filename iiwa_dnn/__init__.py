@@ -85,6 +85,7 @@ from iiwa_dnn.schemes import (
     Sphere,
     Step,
     Task,
+    TipSpeedLimit,
 )
 from iiwa_dnn.simulation import (
     FrankaPlant,
@@ -112,9 +113,9 @@ __all__ = [
     "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
     "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
     "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
-    "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork", "available_robots",
-    "compute_metrics", "failures", "load_robot", "prove", "retime", "robot_from_dh", "simulate",
-    "solve_batch", "solve_pose", "solve_problem",
+    "TipSpeedLimit", "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork",
+    "available_robots", "compute_metrics", "failures", "load_robot", "prove", "retime",
+    "robot_from_dh", "simulate", "solve_batch", "solve_pose", "solve_problem",
 ]  # fmt: skip
 
 _RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}

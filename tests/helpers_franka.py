@@ -4,6 +4,7 @@ It judges by the words of libfranka's documentation alone: finite differences of
 went on with itself, against the limits of include/franka/rate_limiting.h and of the FR3's URDF.
 """
 
+import socket
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,6 +46,7 @@ class Arm:
     Attributes:
         lost: Number of cycles that are lost from a command on, by its number.
         fails: Number of the command at which the robot aborts; None: it does not.
+        hangs: Number of the command after which its state never comes; None: it does.
     """
 
     def __init__(self, q: np.ndarray, flange: np.ndarray) -> None:
@@ -54,6 +56,9 @@ class Arm:
         self.ddq = np.zeros(7)
         self.lost: dict[int, int] = {}
         self.fails: int | None = None
+        self.hangs: int | None = None
+        self.link: socket.socket | None = None
+        self.far_end: socket.socket | None = None
         self.finished = False
         self.broken: list[str] = []
         self.count = 0
@@ -81,6 +86,10 @@ class Arm:
     def readOnce(self) -> tuple[Any, Duration]:  # noqa: N802
         if self.fails is not None and self.count >= self.fails:
             raise ControlException('libfranka: Move command aborted!\n["test_reflex"]')
+        if self.hangs is not None and self.count >= self.hangs:
+            assert self.link is not None
+            self.link.recv(1)  # returns when it is shut
+            raise NetworkException("libfranka: UDP receive: connection shut")
         cycles, self.cycles = self.cycles, 0
         return self.state(), Duration(cycles)
 
@@ -123,6 +132,7 @@ def module(arm: Arm) -> Any:
     def connect(host: str, realtime: Any) -> Arm:
         if host != "127.0.0.1":
             raise NetworkException("libfranka: Connection timeout")
+        arm.link, arm.far_end = socket.socketpair()
         return arm
 
     return SimpleNamespace(

@@ -88,6 +88,7 @@ class TrackOptions(RunOptions):
     speed: float = 1.0  # ratio of the velocity limits to the data sheet's [1]
     acceleration_limit: _Limit = None  # acceleration limit [rad/s^2], or robot: its own
     jerk_limit: _Limit = None  # jerk limit [rad/s^3], or robot: its own
+    tip_speed_limit: _Float = None  # limit of the tip's speed [m/s], beside an acceleration limit
     mode: Mode = "converged"  # network at a step: settled, or lagging behind in continuous time
     kinetic: Kinetic = "identity"  # matrix G of the kinetic index; identity is the paper's
     gain: float = 10.2  # feedback gain of the position and the orientation error [1/s]

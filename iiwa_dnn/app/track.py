@@ -42,6 +42,7 @@ from iiwa_dnn.schemes import (
     JerkLimits,
     Limit,
     Scheme,
+    TipSpeedLimit,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.simulation import FrankaPlant, FriPlant, Plant, RealPlant, Simulation
@@ -110,6 +111,7 @@ _ARGUMENTS = (
 _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "next_gain": (lambda o: o.tracking != "next", "--tracking next"),
     "gain": (lambda o: o.tracking == "next", "--tracking paper; beside next it is --next-gain"),
+    "tip_speed_limit": (lambda o: o.acceleration_limit is None, "--acceleration-limit"),
     "noise_at": (lambda o: o.noise == 0.0, "--noise"),
     "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp, both or proof"),
     "push_at": (lambda o: not o.push, "--push"),
@@ -134,8 +136,8 @@ def run(options: TrackOptions) -> int:
 def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
     """Return the options with what was left to their defaults as a real arm needs it.
 
-    The start is the measured posture, the control period the robot's, and acceleration and jerk
-    limits are the robot's, where it has such limits.
+    The start is the measured posture, the control period the robot's, and limits of acceleration,
+    jerk and the tip's speed are the robot's, where it has such limits.
     """
     robot, _ = arm(options)
     own: dict[str, Any] = {
@@ -143,6 +145,7 @@ def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
         "dt": plant.period,
         "acceleration_limit": "robot" if np.isfinite(robot.ddq_max).all() else None,
         "jerk_limit": "robot" if np.isfinite(robot.dddq_max).all() else None,
+        "tip_speed_limit": plant.tip_speed,
     }
     default = type(options)
     left = {name: own[name] for name in own if getattr(options, name) == getattr(default, name)}
@@ -204,16 +207,19 @@ def scheme_of(options: TrackOptions) -> Scheme:
 
 
 def motion_limits(options: TrackOptions) -> tuple[Limit, ...]:
-    """Return the limits on acceleration and jerk that the options describe.
+    """Return the limits on acceleration, jerk and the tip's speed that the options describe.
 
     Raises:
         InvalidInputError: A limit is neither a positive number nor ``robot``.
     """
-    return tuple(
+    limits: list[Limit] = [
         kind(_number_or_word(kind.quantity, getattr(options, kind.quantity), "robot"))
         for kind in (AccelerationLimits, JerkLimits)
         if getattr(options, kind.quantity) is not None
-    )
+    ]
+    if options.tip_speed_limit is not None:
+        limits.append(TipSpeedLimit(options.tip_speed_limit))
+    return tuple(limits)
 
 
 def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Scheme) -> None:

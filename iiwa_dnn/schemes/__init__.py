@@ -33,3 +33,4 @@ from iiwa_dnn.schemes.parts import Task as Task
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask
 from iiwa_dnn.schemes.tasks import PositionTask as PositionTask
+from iiwa_dnn.schemes.tip_speed import TipSpeedLimit as TipSpeedLimit

@@ -24,10 +24,9 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.plants.base import JOINTS, Plant
 from iiwa_dnn.simulation.plants.fri_messages import (
     COMMAND_ID,
-    JOINTS,
     LARGEST_MESSAGE,
     MONITORING_ID,
     PORT,

@@ -18,7 +18,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated
-from iiwa_dnn.simulation.plants.base import Plant, RealPlant
+from iiwa_dnn.simulation.plants.base import Plant
 
 Levels = list[tuple[Vector, Vector]]
 """Program with its answer, and missing task velocity, of each level of priority."""
@@ -109,11 +109,6 @@ class Loop:
         self._plain = motion == "euler" and not (self._alters or accelerates)
         self._misled = not plant.exact or (chain is not None and chain.misleads)
 
-    @property
-    def _real(self) -> RealPlant | None:
-        """The plant, if it is a real arm."""
-        return self.plant if isinstance(self.plant, RealPlant) else None
-
     def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
         """Take steps until one of them ends the run; return how many were taken."""
         for k in range(first, first + steps):
@@ -134,7 +129,7 @@ class Loop:
         for k in range(round(_LONGEST_BRAKING / self.controller.dt)):
             if self.step(k).ends:
                 self.plant.move(np.zeros_like(self.q))
-                if self._real is None or self._real.substitutes is None:
+                if self.plant.substitutes is None:
                     break
         self.controller.delay = delay  # that of the run, which ended before
 
@@ -173,12 +168,13 @@ class Loop:
 
     def _time(self, k: int) -> float:
         """Return the time of step k [s], after a real arm's controller knows of late commands."""
-        if self._real is None:
+        plant = self.plant
+        if not plant.is_real:
             return k * self.controller.dt
-        substitutes = self._real.substitutes
+        substitutes = plant.substitutes
         if substitutes is not None:
             self.controller.resume(substitutes)
-        return self._real.time
+        return plant.time
 
     def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
         """Take a step of several stages, of the acceleration level, or with an altered command."""
@@ -246,7 +242,7 @@ class Loop:
         ends = False
         before = self.q
         elapsed = self.controller.dt
-        t = None if self._real is None else self._real.time
+        t = self.plant.time if self.plant.is_real else None
         if action is Action.STOP:
             self.controller.halt(commands[0])
             ends = not commands[0].dq.any()
@@ -255,8 +251,8 @@ class Loop:
             self.q = self.plant.q
             torque = self.plant.torque
             ends = self.plant.fault is not None
-            if self._real is not None and t is not None and not ends:
-                elapsed = self._real.time - t
+            if t is not None and not ends:
+                elapsed = self.plant.time - t
             # Of an arm with mass the mean velocity of the period.
             dq = dq if self.plant.exact else (self.q - before) / elapsed
         if ends:

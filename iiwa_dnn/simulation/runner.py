@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass, field, fields
 from importlib.metadata import version
 from typing import Any
 
@@ -33,8 +34,8 @@ from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.judgement import Judgement
 from iiwa_dnn.simulation.loop import Loop, Observer
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
-from iiwa_dnn.simulation.noise import Disturbance, VelocityDisturbance
-from iiwa_dnn.simulation.plants import IdealPlant, Plant, RealPlant
+from iiwa_dnn.simulation.noise import Disturbance
+from iiwa_dnn.simulation.plants import IdealPlant, Plant
 from iiwa_dnn.simulation.recorder import Recorder
 
 COMPLETED = "completed"
@@ -55,6 +56,52 @@ _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osq
 Progress = Callable[[int], object]
 
 
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """Numbers and choices of a run.
+
+    Attributes:
+        dt: Control period [s].
+        duration: Length of the run [s], rounded to whole steps; None takes the reference's.
+        mode: ``"converged"`` or ``"continuous"`` (`iiwa_dnn.Controller`).
+        motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take ``euler``.
+        policy: At steps without solution: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
+        disturbance: Noise, filters and estimator.
+        seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the last
+            digits of the gap to ProxQP, which does not repeat itself.
+        tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
+        far_start: Whether the arm may go to a path of poses that begins elsewhere than the tip;
+            else such a run is refused.
+    """
+
+    dt: float = 1e-4
+    duration: float | None = None
+    mode: Mode = "converged"
+    motion: Motion = "euler"
+    policy: Policy = "slow"
+    disturbance: Disturbance = field(default_factory=Disturbance)
+    seed: int = 0
+    tol: float = 1e-9
+    far_start: bool = False
+
+    @classmethod
+    def of(cls, options: Mapping[str, Any]) -> RunOptions:
+        """Make the options of those by name, fields of `Disturbance` among them.
+
+        A `VelocityDisturbance` as `disturbance` is that of the velocity alone.
+        """
+        names = [each.name for each in fields(cls)]
+        own = {name: options[name] for name in names if name in options}
+        others = {name: options[name] for name in options if name not in own}
+        disturbance = own.pop("disturbance", None)
+        if not isinstance(disturbance, Disturbance):
+            disturbance = Disturbance(velocity=disturbance, **others)
+        elif others:
+            problem = f"holds {', '.join(others)} already"
+            raise InvalidInputError("disturbance", problem, disturbance)
+        return cls(disturbance=disturbance, **own)
+
+
 class Simulation:
     """One run, its arguments checked; `run` carries it out.
 
@@ -71,18 +118,9 @@ class Simulation:
         q0: ArrayLike,
         *,
         plant: Plant | None = None,
-        dt: float = 1e-4,
-        duration: float | None = None,
-        mode: Mode = "converged",
-        motion: Motion = "euler",
-        disturbance: Disturbance | VelocityDisturbance | None = None,
-        policy: Policy = "slow",
-        seed: int = 0,
-        tol: float = 1e-9,
         check: CrossCheck | None = None,
         solver: DNNSolver | None = None,
-        far_start: bool = False,
-        **disturbances: Any,
+        **options: Any,
     ) -> None:
         """Check the arguments.
 
@@ -92,55 +130,39 @@ class Simulation:
             reference: Path of the tip, or paths by frame name; anchored by the caller.
             q0: Joint positions at the start [rad], (n,).
             plant: The arm that moves; None: the ideal one (`MujocoPlant` has masses and motors).
-            dt: Control period [s].
-            duration: Length of the run [s], rounded to whole steps; None takes the reference's.
-            mode: ``"converged"`` or ``"continuous"`` (`iiwa_dnn.Controller`).
-            motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take
-                ``euler``.
-            disturbance: Noise, filters and estimator; a `VelocityDisturbance` alone: that of the
-                velocity.
-            policy: At steps without solution: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
-            seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the
-                last digits of the gap to ProxQP, which does not repeat itself.
-            tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
             check: Reference solvers; None asks ProxQP, ``CrossCheck(())`` nobody.
             solver: The network and its integrators, reset before the run; None takes the paper's
-                network with `tol`.
-            far_start: Whether the arm may go to a path of poses that begins elsewhere than the
-                tip; else such a run is refused.
-            **disturbances: Fields of `Disturbance`, for example ``noise=0.01``.
+                network with the option `tol`.
+            **options: Fields of `RunOptions` and of `Disturbance`, for example ``noise=0.01``.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
             TypeError: There is no argument of a name.
         """
-        checks.positive("dt", dt)
+        checks.positive("dt", options.get("dt", RunOptions.dt))
         start = Configuration(robot, q0)
-        if not isinstance(disturbance, Disturbance):
-            disturbance = Disturbance(velocity=disturbance, **disturbances)
-        elif disturbances:
-            problem = f"holds {', '.join(disturbances)} already"
-            raise InvalidInputError("disturbance", problem, disturbance)
+        chosen = RunOptions.of(options)
+        dt = chosen.dt
+        self._options = chosen
         self.interrupt: signal.Signals | None = None
         self._plant = IdealPlant() if plant is None else plant
         checks.offers("plant", self._plant, "start", "read", "move", "packages", "settings")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
-        solver = DNNSolver(tol=tol) if solver is None else solver
+        solver = DNNSolver(tol=chosen.tol) if solver is None else solver
         self._controller = Controller(
-            robot, scheme, reference, dt=dt, mode=mode, policy=policy, solver=solver
+            robot, scheme, reference, dt=dt, mode=chosen.mode, policy=chosen.policy, solver=solver
         )
-        self._motion: Motion = motion
-        self._disturbance = disturbance
-        self._seed = checks.integer("seed", seed, 0)
         self._q0 = start.arrays[0]
-        paths = by_frame(reference, robot.tip).values()
-        asked = max((path.duration for path in paths), default=dt) if duration is None else duration
+        asked = chosen.duration
+        if asked is None:
+            paths = by_frame(reference, robot.tip).values()
+            asked = max((path.duration for path in paths), default=dt)
         length = checks.positive("duration", asked)
         self.steps = step_count(length, dt)
         self._controller.anchor(start)
         self._check_combination(scheme)
-        self._plant.start(robot, self._q0, dt, seed)
-        self._controller.warn_if_far(start, 0.0, 4, refuses=not far_start)
+        self._plant.start(robot, self._q0, dt, chosen.seed)
+        self._controller.warn_if_far(start, 0.0, 4, refuses=not chosen.far_start)
         self._settings = self._stated(length)
 
     @property
@@ -152,13 +174,13 @@ class Simulation:
         """Raise InvalidInputError if the arguments do not go together."""
         controller = self._controller
         program = controller.program
-        disturbance = self._disturbance
+        disturbance = self._options.disturbance
         one_clock = controller.mode != "converged" or not self._plant.exact
-        check_motion(self._motion, one_clock, bool(program.ahead))
+        check_motion(self._options.motion, one_clock, bool(program.ahead))
         gain = disturbance.integral_gain
         if gain and len(program.target_frames) > 1:
             raise InvalidInputError("integral_gain", "is for one tracked frame", gain)
-        chain = SignalChain(disturbance, 1, controller.robot.dof, controller.dt, self._seed)
+        chain = SignalChain(disturbance, 1, controller.robot.dof, controller.dt, self._options.seed)
         if program.accelerates and (chain.changes or gain):
             problem = "is of the acceleration level: it takes no noise but of measurements"
             raise InvalidInputError("scheme", problem, scheme)
@@ -179,10 +201,10 @@ class Simulation:
             "duration": duration,
             **_end_of_path(controller.reference, duration),
             "mode": controller.mode,
-            "motion": self._motion if self._plant.exact else "physics",
+            "motion": self._options.motion if self._plant.exact else "physics",
             "policy": controller.policy,
-            "seed": self._seed,
-            **self._disturbance.settings(),
+            "seed": self._options.seed,
+            **self._options.disturbance.settings(),
             "check": self._check.settings(),
             **collision_settings(controller.scheme, robot),
             "versions": {name: version(name) for name in (*_PACKAGES, *self._plant.packages)},
@@ -221,15 +243,15 @@ class Simulation:
         controller = self._controller
         dt = controller.dt
         controller.reset()
-        self._plant.start(controller.robot, self._q0, dt, self._seed)
-        if isinstance(self._plant, RealPlant):
+        self._plant.start(controller.robot, self._q0, dt, self._options.seed)
+        if self._plant.is_real:
             self._rehearse()
         loop = self._loop()
         recorder = Recorder(self.steps, controller, loop.q, self._settings)
-        stages = MOTIONS[self._motion].stages
+        stages = MOTIONS[self._options.motion].stages
         layout = recorder.layout
         # A hand-over takes longer than a real arm's period.
-        block = self.steps if isinstance(self._plant, RealPlant) else BLOCK
+        block = self.steps if self._plant.is_real else BLOCK
         done = 0
         with Judgement(self._check, self.steps, stages, layout, controller.levels) as judgement:
             observers = (recorder.observe, judgement.observe)
@@ -275,7 +297,7 @@ class Simulation:
         exception there could lose a command.
         """
         plant = self._plant
-        if not isinstance(plant, RealPlant):
+        if not plant.is_real:
             return loop.run(steps, observers, first)
 
         def brake(number: int, frame: object) -> None:
@@ -303,13 +325,13 @@ class Simulation:
     def _loop(self) -> Loop:
         """Make the loop of one run, its noise drawn."""
         controller = self._controller
-        disturbance = self._disturbance
+        disturbance = self._options.disturbance
         chain = SignalChain(
-            disturbance, self.steps, controller.robot.dof, controller.dt, self._seed
+            disturbance, self.steps, controller.robot.dof, controller.dt, self._options.seed
         )
         gain = disturbance.integral_gain
         integral = IntegralFeedback(gain) if gain else None
-        return Loop(controller, self._plant, self._motion, chain, integral)
+        return Loop(controller, self._plant, self._options.motion, chain, integral)
 
     def _status(self, recorder: Recorder) -> str:
         """Describe the end of a run."""
@@ -341,8 +363,9 @@ def simulate(
         reference: Path of the tip, or paths by frame name; anchored by the caller.
         q0: Joint positions at the start [rad], (n,).
         progress: Called now and then with the number of steps done since the last call.
-        **options: Keyword arguments of `Simulation`: plant, dt, duration, mode, motion,
-            disturbance or its fields, policy, seed, tol, check, solver, far_start.
+        **options: Keyword arguments of `Simulation`: plant, check, solver, and the fields of
+            `RunOptions` (dt, duration, mode, motion, policy, seed, tol, far_start, disturbance) and
+            of `Disturbance`.
 
     Returns:
         The record of the run.

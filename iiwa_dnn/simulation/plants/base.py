@@ -3,11 +3,14 @@
 A `RealPlant` is a robot in the world. It has a clock of its own and goes on without the loop.
 """
 
+import time
 from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
@@ -16,8 +19,14 @@ Feedback = Literal["commanded", "measured"]
 FEEDBACKS: tuple[Feedback, ...] = ("commanded", "measured")
 """Joint angles of a real arm that its controller gets: summed commands, or encoders."""
 
+JOINTS = 7
+"""Number of joints of a real arm."""
+
 NEAR = 0.01
 """Largest distance of a joint of a real arm from the start posture of a run [rad]."""
+
+BEHIND = 20.0
+"""Time by which a robot's clock may fall behind before the robot is given up [s]."""
 
 
 class Plant(ABC):
@@ -26,10 +35,12 @@ class Plant(ABC):
     Attributes:
         packages: Installed packages whose versions belong into the record.
         exact: Whether the joints move as they are told and are read as they are.
+        is_real: Whether it is a robot in the world, which goes on by a clock of its own.
     """
 
     packages: ClassVar[tuple[str, ...]] = ()
     exact: ClassVar[bool] = False
+    is_real: ClassVar[bool] = False
 
     @abstractmethod
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
@@ -65,21 +76,79 @@ class Plant(ABC):
         """Reason for which the plant ended the run; None while it moves."""
         return None
 
+    @property
+    def time(self) -> float:
+        """Time since the motion began, by the clock of a plant that has one [s]."""
+        return 0.0
+
+    @property
+    def substitutes(self) -> Matrix | None:
+        """Last command and the one before, (2, n) [rad/s], as the plant itself has gone on.
+
+        None if it got every command in time.
+        """
+        return None
+
+    def stop(self) -> None:  # noqa: B027
+        """Let the robot brake if it still moves, end the motion and release the robot."""
+
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         return {}
 
 
+@dataclass
+class RealMotion:
+    """Progress of a motion of a real arm.
+
+    Attributes:
+        commanded: Sum of the commands, from the position at the beginning [rad], (7,).
+        command: Last command [rad/s], (7,).
+        previous: Command before it, as the robot has it [rad/s], (7,).
+        substitutes: `Plant.substitutes`, (2, 7).
+        waits: Whether the state that answers the last command is still to come.
+        time: Time since the motion began, by the robot's clock [s].
+        late: Times at which commands were found to have come too late [s].
+        began: Time at which it began, by this machine's clock [s]; None: it did not.
+        fault: `Plant.fault`.
+    """
+
+    commanded: Vector = field(default_factory=lambda: np.zeros(JOINTS))
+    command: Vector = field(default_factory=lambda: np.zeros(JOINTS))
+    previous: Vector = field(default_factory=lambda: np.zeros(JOINTS))
+    substitutes: Matrix | None = None
+    waits: bool = False
+    time: float = 0.0
+    late: list[float] = field(default_factory=list)
+    began: float | None = None
+    fault: str | None = None
+
+
 class RealPlant(Plant):
-    """A robot that runs by a clock of its own and stands somewhere before a run begins.
+    """A robot of 7 joints that stands somewhere before a run begins.
 
     `start` connects and refuses a start posture from which the robot is far; the motion begins at
     the first `read`. `move` sends a command. `q`, `read` and `time` are those of the robot's next
     state after it, for which they wait.
 
     A lost connection or an error of the robot is no exception but a `fault`, after which nothing
-    moves and the last state stays.
+    moves and the last state stays. So is a robot whose clock has fallen behind by `BEHIND`.
+
+    Args:
+        feedback: Joint angles that `read` returns: ``"commanded"``, the sum of the commands, has
+            neither noise nor delay; ``"measured"`` are the encoders'.
+
+    Attributes:
+        tip_speed: Limit of the tip's speed that leaves room to the robot's own [m/s]; None: none.
     """
+
+    is_real: ClassVar[bool] = True
+    tip_speed: ClassVar[float | None] = None
+
+    def __init__(self, feedback: Feedback) -> None:
+        checks.one_of("feedback", feedback, FEEDBACKS)
+        self.feedback = feedback
+        self._motion = RealMotion()
 
     @property
     @abstractmethod
@@ -89,32 +158,30 @@ class RealPlant(Plant):
     @property
     @abstractmethod
     def posture(self) -> Vector:
-        """Measured joint angles before the run [rad], (n,); connects if need be."""
+        """Measured joint angles of the last state [rad], (7,); connects if need be."""
 
-    @property
     @abstractmethod
-    def time(self) -> float:
-        """Time since the motion began, by the robot's clock [s]."""
+    def _begin(self) -> None:
+        """Begin a motion from rest, or note the fault."""
 
-    @property
     @abstractmethod
-    def substitutes(self) -> Matrix | None:
-        """Last command and the one before, (2, n) [rad/s], as the robot itself has gone on.
+    def _receive(self) -> None:
+        """Wait for the robot's next state and note what it says of the motion."""
 
-        None if it got every command in time.
+    @abstractmethod
+    def _send(self) -> None:
+        """Send the last command."""
+
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
+        """Connect to the robot, which has to stand at joint angles `q0` (7,) [rad] already.
+
+        Raises:
+            MissingDependencyError: The package of the robot's protocol is not installed.
+            InvalidInputError: No robot answers, it stands elsewhere, or the robot of the run has
+                other joints or another control period.
         """
-
-    def check_start(self, robot: Robot, q0: Vector, dt: float, joints: int) -> None:
-        """Raise InvalidInputError unless a run of a robot fits the arm, which has so many joints.
-
-        Args:
-            robot: The robot of the run, n joints.
-            q0: Its start posture [rad], (n,).
-            dt: Its control period [s].
-            joints: Number of the arm's joints.
-        """
-        if robot.dof != joints:
-            raise InvalidInputError("robot", f"has {robot.dof} joints, the arm {joints}", robot)
+        if robot.dof != JOINTS:
+            raise InvalidInputError("robot", f"has {robot.dof} joints, the arm {JOINTS}", robot)
         period = self.period
         if abs(dt - period) > 1e-9 * period:
             raise InvalidInputError("dt", f"must be the robot's {period:g} s, not {dt:g} s", dt)
@@ -123,11 +190,64 @@ class RealPlant(Plant):
             joint = int(away.argmax())
             stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
             raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
+        self._motion = RealMotion(np.array(q0))
 
     def with_room(self, robot: Robot) -> Robot:
         """Return a robot with limits inside of which commands may also come too late."""
         return robot
 
-    @abstractmethod
-    def stop(self) -> None:
-        """Let the robot brake if it still moves, end the motion and release the robot."""
+    def _wait(self) -> None:
+        """Wait for the robot's next state, if a command was sent since the last one."""
+        motion = self._motion
+        if not motion.waits or motion.began is None:
+            return
+        motion.waits = False
+        motion.substitutes = None
+        self._receive()
+        behind = time.monotonic() - motion.began - motion.time
+        if motion.fault is None and behind > BEHIND:
+            motion.fault = f"the robot's clock is {behind:.0f} s behind"
+
+    @property
+    def q(self) -> Vector:
+        """Measured joint angles [rad], (7,), a copy."""
+        self._wait()
+        return self.posture
+
+    @property
+    def time(self) -> float:
+        """Time since the motion began, by the robot's clock [s]."""
+        self._wait()
+        return self._motion.time
+
+    @property
+    def substitutes(self) -> Matrix | None:
+        """Last command and the one before, (2, 7) [rad/s], if the robot lost ours; else None."""
+        self._wait()
+        return self._motion.substitutes
+
+    @property
+    def fault(self) -> str | None:
+        """Reason for which the robot can no longer be commanded; None while it can."""
+        return self._motion.fault
+
+    def read(self) -> Vector:
+        """Return the commanded or the measured joint angles [rad], (7,); the first call begins."""
+        if self._motion.began is None:
+            self._begin()
+            self._motion.began = time.monotonic()
+        self._wait()
+        return self._motion.commanded.copy() if self.feedback == "commanded" else self.posture
+
+    def move(self, command: Vector) -> None:
+        """Send a velocity command (7,) [rad/s] for the period of the last state."""
+        self._wait()
+        motion = self._motion
+        if motion.fault is not None or motion.began is None:
+            return
+        known = motion.substitutes
+        motion.previous = motion.command if known is None else known[0]
+        motion.command = np.array(command)
+        motion.commanded = motion.commanded + self.period * motion.command
+        motion.waits = True
+        self._send()

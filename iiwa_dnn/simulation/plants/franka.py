@@ -5,14 +5,21 @@ and the robot goes on at constant acceleration. What it has commanded itself the
 `q_d`, `dq_d` and `ddq_d` of the next state.
 
 In k lost cycles of the period dt a velocity grows by up to k dt A at the acceleration A, and a
-limit that shrinks at the deceleration D (`Robot.ramps`) by k dt D: `FrankaPlant.with_room` leaves
-room for both.
+limit that shrinks at the deceleration D (`Robot.ramps`) by k dt D. The robot judges velocities at
+its measured posture, which lags behind the commanded one. `FrankaPlant.with_room` leaves room for
+all of that.
 
 Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements.html, section
 "Packet handling".
 """
 
-from dataclasses import dataclass, field, replace
+import os
+import socket
+import threading
+import time
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,19 +28,27 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, import_extra
 from iiwa_dnn.files import one_line
-from iiwa_dnn.qp.program import Matrix, Vector
+from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.simulation.plants.base import FEEDBACKS, Feedback, RealPlant
+from iiwa_dnn.schemes.motion_limits import TANGENT
+from iiwa_dnn.simulation.plants.base import JOINTS, Feedback, RealMotion, RealPlant
 
 PERIOD = 1e-3
 """Period of a control cycle [s]."""
 
-JOINTS = 7
+SILENCE = 5.0
+"""Time without a state after which the robot is given up; libfranka may wait without an end [s]."""
+
+TIP_SPEED = 2.5
+"""Limit of the tip's speed [m/s]. The robot's own is 3, of the measured motion."""
 
 _ACCELERATION = 0.8
-_JERK = 0.25
+_JERK = 0.24
 """Ratios to the robot's limits. A late command may be dropped or, by franka-sim, be taken after all
-when the robot has gone on without it: in one of the two histories the next one reads as 3 J."""
+when the robot has gone on without it: the next one then reads as 3 J, and as 4 J after several."""
+
+_BRAKING = 0.75
+"""Part of the acceleration that braking before a ramp asks for: the arm lags behind."""
 
 _TOLERANCE = 1e-3
 """libfranka's kJointVelocityLimitsTolerance without lost cycles [rad/s]."""
@@ -41,31 +56,8 @@ _TOLERANCE = 1e-3
 _OFF_AXIS = 2e-3
 """Distance between the flange and the model's last axis that calibration may leave [m]."""
 
-_ROUNDING = 1e-6
+_ROUNDING = 1e-5
 """Difference of two velocities that are equal in single precision [rad/s]."""
-
-
-@dataclass
-class _Motion:
-    """Progress of a motion of an arm, beside its last state.
-
-    Attributes:
-        commanded: Sum of the commands, from the measured start [rad], (7,).
-        offset: Difference of it to the robot's own sum [rad], (7,).
-        command: Last command [rad/s], (7,).
-        substitutes: `FrankaPlant.substitutes`, (2, 7).
-        waits: Whether the state that answers the last command is still to come.
-        time: Time since the motion began, by the robot's clock [s].
-        late: Times at which commands were found to have come too late [s].
-    """
-
-    commanded: Vector
-    offset: Vector = field(default_factory=lambda: np.zeros(JOINTS))
-    command: Vector = field(default_factory=lambda: np.zeros(JOINTS))
-    substitutes: Matrix | None = None
-    waits: bool = False
-    time: float = 0.0
-    late: list[float] = field(default_factory=list)
 
 
 class FrankaPlant(RealPlant):
@@ -76,30 +68,33 @@ class FrankaPlant(RealPlant):
         feedback: Joint angles that `read` returns: ``"commanded"``, the sum of the commands, has
             neither noise nor delay; ``"measured"`` are the encoders'.
         lost_cycles: Cycles that may be lost in a row without a limit being broken.
+        lag: Distance up to which the measured joints may be from the commanded ones without a
+            limit being broken [rad]; the commanded ones are drawn along beyond it.
 
     Raises:
-        InvalidInputError: The host is empty, there is no such feedback, or the number is negative.
+        InvalidInputError: The host is empty, there is no such feedback, or a number is negative.
     """
 
     packages: ClassVar[tuple[str, ...]] = ("pylibfranka",)
+    tip_speed: ClassVar[float | None] = TIP_SPEED
 
-    def __init__(self, host: str, feedback: Feedback = "commanded", lost_cycles: int = 5) -> None:
+    def __init__(
+        self,
+        host: str,
+        feedback: Feedback = "commanded",
+        lost_cycles: int = 5,
+        lag: float = 0.02,
+    ) -> None:
+        super().__init__(feedback)
         if not host:
             raise InvalidInputError("host", "is needed: the address of the robot's controller")
         self.host = host
-        checks.one_of("feedback", feedback, FEEDBACKS)
-        self.feedback = feedback
         self.lost_cycles = checks.integer("lost_cycles", lost_cycles, 0)
-        self._fault: str | None = None
+        self.lag = checks.not_negative("lag", lag)
         self._franka: Any = None
         self._robot: Any = None
         self._control: Any = None
-        self._release()
-
-    def _release(self) -> None:
-        """Close the connection."""
-        self._control = None
-        self._robot = None
+        self._links: set[int] = set()
 
     def _connect(self) -> None:
         """Connect to the robot and read its state, unless this was done before.
@@ -111,6 +106,7 @@ class FrankaPlant(RealPlant):
         if self._robot is not None:
             return
         self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
+        before = _sockets()
         try:
             robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
             self._state = robot.read_once()
@@ -118,8 +114,7 @@ class FrankaPlant(RealPlant):
             problem = f"{self.host}: {_in_words(error)}"
             raise InvalidInputError("host", problem, self.host) from error
         self._robot = robot
-        self._fault = None
-        self._motion = _Motion(np.array(self._state.q))
+        self._links = _sockets() - before
 
     @property
     def period(self) -> float:
@@ -128,22 +123,26 @@ class FrankaPlant(RealPlant):
 
     @property
     def posture(self) -> Vector:
-        """Measured joint angles before the run [rad], (7,); connects if need be."""
+        """Measured joint angles of the last state [rad], (7,); connects if need be."""
         self._connect()
         return np.array(self._state.q)
 
     def with_room(self, robot: Robot) -> Robot:
-        """Return a robot with limits that leave room for lost cycles and for rounding."""
+        """Return a robot with limits that leave room for lost cycles, lag and rounding."""
         acceleration = _ACCELERATION * robot.ddq_max
         lost = self.lost_cycles * PERIOD
         offset, deceleration = robot.ramps
         shrinking = np.where(deceleration < np.inf, deceleration, 0.0)
+        offset = offset + _TOLERANCE + lost * (acceleration + shrinking)
+        slower = _BRAKING * acceleration * (1.0 + offset / TANGENT)
         return replace(
             robot,
+            q_lower=robot.q_lower + self.lag,
+            q_upper=robot.q_upper - self.lag,
             dq_max=robot.dq_max - _TOLERANCE - lost * acceleration,
             ddq_max=acceleration,
             dddq_max=_JERK * robot.dddq_max,
-            ramps=np.array([offset + _TOLERANCE + lost * (acceleration + shrinking), deceleration]),
+            ramps=np.array([offset, np.where(shrinking, np.minimum(shrinking, slower), np.inf)]),
         )
 
     def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
@@ -154,8 +153,7 @@ class FrankaPlant(RealPlant):
             InvalidInputError: No robot answers, it stands elsewhere, or the robot of the run has
                 other joints or another control period.
         """
-        self.check_start(robot, q0, dt, JOINTS)
-        self._motion.commanded = np.array(q0)
+        super().start(robot, q0, dt, seed)
         self._check_model(robot)
 
     def _check_model(self, robot: Robot) -> None:
@@ -169,105 +167,101 @@ class FrankaPlant(RealPlant):
             problem = f"is not that of the arm: its last joint is {off_axis:.3g} m from the flange"
             raise InvalidInputError("robot", problem, robot)
 
-    def _wait(self) -> None:
-        """Wait for the robot's next state, if a command was sent since the last one."""
-        if not self._motion.waits:
-            return
-        self._motion.waits = False
-        before = self._state
-        try:
-            self._state, duration = self._control.readOnce()
-        except (RuntimeError, self._franka.FrankaException) as error:
-            self._fault = _in_words(error)
-            return
-        self._motion.time += duration.to_sec()
-        self._motion.commanded += PERIOD * self._motion.command
-        last = np.array(self._state.dq_d)
-        self._motion.substitutes = None
-        if _differ(last, self._motion.command) and not self._is_old(before, duration):
-            self._motion.late.append(self._motion.time)
-            previous = last - PERIOD * np.array(self._state.ddq_d)
-            self._motion.substitutes = np.array([last, previous])
-            self._motion.commanded = self._state.q_d + self._motion.offset
-
-    def _is_old(self, before: Any, duration: Any) -> bool:
-        """Test whether the state shows the commands of the state before: one is on its way yet.
-
-        A robot that has lost a command does not stay at a velocity, but at an acceleration.
-        """
-        one = duration.to_sec() < 1.5 * PERIOD
-        stayed = not _differ(self._state.dq_d, before.dq_d)
-        return one and stayed and _differ(PERIOD * np.array(before.ddq_d), 0.0)
-
-    @property
-    def q(self) -> Vector:
-        """Measured joint angles [rad], (7,), a copy."""
-        self._wait()
-        return np.array(self._state.q)
-
-    @property
-    def time(self) -> float:
-        """Time since the motion began, by the robot's clock [s]."""
-        self._wait()
-        return self._motion.time
-
-    @property
-    def substitutes(self) -> Matrix | None:
-        """Last command and the one before, (2, 7) [rad/s], if the robot lost ours; else None."""
-        self._wait()
-        return self._motion.substitutes
-
-    @property
-    def fault(self) -> str | None:
-        """Error of the robot or of the connection to it; None while there is none."""
-        return self._fault
-
-    def read(self) -> Vector:
-        """Return the commanded or the measured joint angles [rad], (7,); the first call begins."""
-        if self._control is None and self._fault is None:
-            self._begin()
-        self._wait()
-        return self._motion.commanded.copy() if self.feedback == "commanded" else self.q
-
     def _begin(self) -> None:
         """Begin a motion of joint velocities, from rest."""
+        motion = self._motion
         mode = self._franka.ControllerMode.JointImpedance
         try:
             self._control = self._robot.start_joint_velocity_control(mode)
             self._state, _ = self._control.readOnce()
         except (RuntimeError, self._franka.FrankaException) as error:
-            self._fault = _in_words(error)
-        self._motion.offset = self._motion.commanded - self._state.q_d
+            motion.fault = _in_words(error)
+        self._offset = motion.commanded - self._state.q_d
+        threading.Thread(target=self._watch, args=(motion,), daemon=True).start()
 
-    def move(self, command: Vector) -> None:
-        """Send a velocity command (7,) [rad/s] for the cycle of the last state."""
-        if self._fault is not None:
+    def _watch(self, motion: RealMotion) -> None:
+        """Shut libfranka's connection if it waits for a state that does not come."""
+        seen = -1.0
+        while self._control is not None and self._motion is motion:
+            if motion.time == seen:
+                motion.fault = f"no state of the robot for {SILENCE:g} s"
+                for link in self._links:
+                    with suppress(OSError), socket.socket(fileno=os.dup(link)) as end:
+                        end.shutdown(socket.SHUT_RDWR)
+                return
+            seen = motion.time
+            time.sleep(SILENCE)
+
+    def _receive(self) -> None:
+        """Wait for the robot's next state, and compare its own last command with ours."""
+        motion = self._motion
+        before = self._state
+        try:
+            self._state, duration = self._control.readOnce()
+        except (RuntimeError, self._franka.FrankaException) as error:
+            motion.fault = motion.fault or _in_words(error)
             return
-        self._wait()
-        self._motion.command = np.array(command)
-        self._motion.waits = True
-        self._send(self._franka.JointVelocities(self._motion.command.tolist()))
+        motion.time += duration.to_sec()
+        last = np.array(self._state.dq_d)
+        change = PERIOD * np.array(self._state.ddq_d)
+        is_taken = not _differ(last, motion.command)
+        if not is_taken and self._went_on(before, round(duration.to_sec() / PERIOD)):
+            motion.late.append(motion.time)
+            motion.substitutes = np.array([last, last - change])
+        elif is_taken and _differ(change, last - motion.previous):
+            # An earlier command that counted as lost has been taken after all.
+            motion.substitutes = np.array([last, last - change])
+        if motion.substitutes is not None:
+            motion.commanded = self._state.q_d + self._offset
+        measured = np.array(self._state.q)
+        motion.commanded = np.clip(motion.commanded, measured - self.lag, measured + self.lag)
 
-    def _send(self, command: Any) -> None:
+    def _went_on(self, before: Any, cycles: int) -> bool:
+        """Test whether the robot has gone on without a command since the state before.
+
+        It then has the velocity of constant acceleration, from that state or from our command.
+        Another one is that of an earlier command, and the last one is on its way yet.
+        """
+        motion = self._motion
+        lost = before.dq_d + cycles * PERIOD * np.array(before.ddq_d)
+        taken = motion.command + (cycles - 1) * (motion.command - motion.previous)
+        return not (_differ(self._state.dq_d, lost) and _differ(self._state.dq_d, taken))
+
+    def _send(self) -> None:
+        """Send the last command for the cycle of the last state."""
+        self._write(self._franka.JointVelocities(self._motion.command.tolist()))
+
+    def _write(self, command: Any) -> None:
         """Send libfranka's `JointVelocities`."""
         try:
             self._control.writeOnce(command)
         except (RuntimeError, self._franka.FrankaException) as error:
-            self._fault = _in_words(error)
+            self._motion.fault = self._motion.fault or _in_words(error)
 
     def stop(self) -> None:
         """End the motion and close the connection; libfranka brakes an arm that still moves."""
-        if self._control is not None and self._fault is None:
+        if self._control is not None and self.fault is None:
             self._wait()
             last = self._franka.JointVelocities([0.0] * JOINTS)
             last.motion_finished = True
-            self._send(last)
-        self._release()
+            self._write(last)
+        self._control = None
+        self._robot = None
 
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
         return {"plant": entries | {"late_s": list(self._motion.late)}}
+
+
+def _sockets() -> set[int]:
+    """Find the sockets that this process has open."""
+    found = set()
+    for entry in Path("/proc/self/fd").iterdir():
+        with suppress(OSError):  # the folder itself was open while it was read
+            if str(entry.readlink()).startswith("socket:"):
+                found.add(int(entry.name))
+    return found
 
 
 def _differ(dq: ArrayLike, other: ArrayLike) -> bool:

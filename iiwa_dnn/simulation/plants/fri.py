@@ -18,12 +18,10 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
-from iiwa_dnn.qp.program import Matrix, Vector
-from iiwa_dnn.robot import Robot
-from iiwa_dnn.simulation.plants.base import FEEDBACKS, Feedback, RealPlant
+from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.simulation.plants.base import JOINTS, Feedback, RealPlant
 from iiwa_dnn.simulation.plants.fri_messages import (
     COMMAND_ID,
-    JOINTS,
     LARGEST_MESSAGE,
     MONITORING_ID,
     PORT,
@@ -82,11 +80,6 @@ class FriClient:
     def close(self) -> None:
         """Listen no longer."""
         self._link.close()
-
-    @property
-    def is_open(self) -> bool:
-        """Test whether the client listens."""
-        return self._link.fileno() >= 0
 
     def receive(self, patience: float) -> int:
         """Take the robot's newest message; wait for one if there is none.
@@ -184,55 +177,32 @@ class FriPlant(RealPlant):
     packages: ClassVar[tuple[str, ...]] = ("protobuf",)
 
     def __init__(self, host: str = "", feedback: Feedback = "commanded", port: int = PORT) -> None:
+        super().__init__(feedback)
         self.host = host
         self.port = checks.integer("port", port, 1)
-        checks.one_of("feedback", feedback, FEEDBACKS)
-        self.feedback = feedback
         self._client: Any = None
-        self._reset()
 
-    def _reset(self) -> None:
-        """Forget the motion before."""
-        self._fault: str | None = None
-        self._commanded: Vector | None = None
-        self._velocity: Vector = np.zeros(JOINTS)
-        self._substitutes: Matrix | None = None
-        self._waits = False
-        self._periods = 0
-        self._lost = 0
-
-    def _connect(self) -> None:
+    def _connect(self) -> FriClient:
         """Wait for the robot's first message, unless this was done before.
 
         Raises:
             InvalidInputError: No robot sends messages.
             MissingDependencyError: The package protobuf is not installed.
         """
-        if self._client is None or not self._client.is_open:
+        if self._client is None:
             self._client = FriClient(self.host, self.port)
-            self._reset()
+        client: FriClient = self._client
+        return client
 
     @property
     def period(self) -> float:
         """Period of the robot's messages [s]; connects if need be."""
-        self._connect()
-        return float(self._client.period)
+        return self._connect().period
 
     @property
     def posture(self) -> Vector:
-        """Measured joint angles before the run [rad], (7,); connects if need be."""
-        self._connect()
-        return np.array(self._client.measured)
-
-    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
-        """Connect to the robot, which has to stand at joint angles `q0` (7,) [rad] already.
-
-        Raises:
-            MissingDependencyError: The package protobuf is not installed.
-            InvalidInputError: No robot sends messages, it stands elsewhere, or the robot of the run
-                has other joints or another control period.
-        """
-        self.check_start(robot, q0, dt, JOINTS)
+        """Measured joint angles of the last state [rad], (7,); connects if need be."""
+        return self._connect().measured
 
     def _begin(self) -> None:
         """Repeat the robot's position until it lets itself be commanded."""
@@ -240,80 +210,41 @@ class FriPlant(RealPlant):
         deadline = time.monotonic() + CONNECT_TIME
         while client.receive(SILENCE):
             if client.state is SessionState.COMMANDING_ACTIVE:
-                self._commanded = client.held
+                self._motion.commanded = client.held
                 return
             if client.state is SessionState.IDLE or time.monotonic() > deadline:
                 break
             client.answer(client.held)
-        self._fault = f"the robot did not let itself be commanded: {client.describe()}"
+        self._motion.fault = f"the robot did not let itself be commanded: {client.describe()}"
 
-    def _wait(self) -> None:
-        """Wait for the robot's next state, if a command was sent since the last one."""
-        if not self._waits or self._commanded is None:
-            return
-        self._waits = False
+    def _receive(self) -> None:
+        """Wait for the robot's next state, and see whether it has our last command."""
+        motion = self._motion
         client = self._client
         periods = client.receive(SILENCE)
         if not periods:
-            self._fault = f"no message from the robot for {SILENCE:g} s"
+            motion.fault = f"no message from the robot for {SILENCE:g} s"
         elif client.state is not SessionState.COMMANDING_ACTIVE:
-            self._fault = f"the robot ended the motion: {client.describe()}"
-        self._periods += periods
-        self._substitutes = None
+            motion.fault = f"the robot ended the motion: {client.describe()}"
+        motion.time += periods * client.period
         if periods > 1 or not client.is_confirmed:
-            self._lost += 1
-            self._substitutes = np.zeros((2, JOINTS))
+            motion.late.append(motion.time)
+            motion.substitutes = np.zeros((2, JOINTS))
         if not client.is_confirmed:
-            self._commanded = self._commanded - client.period * self._velocity
+            motion.commanded = motion.commanded - client.period * motion.command
 
-    @property
-    def q(self) -> Vector:
-        """Measured joint angles [rad], (7,), a copy."""
-        self._wait()
-        return np.array(self._client.measured)
-
-    @property
-    def time(self) -> float:
-        """Time since the motion began, by the robot's count of periods [s]."""
-        self._wait()
-        return float(self._periods * self._client.period)
-
-    @property
-    def substitutes(self) -> Matrix | None:
-        """Zeros (2, 7) [rad/s], if the robot kept its position for lack of a command; else None."""
-        self._wait()
-        return self._substitutes
-
-    @property
-    def fault(self) -> str | None:
-        """Reason for which the robot can no longer be commanded; None while it can."""
-        return self._fault
-
-    def read(self) -> Vector:
-        """Return the commanded or the measured joint angles [rad], (7,); the first call begins."""
-        if self._commanded is None and self._fault is None:
-            self._begin()
-        self._wait()
-        if self._commanded is None or self.feedback == "measured":
-            return self.q
-        return self._commanded.copy()
-
-    def move(self, command: Vector) -> None:
-        """Send the joint positions after a period of a velocity command (7,) [rad/s]."""
-        self._wait()
-        if self._fault is not None or self._commanded is None:
-            return
-        self._velocity = np.array(command)
-        self._commanded = self._commanded + self._client.period * self._velocity
-        self._waits = True
-        self._client.answer(self._commanded)
+    def _send(self) -> None:
+        """Send the joint positions after a period of the last command."""
+        self._client.answer(self._motion.commanded)
 
     def stop(self) -> None:
         """Answer no longer: the robot keeps its last commanded position."""
-        self.move(np.zeros(JOINTS))
-        self._client.close()
+        if self._client is not None:
+            self.move(np.zeros(JOINTS))
+            self._client.close()
+        self._client = None
 
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""
         entries = {"name": "fri", "host": self.host, "feedback": self.feedback}
-        return {"plant": entries | {"lost_commands": self._lost}}
+        return {"plant": entries | {"lost_commands": len(self._motion.late)}}

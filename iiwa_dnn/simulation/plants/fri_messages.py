@@ -18,9 +18,6 @@ MONITORING_ID = 0x245142
 COMMAND_ID = 0x34001
 """Identifier of a command message to an LBR arm."""
 
-JOINTS = 7
-"""Number of joints of an LBR arm."""
-
 PORT = 30200
 """UDP port at which a client listens."""
 

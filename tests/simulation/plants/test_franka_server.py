@@ -34,7 +34,8 @@ PACKAGES = (
 PORT = 1337  # the only one that libfranka asks
 HOST = "127.0.0.1"
 ROBOT = iiwa_dnn.load_robot("fr3")
-LIMITS = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
+TIP_SPEED = iiwa_dnn.TipSpeedLimit(iiwa_dnn.FrankaPlant.tip_speed)
+LIMITS = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(), TIP_SPEED)
 
 # The server's velocity servo is explicit at 1 kHz: with less inertia it is not stable.
 MODEL = """
@@ -171,6 +172,54 @@ def test_no_path_ends_in_a_reflex(server: Any, name: str, tmp_path: Path) -> Non
         assert record.action is None or not record.action[20:].any()
 
 
+def test_an_obstacle_in_the_way_is_not_touched(server: Any) -> None:
+    start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
+    ball = iiwa_dnn.Sphere(start.position + [0.0, 0.25, 0.0], 0.08)
+    avoidance = iiwa_dnn.CollisionAvoidance([ball], distance=0.03)
+    line = iiwa_dnn.Line((0.0, 0.25, 0.0), period=3.0)
+    _, run = prepared(line, limits=[avoidance], duration=2.0)
+    record = run.run()
+    assert record.settings["status"] == "completed"
+    assert record.distance is not None
+    assert 0.02 < record.distance.min() < 0.06  # it came near, by the encoders
+
+
+def test_a_hand_that_jumps(server: Any) -> None:
+    start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
+    hand = iiwa_dnn.MovingTarget(start, speed=0.4, rate=1.0)
+    _, run = prepared(hand, duration=2.0)
+    rng = np.random.default_rng(1)
+    for k in range(8):
+        goal = start.position + rng.uniform(-0.15, 0.15, 3)
+        threading.Timer(0.2 * k + 1.0, hand.set, [goal]).start()
+    record = run.run()
+    assert record.settings["status"] == "completed"
+    assert np.ptp(record.position, axis=0).max() > 0.05
+    assert not [line for line in failures(record) if "limit broken" in line]
+
+
+def test_the_arm_takes_the_next_client_after_one_was_killed(server: Any) -> None:
+    program = [
+        "import iiwa_dnn, numpy as np",
+        f"plant = iiwa_dnn.FrankaPlant({HOST!r})",
+        "robot = iiwa_dnn.load_robot('fr3')",
+        "plant.start(robot, plant.posture, 1e-3, 0)",
+        "for k in range(100_000):",
+        "    plant.read()",
+        "    plant.move(np.full(7, min(1e-5 * k, 0.01)))",
+        "    print(plant.fault, flush=True)",
+    ]
+    command = [sys.executable, "-c", "\n".join(program)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as client:
+        assert client.stdout is not None
+        lines = [client.stdout.readline() for _ in range(200)]
+        client.kill()
+    assert lines[-1] == "None\n"
+    time.sleep(2.0)
+    _, run = prepared(duration=0.3)
+    assert run.run().settings["status"] == "completed"
+
+
 def test_ctrl_c_brakes_and_the_record_is_there(server: Any) -> None:
     _, run = prepared(Jumps(0.0), duration=5.0)
     threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
@@ -191,6 +240,19 @@ def test_a_reflex_is_the_reports_first_line(server: Any) -> None:
     time.sleep(1.5)
     pylibfranka.Robot(HOST, pylibfranka.RealtimeConfig.kIgnore).automatic_error_recovery()
     time.sleep(1.5)
+
+
+def test_a_silent_server_ends_the_run(server: Any) -> None:
+    _, run = prepared(duration=5.0)
+    threading.Timer(1.0, server.send_signal, [signal.SIGSTOP]).start()
+    began = time.monotonic()
+    record = run.run()
+    server.send_signal(signal.SIGCONT)
+    assert time.monotonic() - began < 15.0
+    assert record.settings["status"].startswith("stopped at step")
+    assert "\n" not in record.settings["status"]
+    assert record.steps > 10
+    time.sleep(3.0)
 
 
 def test_a_killed_server_ends_the_run_and_a_missing_one_is_named(server: Any) -> None:
