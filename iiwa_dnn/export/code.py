@@ -316,11 +316,12 @@ def _move_function(
     calls = []
     for number, (first, points, velocity) in enumerate(motions, 1):
         still = translator.table(f"points_{number}", points)
-        rate = translator.table(f"velocity_{number}", velocity)
-        shifted = _array("shifted", points.size)
-        made = translator.function(shift_points, [still, rate, Value(DOUBLE, "t"), shifted])
+        shift = _array(f"shift_{number}", 3)
+        made = translator.function(shift_points, [still, shift, _array("shifted", points.size)])
         assert made is not None
-        calls.append(f"    {made.name}({still.text}, {rate.text}, t, constants + {first});")
+        moved = ", ".join(f"t * {rate!r}" for rate in velocity.tolist())
+        calls.append(f"    const double {shift.text}[3] = {{{moved}}};")
+        calls.append(f"    {made.name}({still.text}, {shift.text}, constants + {first});")
     values = {"calls": "\n".join(calls), "size": size}
     return filled("moving.c", values) if motions else ""
 

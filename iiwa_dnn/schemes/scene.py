@@ -63,11 +63,8 @@ class Scene(NamedTuple):
     def move(self, constants: Vector, t: float) -> None:
         """Bring the moving obstacles in a copy of `constants`, (k,), to a time [s]."""
         for obstacle, part in self.moving:
-            if obstacle.motion is None:
-                points = self.constants[part].reshape(-1, 3)
-                shift_points(points, np.array(obstacle.velocity), t, constants[part])
-            else:
-                constants[part] = (obstacle.points + obstacle.shift(t)).ravel()
+            points = self.constants[part].reshape(-1, 3)
+            shift_points(points, obstacle.shift(t), constants[part])
 
     def nearest(self, q: Matrix, t: Vector) -> tuple[Vector, NDArray[np.int64]]:
         """Compute the least distance [m] of all pairs, (k,), and the index of its pair, (k,).
@@ -88,11 +85,11 @@ class Scene(NamedTuple):
 
 
 @compiled
-def shift_points(points: Matrix, velocity: Vector, t: float, shifted: Vector) -> None:
-    """Write points (k, 3) [m] that moved with a velocity (3,) [m/s] for a time into `shifted`."""
+def shift_points(points: Matrix, shift: Vector, shifted: Vector) -> None:
+    """Write points (k, 3) [m], displaced by a shift (3,) [m], into `shifted` (3 k,)."""
     for k in range(points.shape[0]):
         for i in range(3):
-            shifted[3 * k + i] = points[k, i] + t * velocity[i]
+            shifted[3 * k + i] = points[k, i] + shift[i]
 
 
 class Damper(NamedTuple):
