@@ -11,7 +11,8 @@ from functools import partial
 from pathlib import Path
 
 from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
-from iiwa_dnn.studies.atlas_report import SOLVED, of_every_disturbance, places
+from iiwa_dnn.studies.atlas import SOLVED
+from iiwa_dnn.studies.atlas_report import of_every_disturbance, places
 
 KINDS = {"none": ("o", "0.0"), "constant": ("s", "tab:red"), "white": ("^", "tab:blue")}
 """Marker and color of each disturbance."""

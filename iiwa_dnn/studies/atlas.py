@@ -63,6 +63,9 @@ SHARES = (0.05, 0.15, 0.4, 0.95)
 PERIODS = (4e-3, 2e-3, 1e-3, 5e-4)
 """Control periods [s] against which the order of a formula is found."""
 
+SOLVED = 1e-9
+"""Residual below which a program counts as solved."""
+
 UNLIMITED = 1e9
 """Operations a control period that allow any number of evaluations."""
 
@@ -333,15 +336,19 @@ def gain_cells(size: Size) -> list[dict[str, Any]]:
 def best_gains(
     cells: Iterable[Settings], results: Iterable[Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
-    """Choose each network's ``share`` and ``most``: those with the smallest residual."""
-    best: dict[str, float] = {}
+    """Choose each network's ``share`` and ``most``: those with the smallest residual.
+
+    Of those that solve the program, and of equals, it is the largest share with all evaluations.
+    """
+    best: dict[str, tuple[float, float, bool]] = {}
     gains = {}
     for settings, result in zip(cells, results, strict=True):
         name = settings["network"]
         residual = result["residual"][0]
-        found = np.inf if residual is None else residual
-        if name not in best or found < best[name]:
-            best[name] = found
+        found = np.inf if residual is None else max(residual, SOLVED)
+        key = (found, -settings["share"], settings["most"] is not None)
+        if name not in best or key < best[name]:
+            best[name] = key
             gains[name] = {"share": settings["share"], "most": settings["most"]}
     return gains
 

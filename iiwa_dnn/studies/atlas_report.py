@@ -16,7 +16,7 @@ from iiwa_dnn.files import write_text
 from iiwa_dnn.results.markdown import number, save_markdown
 from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
 from iiwa_dnn.results.publication import Table
-from iiwa_dnn.studies.atlas import MEASURES, UNLIMITED, Size, find_network, of_league
+from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Size, find_network, of_league
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 Row = Mapping[str, Any]
 PAPER = "projection (the paper's)"
-SOLVED = 1e-9
-"""Residual below which a program counts as solved."""
 MARGIN = 0.01
 """Difference of the decimal logarithms below which two networks are equal, 2.3 %."""
 

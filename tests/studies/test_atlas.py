@@ -115,7 +115,7 @@ def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
             state = state + share * limit * rates(state)
             if k >= 600:
                 sizes.append(np.linalg.norm(rates(state)))
-        assert bool(sizes[-1] < sizes[0]) is nearer
+        assert bool(sizes[-1] < max(sizes[0], 1e-9)) is nearer  # below that it is rounding
 
 
 @pytest.mark.parametrize("name", sorted(atlas.NETWORKS))
@@ -299,6 +299,9 @@ def test_each_networks_gain_is_the_best_of_the_same_shares() -> None:
     found = atlas.best_gains(cells, [{"residual": residual} for residual in residuals])
     assert found["dual"] == {"share": atlas.SHARES[1], "most": 1}
     assert found["ADMM (OSQP)"] == {"share": atlas.SHARES[-1], "most": None}
+    solved = [[1e-15], [1e-16], [2e-15], [1e-14], [None], [4.0], [1e-12], [1e-17], [None]]
+    found = atlas.best_gains(cells, [{"residual": residual} for residual in solved])
+    assert found["dual"] == {"share": atlas.SHARES[-1], "most": None}, "rounding decides nothing"
 
 
 def test_formulas_have_their_orders_against_the_control_period() -> None:
