@@ -20,7 +20,7 @@ KINDS = {"none": ("o", "0.0"), "constant": ("s", "tab:red"), "white": ("^", "tab
 
 def figure(rows):
     """Draw a line for each network, the best at the top, and a marker for each disturbance."""
-    names = list(places(rows))[::-1]
+    names = [name for name in places(rows) if _finished(rows, name)][::-1]
     drawn = new_figure(COLUMN, 0.6 + 0.2 * len(names))
     axis = drawn.subplots()
     for height, name in enumerate(names):
@@ -34,6 +34,11 @@ def figure(rows):
     axis.set_xlabel("RMS KKT residual")
     axis.legend(loc="lower left", fontsize=6)
     return drawn
+
+
+def _finished(rows, name):
+    """Test whether any run of a network was carried out."""
+    return any(row["mean"]["residual"] is not None for row in of_every_disturbance(rows, name))
 
 
 if __name__ == "__main__":
