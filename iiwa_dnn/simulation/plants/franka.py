@@ -171,18 +171,18 @@ class FrankaPlant(RealPlant):
         """Begin a motion of joint velocities, from rest."""
         motion = self._motion
         mode = self._franka.ControllerMode.JointImpedance
+        threading.Thread(target=self._watch, args=(motion,), daemon=True).start()
         try:
             self._control = self._robot.start_joint_velocity_control(mode)
             self._state, _ = self._control.readOnce()
         except (RuntimeError, self._franka.FrankaException) as error:
-            motion.fault = _in_words(error)
+            motion.fault = motion.fault or _in_words(error)
         self._offset = motion.commanded - self._state.q_d
-        threading.Thread(target=self._watch, args=(motion,), daemon=True).start()
 
     def _watch(self, motion: RealMotion) -> None:
         """Shut libfranka's connection if it waits for a state that does not come."""
         seen = -1.0
-        while self._control is not None and self._motion is motion:
+        while self._robot is not None and self._motion is motion:
             if motion.time == seen:
                 motion.fault = f"no state of the robot for {SILENCE:g} s"
                 for link in self._links:
@@ -208,9 +208,9 @@ class FrankaPlant(RealPlant):
         if not is_taken and self._went_on(before, round(duration.to_sec() / PERIOD)):
             motion.late.append(motion.time)
             motion.substitutes = np.array([last, last - change])
-        elif is_taken and _differ(change, last - motion.previous):
+        elif is_taken and motion.previous.any() and _differ(change, last - motion.previous):
             # An earlier command that counted as lost has been taken after all.
-            motion.substitutes = np.array([last, last - change])
+            motion.substitutes = np.array([motion.command, motion.command - change])
         if motion.substitutes is not None:
             motion.commanded = self._state.q_d + self._offset
         measured = np.array(self._state.q)
