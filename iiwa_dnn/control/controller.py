@@ -416,8 +416,10 @@ class Controller:
         start = Configuration(self.robot, posture)
         begun = state.begun
         self.anchor(start)
-        if not begun and target is None:
-            self.warn_if_far(start, t, stacklevel=5)
+        if not begun:
+            warn_if_lagging(self.program, self.mode, stacklevel=4)
+            if target is None:
+                self.warn_if_far(start, t, stacklevel=5)
         return self._laid_out()
 
     def _laid_out(self) -> tuple[ControlStep, Cascade]:
@@ -519,7 +521,6 @@ class Controller:
         state.past[Q] = start.q
         if not state.begun:
             warn_if_unstable(self.program, self.dt, stacklevel=5)
-            warn_if_lagging(self.program, self.mode, stacklevel=5)
         state.begun = True
 
     def warn_if_far(

@@ -38,7 +38,6 @@ def test_the_settings_of_a_run_become_c(tmp_path: Path, capsys: pytest.CaptureFi
         (["--integral-gain", "3"], "--integral-gain"),
         (["--filter-window", "5"], "--filter-window"),
         (["--motion", "rk4"], "--motion"),
-        (["--kinetic", "inertia"], "inertia matrix"),
     ],
 )
 def test_what_is_no_part_of_a_controller_is_refused(

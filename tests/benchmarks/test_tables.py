@@ -22,9 +22,13 @@ def test_public_calls_are_timed(
 def test_every_kind_of_step_is_timed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(rates, "STEPS", 40)
-    monkeypatch.setattr(rates, "FIRST", 10)
-    rates.main()
+    found = rates.cases()
+    some = {name: found[name] for name in ("the heart", "a limit active", "jumps")}
+    assert len(found) == 26
+    monkeypatch.setattr(rates, "cases", lambda: some)
+    rates.main(40)
     rows = [line.strip("| ").split(" | ") for line in capsys.readouterr().out.splitlines()[2:]]
-    assert len(rows) == 9
-    assert all(0.0 < float(median) <= float(p99) for _, median, p99 in rows)
+    assert [row[0].strip() for row in rows] == [*some, "only the clock"]
+    for _, _, *words in rows:
+        times = [float(word) for word in words]
+        assert 0.0 <= times[0] <= times[1] <= times[2] <= times[3]
