@@ -559,9 +559,10 @@ class Controller:
             twin.step(home, 0.0, poses)
         if self.reference is not None:
             twin.step(home, 0.0)
-        if self.mode == "converged":  # and a target that no arm reaches
+        if self.mode == "converged":  # and a target that no arm reaches, once and again
             twin.policy = "relax"
             far = {name: Target(at.position + 99.0, at.rotation) for name, at in frames.items()}
+            twin.step(home, 0.0, far)
             twin.step(home, 0.0, far)
         if q is not None:
             self._prepare(q, t, None if self.reference is not None else {})

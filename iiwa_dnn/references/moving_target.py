@@ -79,6 +79,7 @@ class MovingTarget(Reference):
                 positive(name, getattr(self, name))
             positive("jerk", 1.0 if jerk is None else jerk)
             self._ruckig = import_extra("ruckig", "pip install ruckig")
+            jacobian_rate((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))  # compiled now, not in a step
         elif jerk is not None:
             raise InvalidInputError("jerk", "needs an acceleration beside it", jerk)
         self._goal = Target(pose.position, pose.rotation)
