@@ -189,7 +189,7 @@ class Controller:
             with self._lock:
                 if dq is not None:
                     self._measure(dq)
-                estimator = None if self.estimator is None else self._next_estimator(self.estimator)
+                estimator = self._next_estimator()
                 if estimator is not None:
                     q = estimator.update(checks.finite_array("q", q, (self.robot.dof,)))
                     t += estimator.model.delay * self.dt
@@ -225,9 +225,11 @@ class Controller:
         self._state.delay += self.dt * (1.0 - fraction)
         self._state.commit()
 
-    def _next_estimator(self, model: NoiseModel) -> JointEstimator:
-        """Return a copy of the estimator, since a step may be broken off, or begin one."""
-        return copy.copy(self._state.estimator or JointEstimator(model, self.dt))
+    def _next_estimator(self) -> JointEstimator | None:
+        """Return a copy of the estimator, since a step may be broken off; None if there is none."""
+        if self.estimator is None:
+            return None
+        return copy.copy(self._state.estimator or JointEstimator(self.estimator, self.dt))
 
     def _compute(
         self,
@@ -250,8 +252,7 @@ class Controller:
             layout.targets(row)[:] = self.targets(t - state.delay, target)
             begin = max(begin, WRITE)
         program = step.program
-        if program.moving:
-            program.move(t)
+        program.move(t)
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
