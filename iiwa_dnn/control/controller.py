@@ -239,7 +239,7 @@ class Controller:
     ) -> Command:
         derived = self._derived
         if derived is None or derived[0].version != self.solver.version:
-            derived = self._prepare(q, t, target)
+            derived = self._prepare(q, t, target is None)
         step = derived[0]
         layout = step.layout
         state = self._state
@@ -407,10 +407,11 @@ class Controller:
             raise InvalidInputError("dq", "is for schemes of the acceleration level", dq)
         self._state.past[LAST] = checks.finite_array("dq", dq, (program.robot.dof,))
 
-    def _prepare(
-        self, q: ArrayLike, t: float, target: Target | Mapping[str, Target] | None
-    ) -> tuple[ControlStep, Cascade]:
-        """Anchor the scheme, and at the first step warn of a start that is most likely wrong."""
+    def _prepare(self, q: ArrayLike, t: float, own: bool) -> tuple[ControlStep, Cascade]:
+        """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
+
+        `own` says that the targets are the reference's.
+        """
         state = self._state
         posture = checks.finite_array("q", q, (self.robot.dof,))
         start = Configuration(self.robot, posture)
@@ -418,7 +419,7 @@ class Controller:
         self.anchor(start)
         if not begun:
             warn_if_lagging(self.program, self.mode, stacklevel=4)
-            if target is None:
+            if own:
                 self.warn_if_far(start, t, stacklevel=5)
         return self._laid_out()
 
@@ -565,7 +566,7 @@ class Controller:
             twin.step(home, 0.0, far)
             twin.step(home, 0.0, far)
         if q is not None:
-            self._prepare(q, t, None if self.reference is not None else {})
+            self._prepare(q, t, self.reference is not None)
 
     def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
         """Return the targets of a time of the reference's clock [s], (k, 18), or those given.
