@@ -142,9 +142,12 @@ def test_views_turn_the_camera_of_this_browser(browser, session):
             beside = np.linalg.norm(np.array(camera.look_at) - tip)
             return bool(sight @ unit > 0.99 * distance > 0.1 and beside < 0.25 * distance)
 
+        def opaque(expected=SEEN_THROUGH if view == "top" else None) -> bool:
+            return {shape.opacity for shape in session.stage._shapes} == {expected}
+
         assert wait_for(looks, f"the view {view!r}")
-        opacity = {shape.opacity for shape in session.stage._shapes}
-        assert opacity == ({None} if view == "side" else {SEEN_THROUGH})
+        # Set after the camera, by the page's own thread.
+        assert wait_for(opaque, f"the arm's opacity in the view {view!r}")
     click(browser, "arm")
     assert wait_for(
         lambda: np.allclose([camera.position, camera.look_at], first, atol=1e-3), "the first view"
