@@ -398,7 +398,8 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
         lacking = 0.5 * bounds.second_order
         for end in (point_of(ends, at), point_of(ends, at + 1)):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
-            height = dot(difference(end, contact.second), normal)
+            # No end is below the nearest point, but rounding would hold an arm that is too near.
+            height = max(0.0, dot(difference(end, contact.second), normal))
             change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
         if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
             _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)

@@ -543,9 +543,47 @@ def _slow_down(
         rest: float = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
         if rest >= 0.0:
             return rest
+    if held_rows(yielding.weights) == 0 and _go_away(qp, instant.last, x[:dof]):
+        rest = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
+        if rest >= 0.0:
+            return rest
     for i in range(dof):
         x[i] = braking_command[i]
     return left
+
+
+@compiled
+def _go_away(qp: QPViews, last: Vector, dq: Vector) -> bool:
+    """Write the command dq (dof,) that goes straight away from what is too near.
+
+    A row stands for the nearest point of a link. Where the link lies along an obstacle, what the
+    softened program asks for may lead another of its points nearer, and would hold the arm there.
+    The arm sets off along the rows' gradients, and goes on in the direction of its last command.
+
+    Returns:
+        False if no row asks for a retreat, or the bounds allow none in that direction.
+    """
+    moving = 0.0
+    near = 0
+    for j in range(qp.h.size):
+        near += qp.h[j] < -REACHED
+    for i in range(dq.size):
+        moving += abs(last[i])
+    least = 0.0
+    most = np.inf
+    for i in range(dq.size):
+        dq[i] = last[i]
+        for j in range(qp.h.size):
+            if moving == 0.0 and qp.h[j] < -REACHED:
+                dq[i] -= qp.G[j, i]
+        if dq[i] != 0.0:
+            least = max(least, min(qp.lb[i] / dq[i], qp.ub[i] / dq[i]))
+            most = min(most, max(qp.lb[i] / dq[i], qp.ub[i] / dq[i]))
+    if near == 0 or not least <= most < np.inf:
+        return False
+    for i in range(dq.size):
+        dq[i] *= most
+    return True
 
 
 @compiled

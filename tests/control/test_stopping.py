@@ -9,6 +9,7 @@ import pytest
 
 from iiwa_dnn import (
     AccelerationLimits,
+    Capsule,
     CollisionAvoidance,
     Configuration,
     Controller,
@@ -152,6 +153,31 @@ def test_an_arm_that_obstacles_came_upon_goes_away_from_them(limits: tuple[Limit
         path.append(q)
     assert scene.nearest(np.array(path), np.zeros(len(path)))[0].min() >= near - 1e-9
     assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
+
+
+@pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
+def test_an_arm_beside_which_an_obstacle_lies_goes_away_from_it(limits: tuple[Limit, ...]) -> None:
+    # A hand along a capsule stayed there: its nearest point went away, others came nearer.
+    robot = load_robot("panda").with_limits(acceleration=10.0)
+    q = np.array([0.505, -0.875, 0.621, -2.218, 0.223, 1.534, 1.903])
+    capsule = Capsule([0.133, 0.415, 0.308], [0.15, 0.235, 0.695], 0.05)
+    avoidance = CollisionAvoidance([capsule], distance=0.02, self_collision=False)
+    scene = avoidance.scene(robot)
+    assert scene.nearest(q[None], np.zeros(1))[0][0] < -5e-3
+    home = Configuration(robot, robot.start_posture())
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*limits, avoidance))
+    controller = Controller(robot, scheme, dt=4e-3)
+    target = Target(home.position, home.rotation)
+    path = [q]
+    for k in range(1500):
+        q = q + 4e-3 * controller.step(q, 4e-3 * k, target).dq
+        path.append(q)
+    distances, _ = scene.nearest(np.array(path), np.zeros(len(path)))
+    assert np.diff(distances[distances < 0.02]).min() > -1e-9
+    assert np.linalg.norm(Configuration(robot, q).position - home.position) < 1e-3
+    jerk = 500.0 if len(limits) == 2 else np.inf
+    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, jerk)
+    assert breaches(np.array(path), 4e-3, *kinds) == []
 
 
 def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
