@@ -69,6 +69,34 @@ def test_h_is_the_damper_without_a_control_period() -> None:
     assert (4.0 * (distances - 0.02) >= np.abs(qp.G) @ ROBOT.dq_max - 1e-9)[idle].all()
 
 
+def test_with_a_control_period_h_is_the_theorems() -> None:
+    # The wall is shifted; what a step may take, eps, does not depend on the distance of a wall.
+    dt, gain, promised = 0.02, 4.0, 0.02
+    step = iiwa_dnn.Step(ROBOT, ROBOT.start_posture(), dt=dt)
+
+    def wall(offset: float) -> iiwa_dnn.CollisionAvoidance:
+        plane = iiwa_dnn.HalfSpace([-1.0, 0.0, 0.0], offset)
+        return iiwa_dnn.CollisionAvoidance(
+            [plane], self_collision=False, distance=promised, gain=gain
+        )
+
+    far = wall(-1.0)
+    distances = pair_distances_at(far, ROBOT, step.q)
+    pair = int(distances.argmin())
+
+    def row(spare: float) -> float:
+        """Return h where the pair is so much farther away than what is promised."""
+        _, h = wall(-1.0 + distances[pair] - promised - spare).inequalities(step)
+        return float(h[pair])
+
+    eps = -dt * row(0.0)
+    assert eps > 1e-3
+    assert row(0.5 * eps) == pytest.approx(-0.5 * eps / dt, rel=1e-9)
+    assert row(eps) == pytest.approx(0.0, abs=1e-12)
+    assert row(eps + 5e-3) == pytest.approx(gain * 5e-3, rel=1e-9)
+    assert row(-1e-3) == pytest.approx(-eps / dt - gain * 1e-3, rel=1e-9)
+
+
 def test_no_acceleration_is_above_its_bound() -> None:
     random, joint, h = np.random.default_rng(1), 7, 1e-4
     point = np.array([0.02, -0.03, 0.06])
