@@ -1,11 +1,14 @@
 """``export``: the controller of a run as C99."""
 
+import sys
 from typing import Any
+
+import numpy as np
 
 from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import ExportOptions
-from iiwa_dnn.app.track import arm, simulation
+from iiwa_dnn.app.track import arm, beyond_data_sheet, simulation
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export import c99
 
@@ -25,6 +28,8 @@ def run(options: ExportOptions) -> int:
     folder = claim_folder(options)
     c99(controller, folder, q0)
     save_settings(options, folder)
+    if beyond := beyond_data_sheet(options, np.array([robot.q_lower, robot.q_upper])):
+        print(beyond, file=sys.stderr)
     lines = (folder / "controller.c").read_text(encoding="utf-8").count("\n")
     print_lines(options, f"written to {folder}: {lines} lines of C; to test them: make -C {folder}")
     return 0

@@ -17,7 +17,7 @@ from iiwa_dnn.app.options import Check, PlantName, TrackOptions
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp.crosscheck import CrossCheck
-from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.references import (
     Circle,
     Cone,
@@ -133,15 +133,33 @@ def run(options: TrackOptions) -> int:
     return draw(options, simulation(options, plant.with_room(robot), q0, plant))
 
 
+def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
+    """State by how much the paper's limits let joint positions (k, n) [rad] leave the data sheet's.
+
+    Empty if they do not, or if limits were asked for.
+    """
+    if options.joint_limit is not None:
+        return ""
+    sheet = load_robot(options.robot, locked=options.lock)
+    problem = sheet.outside(q.max(axis=0)) or sheet.outside(q.min(axis=0))
+    if not problem:
+        return ""
+    return (
+        f"by the data sheet joint positions {problem}; the paper's limits are wider: for a real "
+        "arm take --joint-limit datasheet"
+    )
+
+
 def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
     """Return the options with what was left to their defaults as a real arm needs it.
 
-    The start is the measured posture, the control period the robot's, and limits of acceleration,
-    jerk and the tip's speed are the robot's, where it has such limits.
+    The start is the measured posture, the control period the robot's, and limits of position,
+    acceleration, jerk and the tip's speed are the robot's, where it has such limits.
     """
     robot, _ = arm(options)
     own: dict[str, Any] = {
         "q0": tuple(plant.posture.tolist()),
+        "joint_limit": "datasheet",
         "dt": plant.period,
         "acceleration_limit": "robot" if np.isfinite(robot.ddq_max).all() else None,
         "jerk_limit": "robot" if np.isfinite(robot.dddq_max).all() else None,
@@ -279,6 +297,8 @@ def draw(
         signal.raise_signal(simulation.interrupt)
     reasons = failures(record)
     if not options.quiet:
+        if beyond := beyond_data_sheet(options, record.q):
+            print(beyond, file=sys.stderr)
         shown = [settings_lines(metrics)] if options.verbose else []
         print_lines(options, *shown, summary(metrics, reasons), f"written to {folder}")
     elif reasons:

@@ -108,12 +108,15 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
 
 
 def _needed(needed: Mapping[str, Any] | None) -> str:
-    """State what would have sufficed, rounded up; nothing if that is not known."""
+    """State what would have sufficed, 2 % and more above it; nothing if that is not known."""
     if needed is None:
         return ""
-    ratio = np.ceil(100.0 * needed["speed_ratio"]) / 100.0
+    ratio = np.ceil(10.0 * 1.02 * needed["speed_ratio"]) / 10.0
     time = np.ceil(10.0 * needed["time_s"]) / 10.0
-    return f"; needs {ratio:g} times the speed of joint {needed['joint']}, or about {time:g} s"
+    return (
+        f"; needs {ratio:g} times the speed of joint {needed['joint']}, or {ratio:g} times as long "
+        f"a time; slowed as here it ends after about {time:g} s"
+    )
 
 
 def _blocking(metrics: Mapping[str, Any]) -> str:

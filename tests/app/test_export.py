@@ -22,7 +22,9 @@ def test_the_settings_of_a_run_become_c(tmp_path: Path, capsys: pytest.CaptureFi
     folder = tmp_path / "controller"
     words = ["export", "--settings", str(settings), "--out", str(folder), "--speed", "0.5"]
     assert main(words) == 0
-    assert f"written to {folder}: " in capsys.readouterr().out
+    captured = capsys.readouterr()
+    assert f"written to {folder}: " in captured.out
+    assert "--joint-limit datasheet" in captured.err
     exported = load(folder, ("-std=c99", "-O0"))
     assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)
     assert "circle" in (folder / "README.md").read_text(encoding="utf-8")

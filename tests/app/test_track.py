@@ -77,6 +77,23 @@ def test_a_run_writes_record_metrics_report_and_figures(
     assert all(f"({figure}.png)" in report for figure in figures)
 
 
+def test_a_run_beyond_the_data_sheets_limits_is_told_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # The heart's joints stay inside; these go to 2.118 rad, within the paper's 2.5.
+    words = ["--reference", "circle", "--radius", "0.08", "--period", "5", "--dt", "5e-3"]
+    words += ["--no-plots", "--check", "none", "--out"]
+    assert call([*words, str(tmp_path / "papers")]) == 0
+    said = capsys.readouterr().err
+    assert "joint 4 is at 2.11" in said
+    assert "--joint-limit datasheet" in said
+    assert call([*words, str(tmp_path / "own"), "--joint-limit", "2.5"]) == 0
+    assert capsys.readouterr().err == ""
+    call([*words, str(tmp_path / "sheet"), "--joint-limit", "datasheet"])
+    arrays, _ = results(tmp_path / "sheet")
+    assert arrays["q"][:, 3].max() <= 2.0944 + 1e-5
+
+
 def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call([*QUICK, "--quiet", "--out", str(tmp_path)]) == 0
     captured = capsys.readouterr()

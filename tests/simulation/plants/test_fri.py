@@ -13,7 +13,7 @@ import pytest
 
 from helpers_fri import Network, free_port, read_command, write_command
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
-from iiwa_dnn import DoubleIndicator, FriPlant, InvalidInputError, export, simulate
+from iiwa_dnn import DoubleIndicator, FriPlant, InvalidInputError, export, load_robot, simulate
 from iiwa_dnn.app import track as app_track
 from iiwa_dnn.app.main import run
 from iiwa_dnn.control.controller import Controller
@@ -243,6 +243,7 @@ def test_track_takes_start_period_and_limits_from_the_robot(port, tmp_path, monk
     assert record.settings["dt"] == 5e-3
     assert record.settings["q0"] == paper_start().q.tolist()
     assert record.settings["plant"]["lost_commands"] == 0
+    assert record.settings["q_upper"] == load_robot("iiwa7").q_upper.tolist()
     speeds = np.diff(np.array(robot.commanded), axis=0) / 5e-3
     accelerations = np.abs(np.diff(speeds, axis=0)) / 5e-3
     assert (accelerations <= paper_robot().ddq_max * (1 + 1e-6)).all()
