@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -88,7 +90,7 @@ def equilibrium(qp: QP) -> Array:
 def test_with_the_primal_projection_there_is_a_lyapunov_function(
     network: Network, dependent: bool
 ) -> None:
-    """rho dV/dt <= -|x - r_x|_P^2 - |x - x*|_P^2 and V >= |u - u*|^2 / 2, anywhere in Omega."""
+    """rho dV/dt <= -|x - r_x|_P^2 - |x - x*|_P^2 and V >= |u - u*|^2 / 2, anywhere in K."""
     rng = np.random.default_rng(3)
     for case in range(20):
         qp, _ = known_qp(rng, 5, 3, case % 6, dependent=dependent, inequalities=case % 4)
@@ -305,6 +307,22 @@ def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
         state = state + step * rates(state)
     assert bool(abs(state[0] - 1.0) < 1e-9) is settles
     assert settles or np.abs(state).max() > 1e20
+
+
+def test_a_multiplier_that_is_not_active_limits_the_step_too() -> None:
+    """P = 0.1 alone would allow 2 / 0.1: a passive multiplier, at rate one, grows from 2 on."""
+    qp = QP([[0.1]], [0.0], lb=[-1.0], ub=[1.0])
+    network = ProjectionNetwork()
+    start = np.array([0.0, 0.01, 0.0])
+    assert network.stable_step(qp, start) == 2.0
+    rates = network.flow(qp).rates
+    for step, grows in ((1.9, False), (2.1, True)):
+        state = start.copy()
+        for _ in range(100):
+            state = state + step * rates(state)
+        assert bool(np.abs(state).max() > start.max()) is grows
+    page = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
+    assert r"h < \min(2/\max(\pi_{\max}, 1), \pi_{\min}/s_{\max})" in page
 
 
 def followed(gain: float, frequency: float, error: float = 0.0) -> Array:

@@ -174,7 +174,7 @@ def largest_factor(qp: QPViews, yielding: Yielding, point: Vector) -> float:
         point: The scaled program's solution, (size,) = (2 n + 2 + m + p,), overwritten.
 
     Returns:
-        The factor; NaN where not even 0 is feasible.
+        The factor; NaN where not even 0 is feasible, or the network does not settle.
     """
     data = np.zeros(data_size(qp.q.size + 1, qp.h.size, qp.b.size))
     factor: float = _largest_factor(qp, yielding, data, point)

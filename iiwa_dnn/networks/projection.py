@@ -204,7 +204,8 @@ class ProjectionNetwork(Network):
         \|v\| = 1, :math:`\lambda^2 + \pi\lambda + s = 0` with :math:`\pi = v^*Pv` and
         :math:`s = \|Cv\|^2`, C being the equality rows and the active inequality rows. Euler
         stays inside its circle where the step is below 2/pi (real pair) and pi/s (complex pair),
-        so below ``min(2/max eig P, min eig P / max eig C^T C)``.
+        so below ``min(2/max eig P, min eig P / max eig C^T C)``. Multipliers that are not active
+        decay at rate one, which asks for a step below 2.
 
         Args:
             qp: The program.

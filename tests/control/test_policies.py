@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +18,7 @@ from iiwa_dnn.control import policies
 from iiwa_dnn.control.command import RowLayout, row_views
 from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.control.relaxed import (
+    BUDGET,
     DAMPING,
     DRIFT,
     FACTOR,
@@ -26,7 +29,7 @@ from iiwa_dnn.control.relaxed import (
     least_violation,
     note_blocking,
 )
-from iiwa_dnn.control.yielding import yield_step
+from iiwa_dnn.control.yielding import ATTEMPTS, yield_step
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.integrators.base import ANSWER
 from iiwa_dnn.networks.integrators.implicit import settle
@@ -422,6 +425,27 @@ def test_slow_does_not_rest_in_a_singular_pose() -> None:
     expected = [5e-3 / (1e-6 + damping + 1e-4), damping * 0.02 / (damping + 1e-4)]
     np.testing.assert_allclose(answer.solution.x, np.minimum(expected, 1.0), rtol=1e-5)
     np.testing.assert_array_equal(answer.qp.b, qp.A @ answer.solution.x)
+
+
+def test_a_scaled_program_that_does_not_settle_is_relaxed() -> None:
+    """Two rows that differ by 1e-4: the linear program has the factor 0.62, and none is found."""
+    qp = QP(
+        np.eye(2), [0.7, -0.9], A=[[0.3, 0.8], [0.3, 0.8001]], b=[0.830876, 0.831037],
+        lb=[-1.0] * 2, ub=[1.0] * 2,
+    )  # fmt: skip
+    assert np.isnan(largest_fraction(qp).fraction)
+    answer = resolve(qp, "slow")
+    assert (answer.action, answer.fraction) == (Action.SLOW, 0.1)
+    assert inside(answer.solution.x, qp)
+    relaxed = resolve(qp, "relax")
+    np.testing.assert_array_equal(answer.solution.x, relaxed.solution.x)
+
+
+def test_the_page_says_how_many_systems_a_step_takes() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "robustness.md").read_text(encoding="utf-8")
+    said = re.search(r"at most (\d+) further solves of at most (\d+) linear systems", page)
+    assert said is not None
+    assert [int(number) for number in said.groups()] == [ATTEMPTS - 1, BUDGET]
 
 
 def test_an_elastic_row_that_asks_for_too_much_is_followed_as_far_as_the_joints_can() -> None:

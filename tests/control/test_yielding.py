@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_kinematics import PAPER_Q0
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
 from iiwa_dnn import (
     AccelerationLimits,
@@ -61,6 +62,22 @@ def test_a_path_that_fits_the_limits_is_drawn_as_without() -> None:
     assert limited.action is None
     assert limited.settings["scheme"]["extra_limits"][1] == {"name": "JerkLimits", "limit": JERK}
     assert "extra_limits" not in free.settings["scheme"]
+
+
+def test_at_a_position_limit_it_is_drawn_so_to_the_solvers_tolerance() -> None:
+    """Joint 1 is held at its limit from 2.1 s on, and begins to leave it at 3.6 s."""
+    found = [
+        simulate(
+            paper_robot(), DoubleIndicator(orientation="so3", home=PAPER_Q0, extra_limits=limits),
+            Heart(scale=0.008).anchored(paper_start()), PAPER_Q0,
+            dt=2e-3, duration=4.0, check=UNCHECKED,
+        )
+        for limits in ((), LIMITS[:1])
+    ]  # fmt: skip
+    free, limited = found
+    assert limited.action is None
+    assert free.q[:, 0].min() == pytest.approx(-2.5, abs=1e-9)
+    assert np.abs(limited.dq - free.dq).max() < 2e-9
 
 
 @pytest.mark.parametrize("limits", [LIMITS, LIMITS[:1]])

@@ -77,7 +77,7 @@ MAX_NEWTON = 50
 
 @dataclass(frozen=True)
 class ImplicitEuler(Integrator):
-    """Backward Euler, of order 1, stable at any step.
+    """Backward Euler, of order 1; without the primal projection any step has one solution.
 
     Attributes:
         step: Longest step of `advance`, in units of rho.
