@@ -78,6 +78,33 @@ def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -
     assert proven >= share * count
 
 
+def held(qp: QP, x: list[Fraction]) -> list[int]:
+    """The rows and bounds that an exact point (n,) meets with equality, as in `Proof.active`."""
+    found = []
+    for value, lower, upper in zip(x, qp.lb, qp.ub, strict=True):
+        found.append(1 if value == upper else -int(value == lower))
+    for row, limit in zip(qp.G, qp.h, strict=True):
+        reached = sum(Fraction(float(entry)) * value for entry, value in zip(row, x, strict=True))
+        found.append(int(reached == limit))
+    return found
+
+
+def test_a_proven_active_set_has_all_rows_and_bounds_that_the_solution_meets() -> None:
+    """Where a row is met with a multiplier of zero, no active set is proven."""
+    proven = 0
+    for seed in range(200):
+        qp = whole_numbers(np.random.default_rng([30, seed]))
+        proof = prove(qp, DNNSolver().solve(qp))
+        if not proof.reason:
+            solved = exact.exact_solution(qp, exact.face_of(qp, proof.active))
+            assert solved is not None
+            assert proof.active.tolist() == held(qp, solved)
+            proven += 1
+    assert proven > 50
+    touching = prove(QP(np.eye(1), [0.0], ub=[0.0]), answer([0.0]))
+    assert (touching.bound < 1e-12, touching.reason) == (True, WEAK)
+
+
 def test_the_answer_of_another_solver_is_proven_as_well() -> None:
     qp, _ = known_qp(np.random.default_rng(0), 6, 2, 2, inequalities=4)
     problem = qp.to_qpsolvers()
