@@ -10,7 +10,8 @@ wanted velocity w together, in M periods. With :math:`x = v - w` and :math:`u = 
 where a jerk is limited, with b such that :math:`x_{-1}` is on the curve too, and
 :math:`x_i = x_0 (1 - u)` where it is not. The second difference of a cubic is its second derivative
 in the middle, so the jerk is linear in u and largest at an end. M is the least number of periods
-that the limits allow; a motion that is gone along keeps its M, and stays on the same curve.
+that the limits allow, or with a jerk limit up to about an eighth more; a motion that is gone along
+keeps its M, and stays on the same curve.
 
 A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
 distances: a pair at the distance d, with the gradient g of the distance and the joints' way
@@ -125,7 +126,9 @@ def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float
 
 @compiled
 def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float:
-    """Compute the least number of periods in which velocities can go to zero together.
+    """Compute the number of periods in which velocities go to zero together.
+
+    It is the least one, or with a jerk limit one that is found from below in steps of a tenth.
 
     Args:
         x: Velocities of now [rad/s], (n,).
@@ -235,7 +238,7 @@ def extremes(motion: Motion, x: float, b: float, dt: float) -> tuple[float, floa
 
 @compiled
 def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: float) -> Motion:
-    """Compute the shortest motion to rest from a command dq (n,) after the last one (n,) [rad/s].
+    """Compute the motion to rest from a command dq (n,) after the last one (n,) [rad/s].
 
     Its `bend` (n,) [rad/s] is overwritten. The limits are those of `least_periods`, dt is the
     control period [s].

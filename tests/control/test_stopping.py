@@ -33,6 +33,7 @@ from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
     sums,
+    within_rates,
 )
 from judge_limits import breaches
 
@@ -58,7 +59,7 @@ def way_to_rest(x: np.ndarray, before: np.ndarray, limits: np.ndarray, dt: float
 @pytest.mark.parametrize("dt", [1e-3, 1e-2])
 def test_a_motion_to_rest_keeps_acceleration_and_jerk(jerk: float, dt: float) -> None:
     random = np.random.default_rng(3)
-    limits = np.concatenate([np.full(9, 3.0), np.full(3, 10.0), np.full(3, jerk)])
+    limits = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
     for k in range(400):
         # Slow ones too: the last step to rest, of one period or two, was above the jerk limit.
         largest = 2.0 if k < 200 else 3.0 * min(10.0, jerk * dt) * dt
@@ -71,6 +72,25 @@ def test_a_motion_to_rest_keeps_acceleration_and_jerk(jerk: float, dt: float) ->
         if jerk < np.inf:
             rested = np.vstack([rates, np.zeros((2, 3))])
             assert (np.abs(np.diff(rested, axis=0)) / dt <= jerk * (1.0 + 1e-8)).all()
+
+
+@pytest.mark.parametrize("jerk", [np.inf, 500.0])
+def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> None:
+    random = np.random.default_rng(5)
+    dt, ratios = 1e-3, []
+    for _ in range(200):
+        x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
+        before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
+        limits = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
+        periods = least_periods(x, before, limits, dt)
+        least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
+        if jerk < np.inf:
+            pairs = list(zip(x, before, strict=True))
+            while not all(within_rates(*pair, least, 10.0 * dt, jerk * dt**2) for pair in pairs):
+                least += 1.0
+        ratios.append(periods / least)
+    assert min(ratios) == 1.0
+    assert max(ratios) <= (1.0 if jerk == np.inf else 1.125)
 
 
 @pytest.mark.parametrize("cubic", [False, True])
