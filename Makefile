@@ -62,7 +62,7 @@ bounds: $(PACKAGES)  ## enter all compiled code with every index checked
 	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -q -m "not long and not realtime" \
 		tests/control tests/networks tests/qp tests/references tests/schemes tests/test_kernels.py
 
-# In no other target: on cores with other work the server ends motions for commands that it lost.
+# Of these only a short test is in `make test`: with other work on the cores commands are lost.
 realtime: $(STAMP)  ## drive a Franka arm's server, of the package index, at 1 kHz
 	$(VENV_PYTHON) -m pytest -m realtime tests/simulation $(ARGS)
 

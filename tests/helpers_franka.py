@@ -5,6 +5,9 @@ went on with itself, against the limits of include/franka/rate_limiting.h and of
 """
 
 import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from types import SimpleNamespace
 from typing import Any
 
@@ -46,7 +49,7 @@ class Arm:
     Attributes:
         lost: Number of cycles that are lost from a command on, by its number.
         fails: Number of the command at which the robot aborts; None: it does not.
-        hangs: Number of the command after which its state never comes; None: it does.
+        states: Number of states that are sent before a motion; None: one after the other.
     """
 
     def __init__(self, q: np.ndarray, flange: np.ndarray) -> None:
@@ -56,9 +59,7 @@ class Arm:
         self.ddq = np.zeros(7)
         self.lost: dict[int, int] = {}
         self.fails: int | None = None
-        self.hangs: int | None = None
-        self.link: socket.socket | None = None
-        self.far_end: socket.socket | None = None
+        self.states: int | None = None
         self.finished = False
         self.broken: list[str] = []
         self.count = 0
@@ -78,6 +79,10 @@ class Arm:
         )
 
     def read_once(self) -> Any:
+        if self.states is not None:
+            if self.states == 0:
+                raise NetworkException("libfranka: UDP receive: Timeout")
+            self.states -= 1
         return self.state()
 
     def start_joint_velocity_control(self, mode: Any) -> "Arm":
@@ -86,10 +91,6 @@ class Arm:
     def readOnce(self) -> tuple[Any, Duration]:  # noqa: N802
         if self.fails is not None and self.count >= self.fails:
             raise ControlException('libfranka: Move command aborted!\n["test_reflex"]')
-        if self.hangs is not None and self.count >= self.hangs:
-            assert self.link is not None
-            self.link.recv(1)  # returns when it is shut
-            raise NetworkException("libfranka: UDP receive: connection shut")
         cycles, self.cycles = self.cycles, 0
         return self.state(), Duration(cycles)
 
@@ -128,17 +129,34 @@ def ramp(distance: np.ndarray) -> np.ndarray:
 
 def module(arm: Arm) -> Any:
     """Make the module for one arm."""
-
-    def connect(host: str, realtime: Any) -> Arm:
-        if host != "127.0.0.1":
-            raise NetworkException("libfranka: Connection timeout")
-        arm.link, arm.far_end = socket.socketpair()
-        return arm
-
     return SimpleNamespace(
         FrankaException=Exception,
         JointVelocities=JointVelocities,
-        Robot=connect,
+        Robot=lambda host, realtime: arm,
         RealtimeConfig=SimpleNamespace(kIgnore=1),
         ControllerMode=SimpleNamespace(JointImpedance=0),
     )
+
+
+@contextmanager
+def listening(answer: bytes | None) -> Iterator[int]:
+    """Open a TCP port of 127.0.0.1 that answers the first request of each connection, and yield it.
+
+    An empty answer: the connection is closed. None: nobody looks at it.
+    """
+
+    def serve() -> None:
+        with suppress(OSError):  # of a listener that was shut
+            while True:
+                link, _ = listener.accept()
+                with link:
+                    header = np.frombuffer(link.recv(100), "<u4", 3)
+                    assert header.tolist() == [0, 0, 16]  # kConnect, the first command, its size
+                    link.sendall(answer)
+
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        if answer is not None:
+            threading.Thread(target=serve, daemon=True).start()
+        yield listener.getsockname()[1]
+        with suppress(OSError):
+            listener.shutdown(socket.SHUT_RDWR)

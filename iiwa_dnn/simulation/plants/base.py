@@ -135,18 +135,22 @@ class RealPlant(Plant):
     moves and the last state stays. So is a robot whose clock has fallen behind by `BEHIND`.
 
     Args:
+        host: Address of the robot's controller.
         feedback: Joint angles that `read` returns: ``"commanded"``, the sum of the commands, has
             neither noise nor delay; ``"measured"`` are the encoders'.
 
     Attributes:
+        name: Name of the plant in the settings of a record.
         tip_speed: Limit of the tip's speed that leaves room to the robot's own [m/s]; None: none.
     """
 
     is_real: ClassVar[bool] = True
+    name: ClassVar[str]
     tip_speed: ClassVar[float | None] = None
 
-    def __init__(self, feedback: Feedback) -> None:
+    def __init__(self, host: str, feedback: Feedback) -> None:
         checks.one_of("feedback", feedback, FEEDBACKS)
+        self.host = host
         self.feedback = feedback
         self._motion = RealMotion()
 
@@ -251,3 +255,8 @@ class RealPlant(Plant):
         motion.commanded = motion.commanded + self.period * motion.command
         motion.waits = True
         self._send()
+
+    def settings(self) -> dict[str, Any]:
+        """Return the plant's entries in the settings of a record."""
+        entries = {"name": self.name, "host": self.host, "feedback": self.feedback}
+        return {"plant": entries | {"late_s": list(self._motion.late)}}

@@ -13,13 +13,11 @@ Source: https://frankarobotics.github.io/docs/libfranka/docs/system_requirements
 "Packet handling".
 """
 
-import os
 import socket
-import threading
-import time
-from contextlib import suppress
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -31,13 +29,19 @@ from iiwa_dnn.files import one_line
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.motion_limits import TANGENT
-from iiwa_dnn.simulation.plants.base import JOINTS, Feedback, RealMotion, RealPlant
+from iiwa_dnn.simulation.plants.base import JOINTS, Feedback, RealPlant
 
 PERIOD = 1e-3
 """Period of a control cycle [s]."""
 
-SILENCE = 5.0
-"""Time without a state after which the robot is given up; libfranka may wait without an end [s]."""
+PORT = 1337
+"""TCP port of a robot's controller."""
+
+PATIENCE = 5.0
+"""Time to wait for a connection, and for the first answer [s]."""
+
+_CONNECT = struct.pack("<3I2H", 0, 0, 16, 0, 9)
+"""Request to connect: command, its number, size in bytes, version, UDP port, here "discard"."""
 
 TIP_SPEED = 2.5
 """Limit of the tip's speed [m/s]. The robot's own is 3, of the measured motion."""
@@ -75,6 +79,7 @@ class FrankaPlant(RealPlant):
         InvalidInputError: The host is empty, there is no such feedback, or a number is negative.
     """
 
+    name: ClassVar[str] = "franka"
     packages: ClassVar[tuple[str, ...]] = ("pylibfranka",)
     tip_speed: ClassVar[float | None] = TIP_SPEED
 
@@ -85,16 +90,14 @@ class FrankaPlant(RealPlant):
         lost_cycles: int = 5,
         lag: float = 0.02,
     ) -> None:
-        super().__init__(feedback)
+        super().__init__(host, feedback)
         if not host:
             raise InvalidInputError("host", "is needed: the address of the robot's controller")
-        self.host = host
         self.lost_cycles = checks.integer("lost_cycles", lost_cycles, 0)
         self.lag = checks.not_negative("lag", lag)
         self._franka: Any = None
         self._robot: Any = None
         self._control: Any = None
-        self._links: set[int] = set()
 
     def _connect(self) -> None:
         """Connect to the robot and read its state, unless this was done before.
@@ -106,15 +109,14 @@ class FrankaPlant(RealPlant):
         if self._robot is not None:
             return
         self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
-        before = _sockets()
         try:
+            _await_answer(self.host)
             robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
             self._state = robot.read_once()
-        except (RuntimeError, self._franka.FrankaException) as error:
+        except (OSError, RuntimeError, self._franka.FrankaException) as error:
             problem = f"{self.host}: {_in_words(error)}"
             raise InvalidInputError("host", problem, self.host) from error
         self._robot = robot
-        self._links = _sockets() - before
 
     @property
     def period(self) -> float:
@@ -154,10 +156,6 @@ class FrankaPlant(RealPlant):
                 other joints or another control period.
         """
         super().start(robot, q0, dt, seed)
-        self._check_model(robot)
-
-    def _check_model(self, robot: Robot) -> None:
-        """Raise InvalidInputError if the axis of the last joint misses the arm's own flange."""
         flange = np.reshape(self._state.O_T_EE, (4, 4), "F") @ np.linalg.inv(
             np.reshape(self._state.F_T_EE, (4, 4), "F")
         )
@@ -167,39 +165,33 @@ class FrankaPlant(RealPlant):
             problem = f"is not that of the arm: its last joint is {off_axis:.3g} m from the flange"
             raise InvalidInputError("robot", problem, robot)
 
+    @contextmanager
+    def _faults(self) -> Iterator[None]:
+        """Note an error of libfranka as the fault."""
+        try:
+            yield
+        except (RuntimeError, self._franka.FrankaException) as error:
+            self._motion.fault = self._motion.fault or _in_words(error)
+
     def _begin(self) -> None:
         """Begin a motion of joint velocities, from rest."""
-        motion = self._motion
-        mode = self._franka.ControllerMode.JointImpedance
-        threading.Thread(target=self._watch, args=(motion,), daemon=True).start()
-        try:
+        with self._faults():
+            # libfranka waits for the consent to a motion without an end. Of a robot that has fallen
+            # silent the first state may have been there already, and the second one fails.
+            for _ in range(2):
+                self._robot.read_once()
+            mode = self._franka.ControllerMode.JointImpedance
             self._control = self._robot.start_joint_velocity_control(mode)
             self._state, _ = self._control.readOnce()
-        except (RuntimeError, self._franka.FrankaException) as error:
-            motion.fault = motion.fault or _in_words(error)
-        self._offset = motion.commanded - self._state.q_d
-
-    def _watch(self, motion: RealMotion) -> None:
-        """Shut libfranka's connection if it waits for a state that does not come."""
-        seen = -1.0
-        while self._robot is not None and self._motion is motion:
-            if motion.time == seen:
-                motion.fault = f"no state of the robot for {SILENCE:g} s"
-                for link in self._links:
-                    with suppress(OSError), socket.socket(fileno=os.dup(link)) as end:
-                        end.shutdown(socket.SHUT_RDWR)
-                return
-            seen = motion.time
-            time.sleep(SILENCE)
+        self._offset = self._motion.commanded - self._state.q_d
 
     def _receive(self) -> None:
         """Wait for the robot's next state, and compare its own last command with ours."""
         motion = self._motion
         before = self._state
-        try:
+        with self._faults():
             self._state, duration = self._control.readOnce()
-        except (RuntimeError, self._franka.FrankaException) as error:
-            motion.fault = motion.fault or _in_words(error)
+        if motion.fault is not None:
             return
         motion.time += duration.to_sec()
         last = np.array(self._state.dq_d)
@@ -227,41 +219,40 @@ class FrankaPlant(RealPlant):
         taken = motion.command + (cycles - 1) * (motion.command - motion.previous)
         return not (_differ(self._state.dq_d, lost) and _differ(self._state.dq_d, taken))
 
-    def _send(self) -> None:
+    def _send(self, is_last: bool = False) -> None:
         """Send the last command for the cycle of the last state."""
-        self._write(self._franka.JointVelocities(self._motion.command.tolist()))
-
-    def _write(self, command: Any) -> None:
-        """Send libfranka's `JointVelocities`."""
-        try:
+        command = self._franka.JointVelocities(self._motion.command.tolist())
+        command.motion_finished = is_last
+        with self._faults():
             self._control.writeOnce(command)
-        except (RuntimeError, self._franka.FrankaException) as error:
-            self._motion.fault = self._motion.fault or _in_words(error)
 
     def stop(self) -> None:
         """End the motion and close the connection; libfranka brakes an arm that still moves."""
         if self._control is not None and self.fault is None:
             self._wait()
-            last = self._franka.JointVelocities([0.0] * JOINTS)
-            last.motion_finished = True
-            self._write(last)
+            self._motion.command = np.zeros(JOINTS)
+            self._send(is_last=True)
         self._control = None
         self._robot = None
 
-    def settings(self) -> dict[str, Any]:
-        """Return the plant's entries in the settings of a record."""
-        entries = {"name": "franka", "host": self.host, "feedback": self.feedback}
-        return {"plant": entries | {"late_s": list(self._motion.late)}}
 
+def _await_answer(host: str) -> None:
+    """Ask a robot to connect, in a version of the protocol that no robot has.
 
-def _sockets() -> set[int]:
-    """Find the sockets that this process has open."""
-    found = set()
-    for entry in Path("/proc/self/fd").iterdir():
-        with suppress(OSError):  # the folder itself was open while it was read
-            if str(entry.readlink()).startswith("socket:"):
-                found.add(int(entry.name))
-    return found
+    The refusal shows that somebody answers. libfranka waits for the first answer without an end,
+    and no signal or other thread of Python gets a turn.
+
+    Raises:
+        OSError: There is no such address, or no answer.
+    """
+    with socket.create_connection((host, PORT), PATIENCE) as link:
+        link.sendall(_CONNECT)
+        if not link.recv(1):
+            raise ConnectionError("the connection was closed without an answer")
+        with suppress(OSError):  # it may take the next client when it has closed this connection
+            link.shutdown(socket.SHUT_WR)
+            while link.recv(64):
+                pass
 
 
 def _differ(dq: ArrayLike, other: ArrayLike) -> bool:
@@ -270,5 +261,7 @@ def _differ(dq: ArrayLike, other: ArrayLike) -> bool:
 
 
 def _in_words(error: Exception) -> str:
-    """Return an error of libfranka in one line."""
+    """Return an error of libfranka or of the connection in one line."""
+    if isinstance(error, TimeoutError):
+        return f"no answer within {PATIENCE:g} s; another program may be connected"
     return one_line(error).removeprefix("libfranka: ")

@@ -174,11 +174,11 @@ class FriPlant(RealPlant):
         InvalidInputError: There is no such feedback.
     """
 
+    name: ClassVar[str] = "fri"
     packages: ClassVar[tuple[str, ...]] = ("protobuf",)
 
     def __init__(self, host: str = "", feedback: Feedback = "commanded", port: int = PORT) -> None:
-        super().__init__(feedback)
-        self.host = host
+        super().__init__(host, feedback)
         self.port = checks.integer("port", port, 1)
         self._client: Any = None
 
@@ -243,8 +243,3 @@ class FriPlant(RealPlant):
             self.move(np.zeros(JOINTS))
             self._client.close()
         self._client = None
-
-    def settings(self) -> dict[str, Any]:
-        """Return the plant's entries in the settings of a record."""
-        entries = {"name": "fri", "host": self.host, "feedback": self.feedback}
-        return {"plant": entries | {"lost_commands": len(self._motion.late)}}

@@ -2,6 +2,7 @@
 
 import sys
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import iiwa_dnn
-from helpers_franka import Arm, module
+from helpers_franka import Arm, listening, module
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Motion
 from iiwa_dnn.results.failures import failures
@@ -22,15 +23,21 @@ LIMITS = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
 SCHEME = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=LIMITS)
 
 
+# kConnect: status kIncompatibleLibraryVersion, version 10
+REFUSAL = bytes.fromhex("00000000 00000000 0f000000 01 0a00")
+
+
 @pytest.fixture
-def arm(monkeypatch: pytest.MonkeyPatch) -> Arm:
+def arm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Arm]:
     flange = iiwa_dnn.Configuration(ROBOT, START).frame("link8").position
     made = Arm(START.copy(), flange)
     monkeypatch.setitem(sys.modules, "pylibfranka", module(made))
     monkeypatch.setattr(
         "iiwa_dnn.simulation.runner.version", lambda name: "0" if "libfranka" in name else "1"
     )
-    return made
+    with listening(REFUSAL) as port:
+        monkeypatch.setattr(franka, "PORT", port)
+        yield made
 
 
 class Jumping(iiwa_dnn.Reference):
@@ -101,14 +108,31 @@ def test_the_robots_error_ends_the_run_and_the_record_is_there(arm: Arm) -> None
     assert first in failures(record)[0] or first in failures(record)[1]
 
 
-def test_a_robot_that_never_answers_again_is_given_up(
-    arm: Arm, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(franka, "SILENCE", 0.5)
-    arm.hangs = 20
+def test_a_robot_that_falls_silent_before_the_motion_is_given_up(arm: Arm) -> None:
+    arm.states = 2  # at the connection, and one that waits in the socket
     record = drive(iiwa_dnn.FrankaPlant("127.0.0.1"))
-    assert record.steps == 20
-    assert record.settings["status"].endswith("s): no state of the robot for 0.5 s")
+    assert record.settings["status"] == "stopped at step 0 (t = 0 s): UDP receive: Timeout"
+    assert arm.count == 0
+
+
+@pytest.mark.parametrize(
+    ("answer", "line"),
+    [
+        (None, "no answer within 0.2 s; another program may be connected"),
+        (b"", "the connection was closed without an answer"),
+    ],
+)
+def test_a_robot_that_does_not_answer_is_named(
+    arm: Arm, monkeypatch: pytest.MonkeyPatch, answer: bytes | None, line: str
+) -> None:
+    monkeypatch.setattr(franka, "PATIENCE", 0.2)
+    with listening(answer) as port, monkeypatch.context() as patch:
+        patch.setattr(franka, "PORT", port)
+        with pytest.raises(InvalidInputError, match=f"host: 127.0.0.1: {line}$"):
+            _ = iiwa_dnn.FrankaPlant("127.0.0.1").posture
+    monkeypatch.setattr(franka, "PORT", port)  # where nobody listens any more
+    with pytest.raises(InvalidInputError, match=r"host: 127\.0\.0\.1: Connection refused"):
+        _ = iiwa_dnn.FrankaPlant("127.0.0.1").posture
 
 
 def test_a_robot_whose_clock_falls_behind_is_given_up(
@@ -184,7 +208,6 @@ def test_measured_feedback_is_the_encoders(arm: Arm) -> None:
     ("change", "line"),
     [
         ({"host": ""}, "host: is needed"),
-        ({"host": "192.0.2.1"}, "host: 192.0.2.1: Connection timeout"),
         ({"q0": START + 0.1}, "the arm stands 0.1 rad from it"),
         ({"dt": 2e-3}, "dt: must be the robot's 0.001 s, not 0.002 s"),
         ({"robot": iiwa_dnn.load_robot("iiwa7")}, "robot: is not that of the arm"),

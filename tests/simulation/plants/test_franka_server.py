@@ -1,18 +1,21 @@
 """A Franka arm as a plant against franka-sim, an independent server of libfranka's protocol.
 
 The server runs in an environment of its own, build/franka-sim, since it pins an older numpy. It
-aborts a motion that breaks a limit or loses 20 commands in a row, as the robot does.
+aborts a motion that breaks a limit or loses 20 commands in a row, as the robot does. libfranka can
+wait without an end, with Python stopped: so a thread in C ends a test that takes too long, and the
+server dies with its parent.
 """
 
 import contextlib
+import ctypes
+import faulthandler
 import os
 import signal
-import socket
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +23,13 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
+from benchmarks.franka import FirstPlant, hurry
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.references.base import Motion
 from iiwa_dnn.results.failures import failures
+from iiwa_dnn.simulation.plants import franka
 
-pytestmark = pytest.mark.realtime
+pytestmark = pytest.mark.filterwarnings("ignore:the reference begins")
 
 FOLDER = Path(__file__).resolve().parents[3] / "build" / "franka-sim"
 PYTHON = FOLDER / "bin" / "python"
@@ -31,8 +37,8 @@ PACKAGES = (
     *("franka-sim==1.1.7", "mujoco==3.2.7", "numpy==1.26.4"),
     *("absl-py", "etils", "glfw", "pyopengl"),  # MuJoCo's own
 )
-PORT = 1337  # the only one that libfranka asks
 HOST = "127.0.0.1"
+TIME_LIMIT = 60.0  # of one test [s]
 ROBOT = iiwa_dnn.load_robot("fr3")
 TIP_SPEED = iiwa_dnn.TipSpeedLimit(iiwa_dnn.FrankaPlant.tip_speed)
 LIMITS = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits(), TIP_SPEED)
@@ -60,86 +66,121 @@ def make_environment() -> None:
     done = FOLDER / "done"
     if done.exists():
         return
-    subprocess.run([sys.executable, "-m", "venv", FOLDER], check=True)
-    install = [PYTHON, "-m", "pip", "install", "-q", "--no-deps", *PACKAGES]
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", FOLDER], check=True)
+    pip = [sys.executable, "-m", "pip", "--python", PYTHON, "--disable-pip-version-check"]
+    install = [*pip, "install", "-q", "--no-deps", "--no-compile", *PACKAGES]
     subprocess.run(install, check=True, capture_output=True)
     urdf = ROBOT.path
     subprocess.run([PYTHON, "-c", MODEL, str(urdf), FOLDER / "fr3.xml"], check=True)
     done.touch()
 
 
-def hurry(priority: int = 10) -> None:
-    """Let a robot's side of the loop come first, where that is allowed."""
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(priority))
+def die_with_parent() -> None:
+    """Let the server be killed where its parent was."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
 
 
-@pytest.fixture(scope="module")
-def server() -> Iterator[subprocess.Popen[bytes]]:
-    """Start the server and wait until it answers."""
+@contextlib.contextmanager
+def serving(*options: str) -> Iterator[subprocess.Popen[bytes]]:
+    """Start the server, wait until it answers, and kill it in the end."""
     pytest.importorskip("pylibfranka")
     try:
         make_environment()
     except (OSError, subprocess.CalledProcessError) as error:
         pytest.skip(f"franka-sim cannot be installed here: {error}")
-    command = [
-        *(PYTHON, "-m", "franka_sim.run_server", "--no-gripper"),
-        *("--enforce-motion-limits", "--enforce-comm-constraints"),
-    ]
-    log = (FOLDER / "server.log").open("wb")
-    process = subprocess.Popen(
-        command,
-        env={**os.environ, "FR3_MJCF": str(FOLDER / "fr3.xml")},
-        stdout=log,
-        stderr=log,
-        start_new_session=True,
-        preexec_fn=hurry,
-    )
-    deadline = time.monotonic() + 60.0
-    while time.monotonic() < deadline and process.poll() is None:
-        with contextlib.suppress(OSError), socket.create_connection((HOST, PORT), 1.0):
-            break
-        time.sleep(0.2)
-    time.sleep(1.5)  # the server takes the next client after a while
-    before = (os.sched_getscheduler(0), os.sched_getparam(0))
-    hurry(5)
-    yield process
-    with contextlib.suppress(PermissionError):
-        os.sched_setscheduler(0, *before)
-    process.kill()
-    process.wait()
-    log.close()
+    with (FOLDER / "server.log").open("wb") as log:
+        process = subprocess.Popen(
+            [PYTHON, "-m", "franka_sim.run_server", "--no-gripper", *options],
+            env={**os.environ, "FR3_MJCF": str(FOLDER / "fr3.xml")},
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+            preexec_fn=die_with_parent,
+        )
+    try:
+        deadline = time.monotonic() + 60.0
+        while not answers():
+            assert process.poll() is None, (FOLDER / "server.log").read_text()
+            assert time.monotonic() < deadline
+            time.sleep(0.2)
+        for thread in Path(f"/proc/{process.pid}/task").iterdir():
+            hurry(10, int(thread.name))
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        print((FOLDER / "server.log").read_text()[-4000:])
 
 
-def prepared(
-    reference: Any = None, room: bool = True, **options: Any
-) -> tuple[iiwa_dnn.FrankaPlant, iiwa_dnn.Simulation]:
-    """Make a run from where the arm stands."""
-    plant = iiwa_dnn.FrankaPlant(HOST)
-    robot = plant.with_room(ROBOT) if room else ROBOT.with_limits(acceleration=50.0)
-    start = iiwa_dnn.Configuration(robot, plant.posture)
-    path = iiwa_dnn.Heart() if reference is None else reference
-    extra = options.pop("limits", ())
-    scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=LIMITS)
-    scheme = iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*scheme.limits, *extra])
-    arguments = {"dt": 1e-3, "duration": 0.7, "check": iiwa_dnn.CrossCheck(()), **options}
-    anchored = path.anchored(start) if not isinstance(path, iiwa_dnn.MovingTarget) else path
-    return plant, iiwa_dnn.Simulation(robot, scheme, anchored, start.q, plant=plant, **arguments)
+def answers() -> bool:
+    """Test whether the server answers."""
+    try:
+        return iiwa_dnn.FrankaPlant(HOST).posture.size == 7
+    except InvalidInputError:
+        return False
+
+
+@pytest.fixture
+def server() -> Iterator[subprocess.Popen[bytes]]:
+    """Start a server that judges limits and the connection."""
+    with serving("--enforce-motion-limits", "--enforce-comm-constraints") as process:
+        yield process
+
+
+@pytest.fixture(autouse=True)
+def time_limit(capfd: pytest.CaptureFixture[str]) -> Iterator[None]:
+    """End this process, with tracebacks, if a test takes too long."""
+    with capfd.disabled():
+        stderr = os.dup(2)
+    faulthandler.dump_traceback_later(TIME_LIMIT, exit=True, file=stderr)
+    yield
+    faulthandler.cancel_dump_traceback_later()
+    os.close(stderr)
+
+
+Prepare = Callable[..., iiwa_dnn.Simulation]
+
+
+@pytest.fixture
+def prepare() -> Iterator[Prepare]:
+    """Make runs from where the arm stands; a failed test does not stay connected."""
+    plants = []
+
+    def prepared(
+        reference: Any = None, room: bool = True, limits: Any = (), **options: Any
+    ) -> iiwa_dnn.Simulation:
+        plant = FirstPlant(HOST)
+        plants.append(plant)
+        robot = plant.with_room(ROBOT) if room else ROBOT.with_limits(acceleration=50.0)
+        start = iiwa_dnn.Configuration(robot, plant.posture)
+        path = iiwa_dnn.Heart() if reference is None else reference
+        extra = (*LIMITS, *limits)
+        scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=extra)
+        arguments = {"dt": 1e-3, "duration": 0.7, "check": iiwa_dnn.CrossCheck(()), **options}
+        anchored = path.anchored(start) if not isinstance(path, iiwa_dnn.MovingTarget) else path
+        return iiwa_dnn.Simulation(robot, scheme, anchored, start.q, plant=plant, **arguments)
+
+    yield prepared
+    for plant in plants:
+        plant.stop()
 
 
 class Jumps(iiwa_dnn.Reference):
-    """A position that jumps by 0.3 m every 0.2 s, out of reach in the end."""
+    """A position that jumps by 0.5 m every 0.2 s, at a height [m]; it acts at its 500th call."""
 
     name = "jumps"
     period = np.inf
     duration = np.inf
 
-    def __init__(self, height: float) -> None:
+    def __init__(self, height: float, act: Callable[[], object] | None = None) -> None:
         self.height = height
+        self.act = act
+        self.calls = 0
 
     def motion(self, t: float) -> Any:
-        from iiwa_dnn.references.base import Motion
-
+        self.calls += 1
+        if self.act is not None and self.calls == 500:  # more than a rehearsal has
+            self.act()
         side = 0.3 if int(t / 0.2) % 2 else -0.2
         return Motion(np.array([0.0, side, self.height]), np.zeros(3))
 
@@ -162,41 +203,78 @@ PATHS = {
 }
 
 
+def completed(make: Callable[[], iiwa_dnn.Simulation]) -> iiwa_dnn.Record:
+    """Run to the end. Twenty commands in a row are lost by other work on the cores: then again."""
+    for _ in range(3):
+        record = make().run()
+        status = record.settings["status"]
+        print(status, record.settings["plant"]["late_s"])
+        if "communication_constraints_violation" not in status:
+            break
+    assert status == "completed"
+    return record
+
+
+def off_path(record: iiwa_dnn.Record) -> float:
+    """Largest distance of the measured tip from the path, after the start [m]."""
+    distance = np.linalg.norm(record.position - record.position_desired, axis=1)
+    return float(distance[100:].max())
+
+
+def test_an_independent_server_moves_the_arm(prepare: Prepare) -> None:
+    with serving("--enforce-motion-limits"):
+        for _ in range(5):
+            record = prepare(duration=0.4).run()
+            status = record.settings["status"]
+            # Other work on the cores may lose more commands than there is room for.
+            if status == "completed" or not record.settings["plant"]["late_s"]:
+                break
+        assert status == "completed"
+        assert off_path(record) < 5e-3
+        assert np.ptp(record.position, axis=0).max() > 1e-3
+
+
+@pytest.mark.realtime
 @pytest.mark.parametrize("name", PATHS)
-def test_no_path_ends_in_a_reflex(server: Any, name: str, tmp_path: Path) -> None:
-    _, run = prepared(PATHS[name](tmp_path))
-    record = run.run()
-    assert record.settings["status"] == "completed"  # the server judges limits, with its rounding
+def test_no_path_ends_in_a_reflex(server: Any, prepare: Prepare, name: str, tmp_path: Path) -> None:
+    record = completed(lambda: prepare(PATHS[name](tmp_path)))
     if name in ("heart", "turning tool", "own CSV"):
-        assert record.action is None or not record.action[20:].any()
+        assert off_path(record) < 5e-3
 
 
-def test_an_obstacle_in_the_way_is_not_touched(server: Any) -> None:
+@pytest.mark.realtime
+def test_an_obstacle_in_the_way_is_not_touched(server: Any, prepare: Prepare) -> None:
     start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
     ball = iiwa_dnn.Sphere(start.position + [0.0, 0.25, 0.0], 0.08)
     avoidance = iiwa_dnn.CollisionAvoidance([ball], distance=0.03)
     line = iiwa_dnn.Line((0.0, 0.25, 0.0), period=3.0)
-    _, run = prepared(line, limits=[avoidance], duration=2.0)
-    record = run.run()
-    assert record.settings["status"] == "completed"
+    record = completed(lambda: prepare(line, limits=[avoidance], duration=2.0))
     assert record.distance is not None
     assert 0.02 < record.distance.min() < 0.06  # it came near, by the encoders
 
 
-def test_a_hand_that_jumps(server: Any) -> None:
-    start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
-    hand = iiwa_dnn.MovingTarget(start, speed=0.4, rate=1.0)
-    _, run = prepared(hand, duration=2.0)
+@pytest.mark.realtime
+def test_a_hand_that_jumps(server: Any, prepare: Prepare) -> None:
     rng = np.random.default_rng(1)
-    for k in range(8):
-        goal = start.position + rng.uniform(-0.15, 0.15, 3)
-        threading.Timer(0.2 * k + 1.0, hand.set, [goal]).start()
-    record = run.run()
-    assert record.settings["status"] == "completed"
-    assert np.ptp(record.position, axis=0).max() > 0.05
+
+    def make() -> iiwa_dnn.Simulation:
+        start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
+        hand = iiwa_dnn.MovingTarget(start, speed=0.4, rate=1.0)
+
+        def move_hand() -> None:
+            hurry(5)  # it holds Python's lock for a while, and is not to be interrupted then
+            hand.set(start.position + rng.uniform(-0.15, 0.15, 3))
+
+        for k in range(5):
+            threading.Timer(0.4 * k + 0.5, move_hand).start()
+        return prepare(hand, duration=2.5)
+
+    record = completed(make)
+    assert np.ptp(record.position, axis=0).max() > 0.02
 
 
-def test_the_arm_takes_the_next_client_after_one_was_killed(server: Any) -> None:
+@pytest.mark.realtime
+def test_the_arm_takes_the_next_client_after_one_was_killed(server: Any, prepare: Prepare) -> None:
     program = [
         "import iiwa_dnn, numpy as np",
         f"plant = iiwa_dnn.FrankaPlant({HOST!r})",
@@ -213,14 +291,12 @@ def test_the_arm_takes_the_next_client_after_one_was_killed(server: Any) -> None
         lines = [client.stdout.readline() for _ in range(200)]
         client.kill()
     assert lines[-1] == "None\n"
-    time.sleep(2.0)
-    _, run = prepared(duration=0.3)
-    assert run.run().settings["status"] == "completed"
+    completed(lambda: prepare(duration=0.3))
 
 
-def test_ctrl_c_brakes_and_the_record_is_there(server: Any) -> None:
-    _, run = prepared(Jumps(0.0), duration=5.0)
-    threading.Timer(0.5, signal.raise_signal, [signal.SIGINT]).start()
+@pytest.mark.realtime
+def test_ctrl_c_brakes_and_the_record_is_there(server: Any, prepare: Prepare) -> None:
+    run = prepare(Jumps(0.0, lambda: signal.raise_signal(signal.SIGINT)), duration=5.0)
     record = run.run()
     assert run.interrupt == signal.SIGINT
     assert record.settings["status"].endswith("s): interrupted")
@@ -228,38 +304,49 @@ def test_ctrl_c_brakes_and_the_record_is_there(server: Any) -> None:
     assert np.abs(record.dq_solver).max() > 0.1  # it was in motion
 
 
-def test_a_reflex_is_the_reports_first_line(server: Any) -> None:
+@pytest.mark.realtime
+@pytest.mark.filterwarnings("ignore:a gain of 100")  # stable with the robot's own limits alone
+def test_a_reflex_is_the_reports_first_line(server: Any, prepare: Prepare) -> None:
     import pylibfranka
 
-    _, run = prepared(Jumps(0.0), room=False)
-    record = run.run()
+    record = prepare(Jumps(0.0), room=False).run()
     assert "acceleration_discontinuity" in record.settings["status"]
     assert any("acceleration_discontinuity" in line for line in failures(record)[:2])
-    time.sleep(1.5)
     pylibfranka.Robot(HOST, pylibfranka.RealtimeConfig.kIgnore).automatic_error_recovery()
-    time.sleep(1.5)
 
 
-def test_a_silent_server_ends_the_run(server: Any) -> None:
-    _, run = prepared(duration=5.0)
-    threading.Timer(1.0, server.send_signal, [signal.SIGSTOP]).start()
+@pytest.mark.realtime
+def test_a_second_program_is_told(
+    server: Any, prepare: Prepare, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepare()
+    monkeypatch.setattr(franka, "PATIENCE", 1.0)
+    with pytest.raises(InvalidInputError, match=f"host: {HOST}: no answer .* program may be conn"):
+        _ = iiwa_dnn.FrankaPlant(HOST).posture
+
+
+@pytest.mark.realtime
+@pytest.mark.parametrize("moves", [False, True])
+def test_a_server_that_freezes_ends_the_run(server: Any, prepare: Prepare, moves: bool) -> None:
+    run = prepare(Jumps(0.0, lambda: server.send_signal(signal.SIGSTOP)), duration=5.0)
+    if not moves:
+        server.send_signal(signal.SIGSTOP)
     began = time.monotonic()
     record = run.run()
     server.send_signal(signal.SIGCONT)
     assert time.monotonic() - began < 15.0
     assert record.settings["status"].startswith("stopped at step")
-    assert "\n" not in record.settings["status"]
-    assert record.steps > 10
-    time.sleep(3.0)
+    assert record.settings["status"].endswith("s): UDP receive: Timeout")
+    assert (record.steps > 100) == moves
 
 
-def test_a_killed_server_ends_the_run_and_a_missing_one_is_named(server: Any) -> None:
-    _, run = prepared(duration=5.0)
-    threading.Timer(0.5, server.kill).start()
-    record = run.run()
+@pytest.mark.realtime
+def test_a_killed_server_ends_the_run_and_a_missing_one_is_named(
+    server: Any, prepare: Prepare
+) -> None:
+    record = prepare(Jumps(0.0, server.kill), duration=5.0).run()
     assert record.settings["status"].startswith("stopped at step")
     assert "\n" not in record.settings["status"]
-    assert record.steps > 10
-    plant = iiwa_dnn.FrankaPlant(HOST)
-    with pytest.raises(InvalidInputError, match=f"host: {HOST}: .*onnection"):
-        _ = plant.posture
+    assert record.steps > 100
+    with pytest.raises(InvalidInputError, match=f"host: {HOST}: Connection refused"):
+        _ = iiwa_dnn.FrankaPlant(HOST).posture

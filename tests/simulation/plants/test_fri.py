@@ -242,7 +242,7 @@ def test_track_takes_start_period_and_limits_from_the_robot(port, tmp_path, monk
     record = Record.load(tmp_path / "record.npz")
     assert record.settings["dt"] == 5e-3
     assert record.settings["q0"] == paper_start().q.tolist()
-    assert record.settings["plant"]["lost_commands"] == 0
+    assert record.settings["plant"]["late_s"] == []
     assert record.settings["q_upper"] == load_robot("iiwa7").q_upper.tolist()
     speeds = np.diff(np.array(robot.commanded), axis=0) / 5e-3
     accelerations = np.abs(np.diff(speeds, axis=0)) / 5e-3
