@@ -73,6 +73,7 @@ class Connection:
         quality: Connection quality, of the last `WINDOW` messages.
         packets: Numbers of commands in time, late, repeated and garbled, and of messages without
             one ("missing").
+        answered: Whether a new command came in this period.
     """
 
     def __init__(self) -> None:
@@ -80,13 +81,8 @@ class Connection:
         self.packets: Counter[str] = Counter()
         self._sequence = 0
         self._newest: Any = None
-        self._fresh = False
-        self._answered: deque[bool] = deque([False] * WINDOW, maxlen=WINDOW)
-
-    @property
-    def answered(self) -> bool:
-        """Test whether a new command came in this period."""
-        return self._fresh
+        self.answered = False
+        self._in_time: deque[bool] = deque([False] * WINDOW, maxlen=WINDOW)
 
     def header(self) -> dict[str, int]:
         """Return the header of this period's message."""
@@ -116,21 +112,21 @@ class Connection:
                 self.packets["repeated"] += 1
                 return
         self._newest = command
-        self._fresh = True
+        self.answered = True
 
     def end_period(self) -> Any:
         """Judge the answer to this period's message; return the new command, None without one."""
         kind = "missing"
-        if self._fresh:
+        if self.answered:
             in_time = self._newest.header.reflectedSequenceCounter == self._sequence
             kind = "in time" if in_time else "late"
         self.packets[kind] += 1
-        self._answered.append(kind == "in time")
-        ratio = sum(self._answered) / WINDOW
+        self._in_time.append(kind == "in time")
+        ratio = sum(self._in_time) / WINDOW
         self.quality = next(each for each, least in THRESHOLDS.items() if ratio >= least)
         self._sequence = (self._sequence + 1) % _WRAP
-        command = self._newest if self._fresh else None
-        self._fresh = False
+        command = self._newest if self.answered else None
+        self.answered = False
         return command
 
 

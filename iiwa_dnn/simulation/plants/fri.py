@@ -68,14 +68,12 @@ class FriClient:
         try:
             self._host = socket.gethostbyname(host) if host else ""
             self._link.bind(("", port))
+            if not self.receive(CONNECT_TIME):
+                raise TimeoutError(f"no robot sent a message within {CONNECT_TIME:g} s")
         except OSError as error:
             self.close()
             problem = f"{host} UDP port {port}: {one_line(error)}".strip()
             raise InvalidInputError("host", problem, host) from error
-        if not self.receive(CONNECT_TIME):
-            self.close()
-            problem = f"no robot sent a message to UDP port {port} within {CONNECT_TIME:g} s"
-            raise InvalidInputError("host", f"{host}: {problem}".removeprefix(": "), host)
 
     def close(self) -> None:
         """Listen no longer."""
@@ -180,7 +178,7 @@ class FriPlant(RealPlant):
     def __init__(self, host: str = "", feedback: Feedback = "commanded", port: int = PORT) -> None:
         super().__init__(host, feedback)
         self.port = checks.integer("port", port, 1)
-        self._client: Any = None
+        self._client: FriClient | None = None
 
     def _connect(self) -> FriClient:
         """Wait for the robot's first message, unless this was done before.
@@ -191,8 +189,7 @@ class FriPlant(RealPlant):
         """
         if self._client is None:
             self._client = FriClient(self.host, self.port)
-        client: FriClient = self._client
-        return client
+        return self._client
 
     @property
     def period(self) -> float:
@@ -206,7 +203,7 @@ class FriPlant(RealPlant):
 
     def _begin(self) -> None:
         """Repeat the robot's position until it lets itself be commanded."""
-        client = self._client
+        client = self._connect()
         deadline = time.monotonic() + CONNECT_TIME
         while client.receive(SILENCE):
             if client.state is SessionState.COMMANDING_ACTIVE:
@@ -220,7 +217,7 @@ class FriPlant(RealPlant):
     def _receive(self) -> None:
         """Wait for the robot's next state, and see whether it has our last command."""
         motion = self._motion
-        client = self._client
+        client = self._connect()
         periods = client.receive(SILENCE)
         if not periods:
             motion.fault = f"no message from the robot for {SILENCE:g} s"
@@ -235,7 +232,7 @@ class FriPlant(RealPlant):
 
     def _send(self) -> None:
         """Send the joint positions after a period of the last command."""
-        self._client.answer(self._motion.commanded)
+        self._connect().answer(self._motion.commanded)
 
     def stop(self) -> None:
         """Answer no longer: the robot keeps its last commanded position."""

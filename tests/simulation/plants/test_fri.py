@@ -210,7 +210,7 @@ def test_a_robot_that_falls_silent_is_given_up(port, monkeypatch) -> None:
 
 def test_nobody_there(port, monkeypatch) -> None:
     monkeypatch.setattr(fri, "CONNECT_TIME", 0.1)
-    with pytest.raises(InvalidInputError, match=f"no robot sent a message to UDP port {port}"):
+    with pytest.raises(InvalidInputError, match=f"UDP port {port}: no robot sent a message within"):
         track(FriPlant("127.0.0.1", port=port))
 
 
