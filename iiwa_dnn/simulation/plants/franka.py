@@ -46,10 +46,11 @@ _CONNECT = struct.pack("<3I2H", 0, 0, 16, 0, 9)
 TIP_SPEED = 2.5
 """Limit of the tip's speed [m/s]. The robot's own is 3, of the measured motion."""
 
-_ACCELERATION = 0.8
+_ACCELERATION = 0.75
 _JERK = 0.24
 """Ratios to the robot's limits. A late command may be dropped or, by franka-sim, be taken after all
-when the robot has gone on without it: the next one then reads as 3 J, and as 4 J after several."""
+when the robot has gone on without it: the next one then reads as 3 J, and as 4 J after several, and
+its acceleration as up to A + 2 J dt."""
 
 _BRAKING = 0.75
 """Part of the acceleration that braking before a ramp asks for: the arm lags behind."""
