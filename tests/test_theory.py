@@ -18,13 +18,18 @@ from iiwa_dnn import (
     QP,
     Circle,
     Configuration,
+    Controller,
+    CyclicMotion,
     DNNSolver,
     DoubleIndicator,
     ExplicitEuler,
     ImplicitEuler,
+    JointLimits,
+    KineticEnergy,
     Network,
     OneLayerNetwork,
     ProjectionNetwork,
+    Scheme,
     Status,
     Target,
     Waypoints,
@@ -321,6 +326,26 @@ def test_a_run_that_overflows_is_not_called_solved() -> None:
     assert solution.status is Status.NOT_SETTLED
     assert abs(solution.x[0]) <= 1.0
     assert solution.residuals.dual == pytest.approx(2.0)
+
+
+def test_a_state_that_is_no_number_ends_what_is_advanced() -> None:
+    """Its point is clipped to the bounds, and once went on as an answer of the continuous mode."""
+    qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
+    network = ProjectionNetwork(rho=1e-3, primal_projection=False)
+    follower = ExplicitEuler(substeps=1)
+    solver = DNNSolver(network, follower=follower)
+    statuses = [solver.advance(qp, 1e-2).status for _ in range(400)]
+    assert statuses[0] is Status.ADVANCED
+    assert Status.NOT_FINITE in statuses
+    # The same within a control step: a posture far away, which the joints cannot reach at once.
+    free = Scheme([KineticEnergy(), CyclicMotion(home=(0.0,) * 7)], [], [JointLimits()])
+    solver = DNNSolver(network, follower=follower)
+    controller = Controller(paper_robot(), free, dt=1e-2, mode="continuous", solver=solver)
+    start = paper_start()
+    target = Target(start.position, start.rotation)
+    statuses = [controller.step(PAPER_Q0, 1e-2 * k, target).solution.status for k in range(600)]
+    assert statuses[0] is Status.ADVANCED
+    assert Status.NOT_FINITE in statuses
 
 
 def test_the_page_says_how_far_the_papers_first_row_is_from_the_prediction() -> None:

@@ -217,11 +217,16 @@ def control_step(
     views.decision[2] = ADVANCED if own[DURATION] > 0.0 else SOLVED
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
-    succeeded = primal + dual + gap < np.inf
+    size = primal + dual + gap
+    if own[DURATION] > 0.0:
+        # The point of an infinite state is finite, since it is clipped to the bounds.
+        for i in range(state.size):
+            size += abs(state[i])
+    succeeded = size < np.inf
     if own[DURATION] == 0.0:
         succeeded = within(primal, dual, gap, own[TOLERANCE])
     if not succeeded:
-        views.decision[2] = NOT_SETTLED if primal + dual + gap < np.inf else NOT_FINITE
+        views.decision[2] = NOT_SETTLED if size < np.inf else NOT_FINITE
         for i in range(state.size):
             state[i] = before[i]
         return False

@@ -293,7 +293,8 @@ class DNNSolver:
     def _judged(self, sizes: Sizes, state: Vector, point: Vector, settled: Settled) -> Solution:
         """Make the solution of a state that was advanced, and keep the state if it is finite."""
         status = Status.NOT_FINITE
-        if math.isfinite(sum(settled[2:])):
+        # The point of an infinite state is finite, since it is clipped to the bounds.
+        if math.isfinite(sum(settled[2:])) and np.isfinite(state).all():
             status = Status.ADVANCED
             self._kept.append((self.network, sizes, state))
         return Solution(point, sizes, status, *settled)
