@@ -1,16 +1,21 @@
 """``view``: the page in the browser, for a run or live."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.app.folders import SETTINGS_FILE
 from iiwa_dnn.app.options import ViewOptions
 from iiwa_dnn.app.track import limited
 from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.files import read_toml
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot, load_robot
+from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.loading import package_robots
 from iiwa_dnn.schemes import DoubleIndicator
 
 
@@ -21,7 +26,7 @@ def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     tip = options.tip
     if not options.tool:  # else the record's tip may be that tool
         tip = tip or settings.get("tip")
-    name = options.robot or settings.get("robot", "iiwa7")
+    name = options.robot or ("iiwa7" if options.run is None else robot_of(options.run, settings))
     robot = load_robot(name, tip=tip, locked=options.lock, tool=options.tool or None)
     if record is None:
         page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
@@ -52,6 +57,25 @@ def load_run(path: Path) -> Record:
         if not path.exists():
             raise FileError(path, "no such file: not the folder of a run")
     return Record.load(path)
+
+
+def robot_of(run: Path, settings: Mapping[str, Any]) -> str:
+    """Name the robot of a run: as the folder's settings file does, or else the record's settings.
+
+    The record has the name alone of a robot that came from a file, the settings file its path.
+
+    Raises:
+        InvalidInputError: There is no robot of that name, and no file.
+    """
+    file = (run if run.is_dir() else run.parent) / SETTINGS_FILE
+    if file.exists():
+        settings = {**settings, **read_toml(file)}
+    name = str(settings.get("robot", "iiwa7"))
+    if name not in (*package_robots(), *ARMS) and not Path(name).exists():
+        raise InvalidInputError(
+            "--robot", f"{name!r} came from a file: add --robot FILE.urdf", name
+        )
+    return name
 
 
 def scheme_of(record: Record) -> DoubleIndicator:

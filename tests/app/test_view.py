@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 import sys
 import urllib.request
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +16,8 @@ from helpers_records import make_record
 from iiwa_dnn import Configuration, DoubleIndicator, PseudoInverse, load_robot
 from iiwa_dnn.app.command_line import run_command
 from iiwa_dnn.app.options import ViewOptions
-from iiwa_dnn.app.view import limits_of, run, scheme_of
+from iiwa_dnn.app.view import limits_of, robot_of, run, scheme_of
+from iiwa_dnn.results.record import Record
 
 needs_viser = pytest.mark.usefixtures("viser")
 
@@ -60,6 +63,21 @@ def test_a_runs_folder_its_record_and_no_run_at_all(capsys, run_folder):
         code, out, err = opened(capsys, *arguments)
         assert (code, err) == (0, "")
         assert re.fullmatch(r"open http://127\.0\.0\.1:\d+ in a browser; Ctrl-C ends it\n", out)
+
+
+@needs_viser
+def test_a_robot_from_a_file_is_found_by_the_runs_settings(capsys, tmp_path, run_folder):
+    record = Record.load(run_folder / "record.npz")
+    replace(record, settings={**record.settings, "robot": "my_arm"}).save(tmp_path / "record.npz")
+    code, _, err = opened(capsys, str(tmp_path))
+    assert code == 2
+    assert err.endswith("'my_arm' came from a file: add --robot FILE.urdf\n")
+    urdf = Path(load_robot("iiwa7").path).resolve()
+    (tmp_path / "settings.toml").write_text(f'robot = "{urdf}"\n')
+    for path in (tmp_path, tmp_path / "record.npz"):
+        assert robot_of(path, {"robot": "my_arm"}) == str(urdf)
+    code, _, err = opened(capsys, str(tmp_path))
+    assert (code, err) == (0, "")
 
 
 @needs_viser
