@@ -54,19 +54,23 @@ _KINETIC_UNITS = {"identity": "rad²/s²", "inertia": "J"}
 _SUMMARY = {
     "run": "{robot}, {mode}, {steps} steps of {dt_s} s ({duration_s} s)",
     "position error": "max {max_position_error_m} m, mean square {mse_position_error_m2} m^2",
-    "orientation error": "max {max_orientation_error_rad} rad",
+    "orientation error": "max {max_orientation_error_rad} {angle_unit}",
     "joint drift": "max {joint_drift_rad} rad",
     "kinetic index": "max {max_kinetic_index} {kinetic_unit}",
     "beyond limits": "{position_limit_violation_rad} rad, {velocity_limit_violation_rad_s} rad/s",
     "KKT residual": "max {max_kkt_residual}, tolerance {tol}",
     "cross-check": "{solver}, {steps_checked} steps checked, {disagreements} disagreements, "
     "{reference_failures} failures\n"
-    "largest {gap} {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
+    "largest gap {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
     "wall time": "{wall_time_s} s, {realtime_factor} x real time",
 }
 _PROVEN = (
     "{proven} answers proven within {max_solution_gap} rad/s of the exact solution, "
     "{reference_failures} not proven"
+)
+_COMPARED = (
+    "{solver}, {steps_checked} steps compared, not judged, {reference_failures} failures\n"
+    "largest lag {max_solution_gap} rad/s"
 )
 _FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"
 _NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
@@ -82,7 +86,7 @@ _RESULTS: Table = (
     ("share of the path completed", "path_completed", ""),
     ("largest position error", "max_position_error_m", "m"),
     ("mean squared position error, over samples and axes", "mse_position_error_m2", "m²"),
-    ("largest orientation error", "max_orientation_error_rad", "rad"),
+    ("largest orientation error", "max_orientation_error_rad", "angle"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
     ("largest kinetic index", "max_kinetic_index", "kinetic"),
     ("largest KKT residual", "max_kkt_residual", ""),
@@ -215,10 +219,13 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     check = metrics["crosscheck"]
     reasons = failures(metrics) if reasons is None else reasons
     more = {
-        "gap": "gap" if check["judged"] else "lag (not judged)",
+        "angle_unit": _angle_unit(settings),
         "kinetic_unit": _kinetic_unit(settings).replace("²", "^2"),
     }
     lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
+    if settings["mode"] == "continuous":
+        lines["KKT residual"] = _fill("max {max_kkt_residual}, not judged", metrics)
+        lines["cross-check"] = _fill(_COMPARED, check)
     if check["solver"] == "none":
         lines["cross-check"] = "not asked for"
     if check["solver"] == PROOF:
@@ -257,7 +264,9 @@ def _success(metrics: Mapping[str, Any]) -> str:
 def _checked(check: Mapping[str, Any]) -> str:
     """Lay out the report's table on the cross-check, and the proof's line above its own."""
     if check["solver"] != PROOF:
-        return markdown_table(_HEAD, _rows(check, _CROSSCHECK))
+        left_out = () if check["judged"] else ("disagreements", "tolerance")
+        table = [row for row in _CROSSCHECK if row[1] not in left_out]
+        return markdown_table(_HEAD, _rows(check, table))
     return f"{_fill(_PROVEN, check)}.\n\n{markdown_table(_HEAD, _rows(check, _PROOF))}"
 
 
@@ -336,8 +345,9 @@ def _physics(physics: Mapping[str, Any] | None) -> list[Row]:
 
 
 def _rows(values: Mapping[str, Any], table: Table) -> list[Row]:
-    """Look up the numbers of a table; the unit of the kinetic index depends on the scheme."""
-    units = {"kinetic": _kinetic_unit(values.get("settings", {}))}
+    """Look up the numbers of a table; the units ``kinetic`` and ``angle`` depend on the scheme."""
+    settings = values.get("settings", {})
+    units = {"kinetic": _kinetic_unit(settings), "angle": _angle_unit(settings)}
     return [
         (name.format_map(values), _number(values[key]), units.get(unit, unit))
         for name, key, unit in table
@@ -350,6 +360,13 @@ def _kinetic_unit(settings: Mapping[str, Any]) -> str:
     scheme = settings.get("scheme")
     kinetic = scheme.get("kinetic") if isinstance(scheme, Mapping) else None
     return _KINETIC_UNITS.get(str(kinetic), "")
+
+
+def _angle_unit(settings: Mapping[str, Any]) -> str:
+    """Return the unit of the orientation error, with a remark where the scheme leaves it free."""
+    scheme = settings.get("scheme")
+    is_free = isinstance(scheme, Mapping) and scheme.get("orientation") == "none"
+    return "rad (orientation free)" if is_free else "rad"
 
 
 def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers_records import draw_only, heart_record, make_record
+from iiwa_dnn import DoubleIndicator
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
@@ -115,6 +116,28 @@ def test_verdicts_claim_no_more_than_was_checked(tmp_path):
     unsure = make_record(reference_residual=np.full((10, 1), 1e-3), settings=lag.settings)
     assert verdict(unsure, tmp_path).endswith("; 10 reference answers not to be believed")
     assert "reported and not judged" in (tmp_path / "report.md").read_text(encoding="utf-8")
+
+
+def test_a_lag_is_compared_and_not_judged(tmp_path):
+    metrics = compute_metrics(make_record(settings={"mode": "continuous"}))
+    text = summary(metrics)
+    assert "proxqp, 10 steps compared, not judged, 0 failures\n" in text
+    assert "disagreements" not in text
+    assert "tolerance" not in text
+    write_report(make_record(), metrics, tmp_path)
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert "steps that disagree" not in table
+    assert table["steps checked"] == ["10"]
+
+
+def test_an_orientation_that_no_task_holds_is_called_free(tmp_path):
+    scheme = DoubleIndicator(orientation="none")
+    metrics = compute_metrics(make_record(settings={"scheme": scheme.settings()}))
+    write_report(make_record(), metrics, tmp_path)
+    for text in (summary(metrics), (tmp_path / "report.md").read_text(encoding="utf-8")):
+        assert "rad (orientation free)" in text.replace(" | ", " ")
+    held = compute_metrics(make_record(settings={"scheme": DoubleIndicator().settings()}))
+    assert "orientation free" not in summary(held)
 
 
 def test_a_failed_run_lists_every_reason(tmp_path):
