@@ -78,6 +78,9 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
         f"residuals  {_residuals(solution)}, tolerance {options.tol:.3g}",
     ]
     if not solution.found:
+        if options.check == "proof":
+            proven = "the status is proven by a certificate, rounding counted"
+            lines.append(f"proof      {proven if 'certificate' in extras else 'none'}")
         return [*lines, f"last x     {_text(extras['last_x'])} (not an answer)"]
     lines += [f"objective  {solution.obj:.12g}", f"x          {_text(solution.x)}"]
     if options.verbose:

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.certificates import proves_infeasible
 from iiwa_dnn.qp.curvature import least_curvature
@@ -66,7 +65,7 @@ class Proof(NamedTuple):
     reason: str
 
 
-def prove(qp: QP, solution: Solution | qpsolvers.Solution) -> Proof:
+def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -> Proof:
     """Bound the distance of an answer from the program's exact solution, with all roundings.
 
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
@@ -75,7 +74,7 @@ def prove(qp: QP, solution: Solution | qpsolvers.Solution) -> Proof:
     whether it proves that there is none.
 
     Args:
-        qp: The program.
+        qp: The program, also as qpsolvers has it.
         solution: The answer of any solver, with its multipliers.
 
     Returns:
@@ -84,7 +83,8 @@ def prove(qp: QP, solution: Solution | qpsolvers.Solution) -> Proof:
     Raises:
         InvalidInputError: `qp` is no program, or the answer is none of a program of these sizes.
     """
-    checks.instance("qp", qp, QP)
+    if not isinstance(qp, QP):
+        qp = QP.from_qpsolvers(qp)
     n, m, _ = qp.sizes
     point = point_of(solution, qp)
     active = np.empty((1, n + m), dtype=np.int64)

@@ -74,6 +74,16 @@ def test_no_solution_is_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert captured.err.startswith("primal infeasible: primal ")
 
 
+def test_that_there_is_no_solution_is_proven(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    unbounded = {"P": np.zeros((3, 3)), "lb": [-np.inf] * 3, "ub": [np.inf] * 3}
+    for change in ({"b": [5.0]}, unbounded):
+        assert run("solve", [saved(tmp_path, **{**PROGRAM, **change}), "--check", "proof"]) == 1
+        words = "the status is proven by a certificate, rounding counted"
+        assert f"\nproof      {words}\n" in capsys.readouterr().out
+
+
 def test_quiet_prints_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("solve", [saved(tmp_path, **PROGRAM), "-q"]) == 0
     assert capsys.readouterr() == ("", "")

@@ -224,8 +224,14 @@ def test_answers_that_are_none_are_refused() -> None:
     ):
         with pytest.raises(InvalidInputError, match=problem):
             prove(qp, wrong)
-    with pytest.raises(InvalidInputError, match="qp"):
+    with pytest.raises(InvalidInputError, match=r"must be a qpsolvers\.Problem or an iiwa_dnn\.QP"):
         prove(np.eye(2), answer([1.0, 2.0]))
+
+
+def test_a_problem_of_qpsolvers_is_proven_as_its_program() -> None:
+    qp = QP(np.eye(2), [-1.0, 0.0], ub=[0.5, 1.0])
+    solution = answer([0.5, 0.0])
+    assert prove(qp.to_qpsolvers(), solution).bound == prove(qp, solution).bound < 1e-12
 
 
 def test_a_certificate_is_proven_or_is_not() -> None:
