@@ -117,8 +117,11 @@ def compile_model(
     spec.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     try:
         model = spec.compile()
-    except ValueError as error:  # a moving link without mass, for example
-        raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
+    except ValueError as error:
+        hint = "; a moving link has no <inertial>, or no mass" if "mjMINVAL" in str(error) else ""
+        raise InvalidInputError(
+            "robot", f"MuJoCo refuses its URDF: {error}{hint}", robot
+        ) from error
     # On the model, not the joints of the specification: there, MuJoCo's type of it has changed.
     model.dof_damping[:] = dynamics.damping
     model.dof_armature[:] = dynamics.armature

@@ -29,6 +29,14 @@ PAPER = "projection (the paper's)"
 MARGIN = 0.01
 """Difference of the decimal logarithms below which two networks are equal, 2.3 %."""
 
+_REMARKS = """\
+A place is formed by pairs of runs with the same seed: two networks are compared by the difference
+of their mean log residuals over the disturbances, with Student's interval at 95 %. A difference
+below 2.3 % or an interval that holds zero is a tie. A place "2–5" says that one network is better
+and that three may be as good.
+
+A number in brackets counts runs that failed; a network that lost one has no place."""
+
 _MARKERS = "os^vD*P"
 _number = partial(number, form=".2e", unknown="–")
 
@@ -226,7 +234,7 @@ def write_report(folder: Path, size: Size, rows: Sequence[Row], head: str, plots
     for table in _tables(size, rows, ranking):
         table.save(folder)
         parts.append(table.markdown())
-    parts.append("A number in brackets counts runs that failed.")
+    parts.append(_REMARKS)
     write_text(folder / "cards.md", "\n\n".join(card(rows, name, ranking) for name in ranking))
     save_markdown(folder, parts)
     return "\n\n".join(parts)
@@ -250,9 +258,11 @@ def card(rows: Sequence[Row], name: str, ranking: Mapping[str, str]) -> str:
     ]
     if undisturbed["taken"]:
         count, work = undisturbed["taken"]
-        lines.append(f"- a control period: {count} evaluations, {work:.0f} operations")
+        lines.append(f"- a control period: evaluations {count}, operations {work:.0f}")
     if activation is not None:
-        lines.append(f"- settles from an error of 1 within {activation.settle_time(1.0):g} rho")
+        bound = activation.settle_time(1.0)
+        within = f"within {bound:g} rho" if bound < np.inf else "not within a bounded time"
+        lines.append(f"- settles from an error of 1 {within}")
     lines += [
         f"- {row['disturbance']}: residual {_shown(row)}, tool {_shown(row, 'rms_error_m')} m"
         for row in found

@@ -321,6 +321,13 @@ def test_every_claim_names_what_is_in_the_atlas() -> None:
         assert claim.disturbance in DISTURBANCES
 
 
+def test_a_card_counts_one_evaluation_and_has_no_infinite_time() -> None:
+    name = "zeroing, power-sigmoid"
+    text = atlas_report.card([row(name, [1.0])], name, {name: "1"})
+    assert "a control period: evaluations 1, operations 100" in text
+    assert "settles from an error of 1 not within a bounded time" in text
+
+
 def test_the_command_writes_a_report_and_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -339,6 +346,7 @@ def test_the_command_writes_a_report_and_goes_on_where_it_was(
     assert len(rows) == len(FEW) * (2 * len(kinds) + 2) + len(atlas.PERIODS)
     assert all((f"| {name} | " in report) == (name in FEW) for name in atlas.NETWORKS)
     assert "| A claim | none |" in report
+    assert "A place is formed by pairs of runs with the same seed" in report
     assert (tmp_path / "a" / "atlas.png").stat().st_size > 10_000
     with (tmp_path / "a" / "league.csv").open(encoding="utf-8") as file:
         table = list(csv.reader(file))

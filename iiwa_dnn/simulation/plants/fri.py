@@ -60,6 +60,10 @@ class FriClient:
             MissingDependencyError: The package protobuf is not installed.
         """
         message_types()
+        if ":" in host:
+            raise InvalidInputError(
+                "host", f"{host} has a port: it is UDP port {port} always", host
+            )
         self._link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._robot: Any = None
         self._counter = 0

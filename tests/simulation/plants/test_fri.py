@@ -214,6 +214,11 @@ def test_nobody_there(port, monkeypatch) -> None:
         track(FriPlant("127.0.0.1", port=port))
 
 
+def test_an_address_with_a_port() -> None:
+    with pytest.raises(InvalidInputError, match="it is UDP port 30200 always"):
+        track(FriPlant("127.0.0.1:30277"))
+
+
 def test_a_port_that_is_taken(port) -> None:
     with Robot(port):
         plant = FriPlant(port=port)
