@@ -214,19 +214,10 @@ def control_step(
     views.figures[4] = gap
     views.decision[0] = 0.0
     views.decision[1] = 1.0
-    views.decision[2] = ADVANCED if own[DURATION] > 0.0 else SOLVED
+    views.decision[2] = status_of(primal, dual, gap, own, state)
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
-    size = primal + dual + gap
-    if own[DURATION] > 0.0:
-        # The point of an infinite state is finite, since it is clipped to the bounds.
-        for i in range(state.size):
-            size += abs(state[i])
-    succeeded = size < np.inf
-    if own[DURATION] == 0.0:
-        succeeded = within(primal, dual, gap, own[TOLERANCE])
-    if not succeeded:
-        views.decision[2] = NOT_SETTLED if size < np.inf else NOT_FINITE
+    if views.decision[2] >= NOT_SETTLED:
         for i in range(state.size):
             state[i] = before[i]
         return False
@@ -237,6 +228,24 @@ def control_step(
         following[WANTED, i] = past[WANTED, i]
     following[REST, 0] = 0.0
     return True
+
+
+@compiled
+def status_of(primal: float, dual: float, gap: float, own: Vector, state: Vector) -> int:
+    """Judge an answer by its residuals; one that was advanced by its state (size,) too.
+
+    The point of an infinite state is finite, since it is clipped to the bounds. `own` are the
+    constants of the network.
+    """
+    size = primal + dual + gap
+    if own[DURATION] > 0.0:
+        for i in range(state.size):
+            size += abs(state[i])
+    if not size < np.inf:
+        return NOT_FINITE
+    if own[DURATION] > 0.0:
+        return ADVANCED
+    return SOLVED if within(primal, dual, gap, own[TOLERANCE]) else NOT_SETTLED
 
 
 @compiled
