@@ -114,8 +114,8 @@ def _needed(needed: Mapping[str, Any] | None) -> str:
     ratio = np.ceil(10.0 * 1.02 * needed["speed_ratio"]) / 10.0
     time = np.ceil(10.0 * needed["time_s"]) / 10.0
     return (
-        f"; needs {ratio:g} times the speed of joint {needed['joint']}, or {ratio:g} times as long "
-        f"a time; slowed as here it ends after about {time:g} s"
+        f"; needs {ratio:g} times the joints' speed, most of all joint {needed['joint']}'s, or "
+        f"{ratio:g} times as long a time; slowed as here it ends after about {time:g} s"
     )
 
 

@@ -339,7 +339,7 @@ def test_what_would_suffice_does_and_less_does_not():
 
     slow = run_at(0.05)
     needed = compute_metrics(slow)["incidents"]["needed"]
-    pattern = r"needs ([\d.]+) times .* joint (\d), or \1 times .* after about ([\d.]+) s"
+    pattern = r"needs ([\d.]+) times .* joint (\d)'s, or \1 times .* after about ([\d.]+) s"
     said = re.search(pattern, failures(slow)[-1])
     ratio = float(said[1])
     assert 0.0 <= ratio - 1.02 * needed["speed_ratio"] < 0.1 + 1e-9
