@@ -158,6 +158,7 @@ def _texts(
     return {
         "steps": len(vectors.t),
         "velocity_limits": _numbers(limits),
+        "tolerance": f"{10.0 * controller.solver.tol:g}",
         "q0": _numbers(start.q),
         "target": _numbers(vectors.targets[0]),
         "sample": sample * has_reference,
