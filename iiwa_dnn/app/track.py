@@ -138,9 +138,9 @@ def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
 
     Empty if they do not, or if limits were asked for.
     """
-    if options.joint_limit is not None:
-        return ""
     sheet = load_robot(options.robot, locked=options.lock)
+    if options.joint_limit is not None or limited(sheet) is sheet:
+        return ""
     problem = sheet.outside(q.max(axis=0)) or sheet.outside(q.min(axis=0))
     if not problem:
         return ""
