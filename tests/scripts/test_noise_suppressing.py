@@ -17,6 +17,7 @@ from scripts.noise_suppressing import (
     NOISE,
     RECORDED,
     SHIFT,
+    STEP,
     Arm,
     Rates,
     dual,
@@ -134,24 +135,44 @@ def test_white_noise_is_amplified_by_18_percent() -> None:
 # Not as skipped tests: with CI=true that is a failure, and the authors' files are not ours to keep.
 if "NSND_FILES" in os.environ:
     FILES = Path(os.environ["NSND_FILES"])
+    STEPS = 200  # of a run beside theirs, 0.1 s
+
+    RATES = """
+            for row = rows'
+              evalc("found(end + 1, :) = mpt_net(row(1), row(2:end));");  % it prints the time
+            end
+    """
+    RUN = f"""
+            h = {STEP};
+            y = rows(1, 2:end)';
+            for t = rows(1, 1) + h * (0:{STEPS} - 1)
+              evalc("k1 = mpt_net(t, y); k2 = mpt_net(t + h / 2, y + h / 2 * k1);");
+              evalc("k3 = mpt_net(t + h / 2, y + h / 2 * k2); k4 = mpt_net(t + h, y + h * k3);");
+              y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+            end
+            found = y';
+    """
 
     def theirs(
-        folder: str, constants: dict[str, float], rows: np.ndarray, where: Path
+        folder: str, constants: dict[str, float], rows: np.ndarray, where: Path, code: str = RATES
     ) -> np.ndarray:
-        """Call the right-hand side of their programs by Octave for rows [t | state], (k, size)."""
+        """Use the right-hand side of their programs by Octave, for rows [t | state], (k, size).
+
+        Returns:
+            Its values, or by `RUN` the state after `STEPS` steps from the first row.
+        """
         np.savetxt(where / "rows", rows, fmt="%.17g")
         values = " ".join(f"{name} = {value};" for name, value in constants.items())
-        code = f"""
+        program = f"""
             global {" ".join(constants)}
             {values}
             addpath("{FILES / folder}");
+            rows = load("{where / "rows"}");
             found = [];
-            for row = load("{where / "rows"}")'
-              evalc("found(end + 1, :) = mpt_net(row(1), row(2:end));");  % it prints the time
-            end
+            {code}
             save("-ascii", "-double", "{where / "found"}", "found");
         """
-        subprocess.run(["octave-cli", "--quiet", "--eval", code], check=True)
+        subprocess.run(["octave-cli", "--quiet", "--eval", program], check=True)
         return np.loadtxt(where / "found")
 
     def rows_near(start: np.ndarray) -> np.ndarray:
@@ -178,6 +199,25 @@ if "NSND_FILES" in os.environ:
         found = theirs("robot ur5 of the dual neural network", constants, wide, tmp_path)
         expected = np.array([ours(row[0], row[1:]) for row in rows])
         np.testing.assert_allclose(np.delete(found, np.s_[6:12], axis=1), expected, atol=1e-9)
+
+    def test_joints_are_those_of_the_authors_program(tmp_path: Path) -> None:
+        """By the same method, to 1e-6 rad."""
+        start, _ = suppressing(Arm(), NOISE)
+        folder = "robot ur5 of the proposed neural dynamics"
+        constants = {"n": 6, "ec": 3, "iec": 12, "eta": GAIN, "gamma": GAIN}
+        state = theirs(folder, constants, np.array([[0.0, *start]]), tmp_path, RUN)
+        _, q, _ = run(suppressing, NOISE, STEPS * STEP)
+        np.testing.assert_allclose(state[:6], q[-1], rtol=0, atol=1e-6)
+
+    def test_joints_are_those_of_the_authors_dual_network(tmp_path: Path) -> None:
+        """By the same method, to 1e-12 rad."""
+        start, _ = dual(Arm(), GAIN * NOISE)
+        wide = np.insert(start, [6] * 6, 0.0)  # their joint velocities, used by nothing
+        folder = "robot ur5 of the dual neural network"
+        constants = {"n": 6, "m": 3, "gamma": GAIN}
+        state = theirs(folder, constants, np.array([[0.0, *wide]]), tmp_path, RUN)
+        _, q, _ = run(dual, GAIN * NOISE, STEPS * STEP)
+        np.testing.assert_allclose(state[:6], q[-1], rtol=0, atol=1e-12)
 
     def test_recorded_postures_are_those_of_a_larger_path() -> None:
         recorded = np.loadtxt(FILES / "vrep api" / "angle data.txt")[:, :6] - SHIFT
