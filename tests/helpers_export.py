@@ -14,8 +14,7 @@ import pytest
 
 from iiwa_dnn.checks import Array
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import DOUBLE, Value
-from iiwa_dnn.export.values import Array as Pointer
+from iiwa_dnn.export.values import DOUBLE, Array as Pointer, Value
 
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 HEAD = "#include <math.h>\n#include <stdbool.h>\n\n"

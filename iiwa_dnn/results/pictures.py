@@ -159,8 +159,7 @@ def frames(robot: Robot, record: Record) -> Iterator[Image]:
 
 
 def _captioned(frame: Image, text: str) -> Image:
-    from PIL import Image as PillowImage
-    from PIL import ImageDraw, ImageFont
+    from PIL import Image as PillowImage, ImageDraw, ImageFont
 
     picture = PillowImage.fromarray(frame)
     font = ImageFont.load_default(22)

@@ -1,36 +1,46 @@
 """Redundancy-resolution schemes: costs, tasks and limits that make a control step's program."""
 
-from iiwa_dnn.robot.obstacles import Box as Box
-from iiwa_dnn.robot.obstacles import Capsule as Capsule
-from iiwa_dnn.robot.obstacles import ConvexMesh as ConvexMesh
-from iiwa_dnn.robot.obstacles import HalfSpace as HalfSpace
-from iiwa_dnn.robot.obstacles import Obstacle as Obstacle
-from iiwa_dnn.robot.obstacles import Sphere as Sphere
-from iiwa_dnn.schemes.acceleration import JointAcceleration as JointAcceleration
-from iiwa_dnn.schemes.acceleration import JointTorque as JointTorque
+from iiwa_dnn.robot.obstacles import (
+    Box as Box,
+    Capsule as Capsule,
+    ConvexMesh as ConvexMesh,
+    HalfSpace as HalfSpace,
+    Obstacle as Obstacle,
+    Sphere as Sphere,
+)
+from iiwa_dnn.schemes.acceleration import (
+    JointAcceleration as JointAcceleration,
+    JointTorque as JointTorque,
+)
 from iiwa_dnn.schemes.base import Scheme as Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance as CollisionAvoidance
-from iiwa_dnn.schemes.costs import CyclicMotion as CyclicMotion
-from iiwa_dnn.schemes.costs import KineticEnergy as KineticEnergy
-from iiwa_dnn.schemes.costs import Manipulability as Manipulability
-from iiwa_dnn.schemes.double_indicator import DoubleIndicator as DoubleIndicator
-from iiwa_dnn.schemes.double_indicator import PseudoInverse as PseudoInverse
-from iiwa_dnn.schemes.frame_tasks import AxisTask as AxisTask
-from iiwa_dnn.schemes.frame_tasks import PoseTask as PoseTask
-from iiwa_dnn.schemes.frame_tasks import RelativePoseTask as RelativePoseTask
-from iiwa_dnn.schemes.frame_tasks import RemoteCenterTask as RemoteCenterTask
-from iiwa_dnn.schemes.joint_tasks import CenterOfMassTask as CenterOfMassTask
-from iiwa_dnn.schemes.joint_tasks import ElbowAngleTask as ElbowAngleTask
-from iiwa_dnn.schemes.joint_tasks import JointCouplingTask as JointCouplingTask
-from iiwa_dnn.schemes.joint_tasks import PostureTask as PostureTask
+from iiwa_dnn.schemes.costs import (
+    CyclicMotion as CyclicMotion,
+    KineticEnergy as KineticEnergy,
+    Manipulability as Manipulability,
+)
+from iiwa_dnn.schemes.double_indicator import (
+    DoubleIndicator as DoubleIndicator,
+    PseudoInverse as PseudoInverse,
+)
+from iiwa_dnn.schemes.frame_tasks import (
+    AxisTask as AxisTask,
+    PoseTask as PoseTask,
+    RelativePoseTask as RelativePoseTask,
+    RemoteCenterTask as RemoteCenterTask,
+)
+from iiwa_dnn.schemes.joint_tasks import (
+    CenterOfMassTask as CenterOfMassTask,
+    ElbowAngleTask as ElbowAngleTask,
+    JointCouplingTask as JointCouplingTask,
+    PostureTask as PostureTask,
+)
 from iiwa_dnn.schemes.limits import JointLimits as JointLimits
-from iiwa_dnn.schemes.motion_limits import AccelerationLimits as AccelerationLimits
-from iiwa_dnn.schemes.motion_limits import JerkLimits as JerkLimits
-from iiwa_dnn.schemes.parts import Cost as Cost
-from iiwa_dnn.schemes.parts import Limit as Limit
-from iiwa_dnn.schemes.parts import Part as Part
-from iiwa_dnn.schemes.parts import Task as Task
+from iiwa_dnn.schemes.motion_limits import (
+    AccelerationLimits as AccelerationLimits,
+    JerkLimits as JerkLimits,
+)
+from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.step import Step as Step
-from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask
-from iiwa_dnn.schemes.tasks import PositionTask as PositionTask
+from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask, PositionTask as PositionTask
 from iiwa_dnn.schemes.tip_speed import TipSpeedLimit as TipSpeedLimit

@@ -19,8 +19,7 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import kendalltau
-from scipy.stats import t as student
+from scipy.stats import kendalltau, t as student
 
 from iiwa_dnn.checks import finite_array
 from iiwa_dnn.errors import InvalidInputError
