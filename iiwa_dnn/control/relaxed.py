@@ -83,6 +83,10 @@ FASTEST = 1e3
 RETREAT = 0.9
 """Largest part of what the bounds let a row be that it may ask for where the task yields."""
 
+STAGNANT = 10.0
+"""Residual, in tolerances, up to which the scaled program counts as settled: where rows nearly
+depend on each other it may stay above one. What is asked for then is what its solution gives."""
+
 TRIES = 3
 """Parts that are tried, down to none, where several rows ask for more than all can have."""
 
@@ -157,11 +161,16 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
 
 
 @compiled
-def settled(qp: QPViews, yielding: Yielding, state: Vector, point: Vector) -> bool:
-    """Settle the network on a program from a state (size,); test whether it has a solution."""
+def settled(
+    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, tolerances: float
+) -> bool:
+    """Settle the network on a program from a state (size,); test whether it has a solution.
+
+    Its residuals may be as large as some `tolerances`.
+    """
     settings = yielding.settings
     _, _, primal, dual, gap = enter_answer(yielding.answer, qp, 0, settings, state, point)
-    return within(primal, dual, gap, settings[TOLERANCE])
+    return within(primal, dual, gap, tolerances * settings[TOLERANCE])
 
 
 @compiled
@@ -200,13 +209,13 @@ def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector
     scaled = qp_views(data, size, m, p)
     longest = _write_scaled(qp, yielding.weights, scaled)
     state = np.zeros(3 * size + m + p)
-    if not settled(scaled, yielding, state, point):
+    if not settled(scaled, yielding, state, point, STAGNANT):
         return np.nan
     for _ in range(MAX_PASSES):
         before = point[n]
         for i in range(n):
             scaled.q[i] = -row_dot(scaled.P, i, point)
-        if not settled(scaled, yielding, state, point):
+        if not settled(scaled, yielding, state, point, STAGNANT):
             return np.nan
         if abs(point[n] - before) <= 0.1 * REACHED:
             break
@@ -338,7 +347,7 @@ def _settled_in_retreat(qp: QPViews, yielding: Yielding, soft: QPViews, point: V
         asks = _limit_retreat(qp, yielding, soft, share)
         for i in range(state.size):
             state[i] = 0.0
-        if settled(soft, yielding, state, point):
+        if settled(soft, yielding, state, point, 1.0):
             return True
         if not asks:
             return False
@@ -556,7 +565,7 @@ def _nearest_within(qp: QPViews, x: Vector, yielding: Yielding, data: Vector) ->
             nearest.G[j, i] = qp.G[j, i]
     point = np.empty(2 * n + m)
     state = np.zeros(3 * n + m)
-    if not settled(nearest, yielding, state, point):
+    if not settled(nearest, yielding, state, point, 1.0):
         return False
     for i in range(n):
         x[i] = point[i]

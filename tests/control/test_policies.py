@@ -13,7 +13,7 @@ from scipy.optimize import linprog, lsq_linear
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import near_target, paper_robot, paper_start
-from iiwa_dnn import Controller, Target
+from iiwa_dnn import Controller, Target, load_robot
 from iiwa_dnn.control import policies
 from iiwa_dnn.control.command import RowLayout, row_views
 from iiwa_dnn.control.policies import Action, Resolution
@@ -199,6 +199,21 @@ def test_the_scaling_factor_is_the_linear_programs(walls: int) -> None:
         )
         assert found.status == 0
         assert largest_fraction(qp).fraction * size == pytest.approx(found.x[7], abs=1e-8)
+
+
+def test_a_scaled_program_that_stagnates_above_the_tolerance_has_a_factor() -> None:
+    """Rounding in the orientation's rows, of 1e-8 rad, asks for more than a tolerance there."""
+    robot = load_robot("ur5").with_limits(velocity=0.5)
+    conf = Configuration(robot, [0.003, -1.19878341, 1.59714915, -1.96836812, -1.56999761, 0.003])
+    qp = DoubleIndicator().build_qp(conf, Target(conf.position, conf.rotation), dt=2e-3)
+    qp.b[:] = [8.7244e-02, 3.97457676e-01, 8.7537e-02, -1.1985085e-08, -1.2000648e-08, -3.56e-11]
+    found = linprog(
+        np.append(np.zeros(6), -1.0),
+        A_eq=np.column_stack([qp.A, -qp.b]),
+        b_eq=np.zeros(6),
+        bounds=[*zip(qp.lb, qp.ub, strict=True), (0.0, 1.0)],
+    )
+    assert largest_fraction(qp).fraction == pytest.approx(found.x[6], abs=1e-6)
 
 
 @pytest.mark.parametrize("outside", [0.0, 0.002])
