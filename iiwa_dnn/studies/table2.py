@@ -99,10 +99,10 @@ def _measure(
     printed = _paper_changes(MEASURES[key])
     return {
         "cases": [case.to_json() for case in cases],
-        "verdict": judge_row(range(4), MEASURES[key], [case.mean for case in cases]).to_json(),
+        "verdict": judge_row(range(4), MEASURES[key], [case.mean for case in cases]),
         "difference": paired_difference(filtered, plain).to_json(),
         "changes": {
-            name: change.to_json() | judge_change(printed[name], change).to_json()
+            name: change.to_json() | judge_change(printed[name], change)
             for name, change in changes.items()
         },
     }
