@@ -128,20 +128,21 @@ class Entry(NamedTuple):
 
 def still(network: Network) -> Entry:
     """Return the entry of a network for a program that stands still."""
-
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        return DNNSolver(network, follower=Paced(count, share=share))
-
-    return Entry(network, make, network.work)
+    return Entry(
+        network,
+        lambda count, share, dt: DNNSolver(network, follower=Paced(count, share=share)),
+        network.work,
+    )
 
 
 def settled(network: Network) -> Entry:
     """Return the entry of a network that is integrated implicitly towards rest."""
-
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        return DNNSolver(network, follower=CutOff(max_steps=count))
-
-    return Entry(network, make, _condensed, paced=False)
+    return Entry(
+        network,
+        lambda count, share, dt: DNNSolver(network, follower=CutOff(max_steps=count)),
+        _condensed,
+        paced=False,
+    )
 
 
 def zeroing(formula: Formula = EULER, **options: Any) -> Entry:

@@ -61,7 +61,8 @@ class DisturbedLoop:
         Raises:
             IiwaDnnError: The tool is 1 m away from its target, or the network has diverged.
         """
-        tool = self._tool()
+        self._arm.update(self.q)
+        tool: Vector = self._arm.placements[self._arm.frame_ids[0]].copy()
         target = self._targets[k].copy()
         error = float(np.linalg.norm(target[:3] - tool[9:]))
         if not error < 1.0:
@@ -70,12 +71,6 @@ class DisturbedLoop:
         x, residual = self._answer(k)
         self._move(k, x)
         return error, residual
-
-    def _tool(self) -> Vector:
-        """Return the true placement of the tool, (12,)."""
-        self._arm.update(self.q)
-        placement: Vector = self._arm.placements[self._arm.frame_ids[0]].copy()
-        return placement
 
     def _write(self, k: int, target: Vector, tool: Vector) -> None:
         """Write the program of step k for a target (18,) and the tool's placement (12,)."""
