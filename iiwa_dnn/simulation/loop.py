@@ -1,7 +1,5 @@
 """The control loop: read, decide, alter, move. Whoever wants to know observes its outcomes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -287,10 +285,9 @@ class Loop:
     def _note_levels(self) -> None:
         """Note programs and answers of the levels of priority."""
         levels = self.controller.levels
-        if levels:
-            self._levels.append(
-                [(np.concatenate([level.data, level.x]), np.abs(level.missing)) for level in levels]
-            )
+        self._levels.append(
+            [(np.concatenate([level.data, level.x]), np.abs(level.missing)) for level in levels]
+        )
 
     def _taken_levels(self) -> Sequence[Levels]:
         """Return the levels noted since the last step."""
