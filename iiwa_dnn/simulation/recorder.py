@@ -74,8 +74,6 @@ class Recorder:
         self._outcomes = []
         count = len(outcomes)
         rows = np.array([command.row for each in outcomes for command in each.commands])
-        if not count:
-            return rows.reshape(0, self.layout.width)
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
