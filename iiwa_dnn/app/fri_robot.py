@@ -18,26 +18,26 @@ def run(options: FriRobotOptions) -> int:
     controller = FriController(robot, plant, q0, options.period)
     shown = ""
 
+    def say(line: str) -> None:
+        if not options.quiet:
+            print(line, flush=True)
+
     def show(controller: FriController) -> None:
         nonlocal shown
         line = controller.state.name
         if options.verbose:
             line += f", connection {controller.connection.quality.name}"
-        if line != shown and not options.quiet:
-            print(line, flush=True)
+        if line != shown:
+            say(line)
         shown = line
 
-    if not options.quiet:
-        arm = "ideal arm" if ideal else "arm in MuJoCo"
-        period = f"every {1e3 * controller.period:g} ms"
-        print(
-            f"{robot.name}, {arm}: messages to {options.host}:{options.port} {period}", flush=True
-        )
+    arm = "ideal arm" if ideal else "arm in MuJoCo"
+    to = f"{options.host}:{options.port} every {1e3 * controller.period:g} ms"
+    say(f"{robot.name}, {arm}: messages to {to}")
     show(controller)
     serve(controller, options.host, options.port, options.own_port, options.realtime, show)
-    if not options.quiet:
-        packets = sorted(controller.connection.packets.items())
-        print("commands:", ", ".join(f"{count:,} {kind}" for kind, count in packets))
+    packets = sorted(controller.connection.packets.items())
+    say("commands: " + ", ".join(f"{count:,} {kind}" for kind, count in packets))
     if controller.fault is None:
         return 0
     print(f"the session ended: {controller.fault}", file=sys.stderr)

@@ -10,7 +10,7 @@ from numba import njit
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references.base import AT_REST, Reference
+from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotations import (
     column_of,
     combined,
@@ -68,26 +68,6 @@ class Cone(Reference):
         self._set(constants=np.array([self.angle, 2.0 * np.pi / self.period]))
 
 
-class _OnPath(Reference):
-    """A path made of another one, `along`."""
-
-    along: Reference
-
-    @property
-    def period(self) -> float:
-        return self.along.period
-
-    @property
-    def duration(self) -> float:
-        return self.along.duration
-
-    def _along(self, t: float) -> Array:
-        """Compute the other path's target (18,) at a time [s]."""
-        target = AT_REST.copy()
-        self.along.move(t, target)
-        return target
-
-
 @njit(cache=True, error_model="numpy")
 def _tilt(t: float, constants: Array, target: Array) -> None:
     angle, rate, x, y, z = constants
@@ -98,7 +78,7 @@ def _tilt(t: float, constants: Array, target: Array) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Tilting(_OnPath):
+class Tilting(Reference):
     """A path on which the tool tilts to and fro about an axis; by default a circle.
 
     With w = 2 pi turns / period::
@@ -130,9 +110,19 @@ class Tilting(_OnPath):
         self._set(axis=vector3("axis", self.axis))
         self._set(constants=np.array([self.angle, rate, *direction("axis", self.axis)]))
 
+    @property
+    def period(self) -> float:
+        """Time after which the path repeats [s]."""
+        return self.along.period
+
+    @property
+    def duration(self) -> float:
+        """Time to take the path once [s]."""
+        return self.along.duration
+
     def move(self, t: float, target: Array) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
-        move_target(target, self._along(t))
+        move_target(target, self.along.at(t).data)
         _tilt(t, self.constants, target)
 
 
@@ -182,7 +172,7 @@ def _least_turn(u: Vector3, v: Vector3) -> Vector3:
 
 
 @dataclass(frozen=True, eq=False)
-class OnSurface(_OnPath):
+class OnSurface(Reference):
     """A path laid on a plane or a sphere, the tool normal to it; by default the heart.
 
     The path's x-y plane becomes the tangent plane at the start, z the outward normal n; with d the
@@ -234,8 +224,8 @@ class OnSurface(_OnPath):
 
     def move(self, t: float, target: Array) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
-        inner = self._along(t if self.normal is None else max(t - self.lead, 0.0))
-        _lay(t, self.constants, inner, target)
+        inner = self.along.at(t if self.normal is None else max(t - self.lead, 0.0))
+        _lay(t, self.constants, inner.data, target)
 
 
 def _acute(angle: float) -> float:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array, Vector3, finite_array, one_of, positive, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
+from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotation_spline import fit_rotations
 from iiwa_dnn.references.rotations import (
@@ -284,8 +285,8 @@ def _times_at(poses: Array, speed: float, rate: float) -> Array:
     return np.concatenate([[0.0], np.cumsum(np.maximum(lengths / speed, angles / rate))])
 
 
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """Read a CSV file: number and cells of each line that is not empty."""
+def _read(path: Path) -> tuple[list[str], Array]:
+    """Read a file of points or poses: the names of its columns, and its rows."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file)
@@ -293,13 +294,8 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     except UnicodeDecodeError as error:
         raise FileError(path, "not UTF-8 text") from error
     except (OSError, ValueError, csv.Error) as error:  # a NUL in the path is a ValueError
-        raise FileError(path, getattr(error, "strerror", None) or str(error)) from error
-    return [line for line in lines if any(line[1])]
-
-
-def _read(path: Path) -> tuple[list[str], Array]:
-    """Read a file of points or poses: the names of its columns, and its rows."""
-    (first, header), *filled = _lines(path) or [(1, [])]
+        raise FileError(path, one_line(error)) from error
+    (first, header), *filled = [line for line in lines if any(line[1])] or [(1, [])]
     columns = [cell.lower() for cell in header]
     if columns not in _HEADERS:
         problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"

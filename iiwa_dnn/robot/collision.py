@@ -281,7 +281,8 @@ def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array
     axes = np.linalg.svd(points - middle, full_matrices=False)[2]
 
     def volume(x: checks.Array) -> float:
-        return _volume(*_capsule_along(points, x))
+        a, b, radius = _capsule_along(points, x)
+        return float(np.pi * radius**2 * (np.linalg.norm(b - a) + 4.0 / 3.0 * radius))
 
     found = []
     for axis in axes:
@@ -309,10 +310,6 @@ def _capsule_along(
     if low > high:  # any point between them is the middle of a sphere that holds all
         low = high = 0.5 * (low + high)
     return origin + low * axis, origin + high * axis, radius
-
-
-def _volume(a: checks.Array, b: checks.Array, radius: float) -> float:
-    return float(np.pi * radius**2 * (np.linalg.norm(b - a) + 4.0 / 3.0 * radius))
 
 
 def _corners(shape: coal.CollisionGeometry) -> checks.Array:

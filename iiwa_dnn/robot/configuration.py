@@ -1,7 +1,5 @@
 """A configuration: joint positions together with the kinematics that belong to them."""
 
-from __future__ import annotations
-
 from warnings import warn
 
 import numpy as np

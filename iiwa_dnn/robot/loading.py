@@ -102,12 +102,7 @@ def load_robot(
         from iiwa_dnn.robot.verification import verify_robot  # of an extra
 
         verify_robot(robot)
-    if tool is None:
-        return robot
-    try:
-        return robot.with_tool(tool)
-    except InvalidInputError as error:  # its argument may be the name of the new frame
-        raise InvalidInputError("tool", error.problem, tool) from None
+    return robot if tool is None else robot.with_tool(tool)
 
 
 def robots_folder() -> Path:

@@ -184,9 +184,7 @@ class HalfSpace(Obstacle):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        normal = np.array(checks.vector3("normal", self.normal))
-        length = checks.positive("normal", float(np.linalg.norm(normal)))
-        self._set("normal", tuple((normal / length).tolist()))
+        self._set("normal", checks.direction("normal", self.normal))
         checks.finite("offset", self.offset)
 
     @property

@@ -91,9 +91,6 @@ class Robot:
         tip_id = self.frame_id(self.tip)
         if self.model.frames[tip_id].parentJoint == 0:
             raise InvalidInputError("tip", f"no joint moves frame {self.tip!r}", self.tip)
-        if len(self.q_locked) != len(self.locked):
-            problem = f"must have one position for each of {len(self.locked)} locked joints"
-            raise InvalidInputError("q_locked", problem, self.q_locked)
         object.__setattr__(self, "tip_id", tip_id)
         for name in _LIMITS:
             object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
@@ -212,7 +209,7 @@ class Robot:
             InvalidInputError: If the pose is neither, or not finite, or the name is taken.
         """
         if name in self.frame_names:
-            raise InvalidInputError("name", f"the robot has a frame {name!r} already", name)
+            raise InvalidInputError("tool", f"the robot has a frame {name!r} already", name)
         if not isinstance(tool, pin.SE3):
             xyz_rpy = checks.finite_array("tool", tool, (6,)).copy()
             tool = pin.SE3(pin.rpy.rpyToMatrix(xyz_rpy[3:]), xyz_rpy[:3])

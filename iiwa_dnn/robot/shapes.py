@@ -43,17 +43,6 @@ class Shape:
     color: tuple[float, float, float]
 
 
-def visual_shapes(robot: Robot) -> list[Shape]:
-    """List the shapes of a robot, or sticks from joint to joint where it has none.
-
-    Meshes in the URDF's folder or above it are read; where one is missing, none is.
-
-    Raises:
-        InvalidInputError: If the robot does not come from a file.
-    """
-    return list(_visuals(robot)) or _sticks(robot)
-
-
 def read_shapes(robot: Robot, kind: pin.GeometryType, text: str) -> list[pin.GeometryObject]:
     """Read the visual or collision shapes of a URDF's text; meshes in its folder or above it.
 
@@ -70,9 +59,15 @@ def read_shapes(robot: Robot, kind: pin.GeometryType, text: str) -> list[pin.Geo
     return list(found.geometryObjects)
 
 
-@lru_cache(maxsize=4)
-def _visuals(robot: Robot) -> tuple[Shape, ...]:
-    """Read the shapes; a robot of 100,000 triangles takes seconds."""
+@lru_cache(maxsize=4)  # a robot of 100,000 triangles takes seconds
+def visual_shapes(robot: Robot) -> tuple[Shape, ...]:
+    """List the shapes of a robot, or sticks from joint to joint where it has none.
+
+    Meshes in the URDF's folder or above it are read; where one is missing, none is.
+
+    Raises:
+        InvalidInputError: If the robot does not come from a file.
+    """
     text = urdf_of(robot)
     try:
         found = read_shapes(robot, pin.GeometryType.VISUAL, text)
@@ -88,7 +83,7 @@ def _visuals(robot: Robot) -> tuple[Shape, ...]:
             pose = part.placement.copy()
             joint = int(part.parentJoint)
             shapes.append(Shape(*drawn, joint, pose.translation, pose.rotation, tuple(color)))
-    return tuple(shapes)
+    return tuple(shapes or _sticks(robot))
 
 
 def joint_poses(robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> list[pin.SE3]:

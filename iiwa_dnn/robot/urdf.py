@@ -120,7 +120,7 @@ def _read(path: Path) -> ET.Element:
     try:
         content = _expanded(path) if path.suffix == ".xacro" else path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise FileError(path, getattr(error, "strerror", None) or str(error)) from error
+        raise FileError(path, one_line(error)) from error
     try:
         root = ET.fromstring(content, parser=ET.XMLParser(target=_NoDoctype()))
         text_of(root)  # elements nested too deeply can be read, but not written

@@ -7,8 +7,7 @@ sizes are assumptions, stated here, as the maker publishes none of them.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,11 +35,6 @@ class Push:
         object.__setattr__(self, "force", checks.vector3("push", self.force))
         checks.not_negative("push_at", self.start)
         checks.not_negative("push_for", self.duration)
-
-    @property
-    def end(self) -> float:
-        """Time at which it ends [s]."""
-        return self.start + self.duration
 
 
 @dataclass(frozen=True)
@@ -97,10 +91,6 @@ class Disturbances:
         """Draw the factor on mass and inertia of the links that each joint carries, (n,)."""
         signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
         return 1.0 + self.mass_error * signs
-
-    def settings(self) -> dict[str, Any]:
-        """Return all of it as values that JSON can hold."""
-        return asdict(self)
 
 
 class Encoder:

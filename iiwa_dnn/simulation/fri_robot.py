@@ -30,14 +30,12 @@ from iiwa_dnn.simulation.plants.fri_messages import (
     LARGEST_MESSAGE,
     MONITORING_ID,
     PORT,
+    WRAP,
     Quality,
     SessionState,
     message_types,
     parse,
 )
-
-PERIODS = (1e-3, 0.1)
-"""Shortest and longest period of FRI [s]."""
 
 WINDOW = 100
 """Number of the last messages that the connection quality is computed from."""
@@ -55,10 +53,8 @@ CLOSING_MESSAGES = 3
 """Messages that tell the client of the end of the session; some may be lost."""
 
 _PATIENCE = 0.1  # longest period without real time [s]
-_LATE = 0.5  # part of a period that a client has at least [1]
-_MIRRORED = 1e-6  # largest difference of a repeated position [rad]
-_ROUNDING = 1e-6  # largest relative excess of a velocity limit by rounding errors
-_WRAP = 2**32  # sequence counters begin again here
+_LATE = 0.5  # part of a period by which a message may be sent late [1]
+_ROUNDING = 1e-6  # of a repeated position [rad], and of a velocity limit, relative to it
 
 # Entries of the SDK's enumerations: overlay of joint positions, commands of positions, drives on.
 _OVERLAY_JOINT = 1
@@ -107,8 +103,8 @@ class Connection:
             return
         if self._newest is not None:
             before = self._newest.header.sequenceCounter
-            ahead = (command.header.sequenceCounter - before) % _WRAP
-            if ahead == 0 or (ordered and ahead > _WRAP // 2):
+            ahead = (command.header.sequenceCounter - before) % WRAP
+            if ahead == 0 or (ordered and ahead > WRAP // 2):
                 self.packets["repeated"] += 1
                 return
         self._newest = command
@@ -124,7 +120,7 @@ class Connection:
         self._in_time.append(kind == "in time")
         ratio = sum(self._in_time) / WINDOW
         self.quality = next(each for each, least in THRESHOLDS.items() if ratio >= least)
-        self._sequence = (self._sequence + 1) % _WRAP
+        self._sequence = (self._sequence + 1) % WRAP
         command = self._newest if self.answered else None
         self.answered = False
         return command
@@ -163,9 +159,8 @@ class FriController:
         """
         if robot.dof != JOINTS:
             raise InvalidInputError("robot", f"must have {JOINTS} joints, not {robot.dof}", robot)
-        shortest, longest = PERIODS
         self.period = round(checks.positive("period", period), 3)
-        if abs(self.period - period) > 1e-9 or not shortest <= self.period <= longest:
+        if abs(self.period - period) > 1e-9 or not 1e-3 <= self.period <= 0.1:
             problem = f"must be whole milliseconds from 1 to 100, not {1e3 * period:g}"
             raise InvalidInputError("period", problem, period)
         self.commanded: Vector = checks.finite_array("q0", q0, (JOINTS,))
@@ -180,7 +175,7 @@ class FriController:
         self._plant = plant
         self._held = self.commanded
         self._in_state = 0
-        self._velocity: Vector = np.zeros(JOINTS)
+        self._moves = False
         plant.start(robot, self.commanded, self.period, 0)
 
     def message(self) -> bytes:
@@ -188,7 +183,6 @@ class FriController:
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
         zeros = {"value": [0.0] * JOINTS}
         torque = self._plant.torque
-        commanding = self.state >= SessionState.COMMANDING_WAIT
         held = {
             "jointPosition": {"value": self._held.tolist()},
             "clientCommandMode": _COMMAND_POSITION,
@@ -211,10 +205,9 @@ class FriController:
                 "sendPeriod": round(1e3 * self.period),
                 "receiveMultiplier": 1,
             },
-            ipoData=held if commanding else None,
+            ipoData=held if self.state >= SessionState.COMMANDING_WAIT else None,
         )
-        encoded: bytes = message.SerializeToString()
-        return encoded
+        return bytes(message.SerializeToString())
 
     def receive(self, datagram: bytes) -> None:
         """Take a datagram of the client."""
@@ -228,17 +221,19 @@ class FriController:
         q = self.commanded
         if self.state is SessionState.IDLE:
             pass
-        elif self.state < SessionState.COMMANDING_WAIT:
-            self._monitor(good)
-        elif not good and self.state is SessionState.COMMANDING_WAIT:
+        elif not good and self.state < SessionState.COMMANDING_ACTIVE:
             self._enter(SessionState.MONITORING_WAIT)
+        elif self.state is SessionState.MONITORING_WAIT:
+            self._enter(SessionState.MONITORING_READY)
+        elif self.state is SessionState.MONITORING_READY:
+            if self._in_state >= READY_PERIODS:
+                self._enter(SessionState.COMMANDING_WAIT)
         elif not good:
-            moving = self._velocity.any()
             quality = self.connection.quality.name
-            self.end(f"the connection became {quality} in motion" if moving else None)
+            self.end(f"the connection became {quality} in motion" if self._moves else None)
         elif command is not None:
             q = self._judge(np.array(command.commandData.jointPosition.value))
-            self._velocity = (q - self.commanded) / self.period
+            self._moves = bool((q != self.commanded).any())
         self._plant.move((q - self.commanded) / self.period)
         self.commanded = q
         if self._plant.fault is not None:
@@ -253,15 +248,6 @@ class FriController:
         self.state = state
         self._in_state = 0
 
-    def _monitor(self, good: bool) -> None:
-        """Change between the states before the client commands, by the connection quality."""
-        if not good:
-            self._enter(SessionState.MONITORING_WAIT)
-        elif self.state is SessionState.MONITORING_WAIT:
-            self._enter(SessionState.MONITORING_READY)
-        elif self._in_state >= READY_PERIODS:
-            self._enter(SessionState.COMMANDING_WAIT)
-
     def _judge(self, q: Vector) -> Vector:
         """Return the joint positions (7,) [rad] to move to by a command `q`, of any size."""
         refusal = self._refusal(q)
@@ -269,7 +255,7 @@ class FriController:
             self.end(f"command refused: {refusal}")
         elif self.state is SessionState.COMMANDING_ACTIVE:
             return q
-        elif np.abs(q - self.commanded).max() > _MIRRORED:
+        elif np.abs(q - self.commanded).max() > _ROUNDING:
             self._in_state = 0
         elif self._in_state >= MIRRORED_PERIODS:
             self._enter(SessionState.COMMANDING_ACTIVE)
@@ -295,7 +281,7 @@ def serve(
     port: int = PORT,
     own_port: int = 0,
     realtime: bool = True,
-    observe: Callable[[FriController], object] | None = None,
+    observe: Callable[[FriController], object] = lambda controller: None,
 ) -> None:
     """Let a controller talk to a client over UDP until the session ends.
 
@@ -322,10 +308,8 @@ def serve(
             while controller.state is not SessionState.IDLE:
                 link.sendto(controller.message(), client)
                 now = time.perf_counter()
-                deadline += controller.period
                 # A client is not to blame for a message that was sent late.
-                if deadline < now + _LATE * controller.period:
-                    deadline = now + controller.period
+                deadline = max(deadline, now - _LATE * controller.period) + controller.period
                 if not realtime:
                     deadline = now + _PATIENCE
                 waits = True
@@ -335,8 +319,7 @@ def serve(
                         controller.receive(datagram)
                     waits = realtime or not controller.connection.answered
                 controller.advance()
-                if observe is not None:
-                    observe(controller)
+                observe(controller)
         finally:
             controller.end(controller.fault)
             for _ in range(CLOSING_MESSAGES):

@@ -1,7 +1,5 @@
 """The check of every program of a run: those of the steps, and of their levels of priority."""
 
-from __future__ import annotations
-
 from contextlib import ExitStack
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The control loop: read, decide, alter, move. Whoever wants to know observes its outcomes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -102,7 +100,6 @@ class Loop:
         self._chain = chain
         self._integral = integral
         self._yielded = False  # the last step was a policy's
-        self._levels: list[Levels] = []
         self._has_levels = bool(controller.levels)
         accelerates = controller.program.accelerates
         self._alters = chain is not None and chain.alters and not accelerates
@@ -154,16 +151,14 @@ class Loop:
         except NoSolutionError as error:
             raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
         dq = command.dq
-        if self._has_levels:
-            self._note_levels()
+        levels = [self._level_answers()] if self._has_levels else []
         if self._misled:
             self._show_true_pose(command)
         self._yielded = command.action is not Action.NONE
         if self._yielded or not plant.exact:
-            return self._moved((command,), dq, dq)
+            return self._moved((command,), dq, dq, levels)
         plant.move(dq)
         self.q = plant.q
-        levels = self._taken_levels() if self._has_levels else ()
         return Outcome((command,), dq, dq, self.q, levels=levels)
 
     def _time(self, k: int) -> float:
@@ -181,6 +176,7 @@ class Loop:
         controller = self.controller
         dt = controller.dt
         commands: list[Command] = []
+        levels: list[Levels] = []
 
         def ask(q: Vector, time: float) -> Vector:
             target = None
@@ -189,7 +185,7 @@ class Loop:
             command = controller.compute(q, time, target)
             commands.append(command)
             if self._has_levels:
-                self._note_levels()
+                levels.append(self._level_answers())
             return command.dq
 
         before = controller.last.copy()
@@ -211,9 +207,9 @@ class Loop:
         command, clipped = self._altered(k, t, commands[0], velocity)
         controller.send(command, commands[0].fraction)
         if not accelerates:
-            return self._moved(commands, velocity, command)._replace(clipped=clipped)
+            return self._moved(commands, velocity, command, levels)._replace(clipped=clipped)
         moving = mean if self.plant.exact else command
-        outcome = self._moved(commands, velocity, moving)
+        outcome = self._moved(commands, velocity, moving, levels)
         return outcome._replace(acceleration=(velocity - before) / dt)
 
     def _altered(
@@ -232,12 +228,12 @@ class Loop:
         commands: Sequence[Command],
         velocity: Vector,
         dq: Vector,
+        levels: Sequence[Levels],
     ) -> Outcome:
         """Let the plant follow a command, unless a policy has stopped the run."""
         action = Action.NONE
         if self._yielded:
             action = commands[0].action or Action.EULER
-        levels = self._taken_levels()
         torque = None
         ends = False
         before = self.q
@@ -284,16 +280,9 @@ class Loop:
         """Put the frame's true placement into the row of a command that was misled."""
         command.placement[:] = self.controller.placement(self.q)
 
-    def _note_levels(self) -> None:
-        """Note programs and answers of the levels of priority."""
-        levels = self.controller.levels
-        if levels:
-            self._levels.append(
-                [(np.concatenate([level.data, level.x]), np.abs(level.missing)) for level in levels]
-            )
-
-    def _taken_levels(self) -> Sequence[Levels]:
-        """Return the levels noted since the last step."""
-        levels = self._levels
-        self._levels = []
-        return levels
+    def _level_answers(self) -> Levels:
+        """Return programs with answers, and what is missing, of the last command's levels."""
+        return [
+            (np.concatenate([level.data, level.x]), np.abs(level.missing))
+            for level in self.controller.levels
+        ]

@@ -19,7 +19,6 @@ from iiwa_dnn.qp.program import Vector
 
 Motion = Literal["euler", "midpoint", "rk4"]
 VelocityField = Callable[[Vector, float], Vector]
-Step = Callable[[VelocityField, Vector, float, float], Vector]
 
 
 def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
@@ -36,47 +35,38 @@ def check_motion(motion: str, one_clock: bool, ahead: bool) -> None:
         raise InvalidInputError("motion", problem, motion)
 
 
-def euler(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
-    """Order 1: the velocity at the start of the step [rad/s], (n,)."""
-    return velocity(q, t)
-
-
-def midpoint(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
-    """Order 2: the velocity half a step ahead [rad/s], (n,)."""
-    return velocity(q + 0.5 * dt * velocity(q, t), t + 0.5 * dt)
-
-
-def rk4(velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
-    """Order 4: the classical weighted mean of four velocities [rad/s], (n,)."""
-    k1 = velocity(q, t)
-    k2 = velocity(q + 0.5 * dt * k1, t + 0.5 * dt)
-    k3 = velocity(q + 0.5 * dt * k2, t + 0.5 * dt)
-    k4 = velocity(q + dt * k3, t + dt)
-    return (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0
-
-
 class Method(NamedTuple):
-    """A method and how often it asks for the velocity in one step.
+    """An explicit Runge-Kutta method, each stage of which goes on from the one before alone.
 
     Attributes:
-        step: Gives the mean velocity of a step.
-        nodes: When it asks for a velocity, in the order of its questions, in units of dt.
+        nodes: Times at which it asks for a velocity, in the order of its questions, in units of dt.
+        weights: Weights of those velocities in their mean.
     """
 
-    step: Step
     nodes: tuple[float, ...]
+    weights: tuple[float, ...]
 
     @property
     def stages(self) -> int:
         """Number of velocities that it asks for in one step."""
         return len(self.nodes)
 
+    def step(self, velocity: VelocityField, q: Vector, t: float, dt: float) -> Vector:
+        """Compute the mean velocity [rad/s], (n,), of a step of dt [s] from q (n,) [rad] at t."""
+        slope = velocity(q, t)
+        total = self.weights[0] * slope
+        for node, weight in zip(self.nodes[1:], self.weights[1:], strict=True):
+            slope = velocity(q + node * dt * slope, t + node * dt)
+            total += weight * slope
+        return total / sum(self.weights)
+
 
 MOTIONS: dict[str, Method] = {
-    "euler": Method(euler, (0.0,)),
-    "midpoint": Method(midpoint, (0.0, 0.5)),
-    "rk4": Method(rk4, (0.0, 0.5, 0.5, 1.0)),
+    "euler": Method((0.0,), (1.0,)),
+    "midpoint": Method((0.0, 0.5), (0.0, 1.0)),
+    "rk4": Method((0.0, 0.5, 0.5, 1.0), (1.0, 2.0, 2.0, 1.0)),
 }
+"""Methods by name, of the orders 1, 2 and 4."""
 
 
 def accelerated(

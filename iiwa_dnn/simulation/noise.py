@@ -83,10 +83,6 @@ class VelocityDisturbance:
         disturbance: Vector = self.bias + self.slope * times + self.amplitude * wave
         return disturbance
 
-    def settings(self) -> dict[str, Any]:
-        """The numbers, as values that JSON can hold."""
-        return asdict(self)
-
 
 @dataclass(frozen=True)
 class Disturbance:
@@ -125,7 +121,7 @@ class Disturbance:
         return {
             "noise": self.noise,
             "noise_at": self.noise_at,
-            "disturbance": None if self.velocity is None else self.velocity.settings(),
+            "disturbance": None if self.velocity is None else asdict(self.velocity),
             "filter_window": self.filter_window,
             "integral_gain": self.integral_gain,
             "estimator": None if self.estimator is None else self.estimator.settings(),

@@ -1,15 +1,12 @@
 """The recorder of a run: collects the outcomes of a loop and makes the arrays of a record."""
 
-from __future__ import annotations
-
-import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.control.command import Command, RowLayout
+from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.naming import describe, in_the_way
@@ -21,9 +18,6 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
 
-PATIENCE = 100
-"""Consecutive second attempts after which a run warns."""
-
 _LATER = {"solution_gap", "objective_gap", "reference_residual", "t"}
 
 
@@ -33,6 +27,7 @@ class Recorder:
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
         last_step: Step at which the run ended early; None: it has not.
+        layout: Columns of the commands' rows.
     """
 
     def __init__(
@@ -55,26 +50,19 @@ class Recorder:
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
+        self.layout = controller.layout
         self._names = LimitNames(program, controller.dt)
         self._done = 0
-        self._series = 0
         self.arrays: dict[str, NDArray[Any]] = {}
         for name in COLUMNS.keys() - OPTIONAL - _LATER:
             self._array(name)
         self.arrays["q"][0] = q0
-
-    @property
-    def layout(self) -> RowLayout:
-        """Columns of the commands' rows."""
-        return self._controller.layout
 
     def observe(self, k: int, outcome: Outcome) -> None:
         """Take in the outcome of step k."""
         self._outcomes.append(outcome)
         if outcome.ends:
             self.last_step = k
-        if outcome.action is not Action.NONE or self._series:
-            self._count_fallbacks(k, outcome.action)
 
     def flush(self) -> Matrix:
         """Put the collected outcomes into the arrays.
@@ -86,12 +74,11 @@ class Recorder:
         self._outcomes = []
         count = len(outcomes)
         rows = np.array([command.row for each in outcomes for command in each.commands])
-        if not count:
-            return rows.reshape(0, self.layout.width)
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
-        self._add_times(steps.start, outcomes)
+        if outcomes[0].t is not None:
+            self._array("t")[steps.start + 1 : steps.stop + 1] = [each.t for each in outcomes]
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
         stages = len(rows) // count
@@ -116,12 +103,6 @@ class Recorder:
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return rows
-
-    def _add_times(self, first: int, outcomes: Sequence[Outcome]) -> None:
-        """Note the times after the outcomes from a first step on, where the plant has a clock."""
-        if outcomes[-1].t is not None:
-            times = [each.t for each in outcomes]
-            self._array("t")[first + 1 : first + 1 + len(times)] = times
 
     def finish(self) -> dict[str, NDArray[Any]]:
         """Return the columns, cut to the steps that were taken."""
@@ -150,16 +131,6 @@ class Recorder:
             self.arrays[name] = COLUMNS[name].allocate(self._steps, **known)
         return self.arrays[name]
 
-    def _count_fallbacks(self, k: int, action: Action) -> None:
-        """Warn of a long series of fallbacks."""
-        self._series = self._series + 1 if action is Action.FALLBACK else 0
-        if self._series == PATIENCE:
-            warnings.warn(
-                f"step {k}: the network did not settle in {PATIENCE} steps in a row, and the "
-                "answer of a second attempt was taken",
-                stacklevel=2,
-            )
-
     def _add_incident(self, k: int, outcome: Outcome) -> None:
         """Note what did not go as planned in step k."""
         if outcome.acceleration is not None:
@@ -174,13 +145,13 @@ class Recorder:
             residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
-        resolution = outcome.commands[0].resolution
+        command = outcome.commands[0]
+        resolution = command.resolution
         if resolution is None:
             return
         self._array("fraction")[k] = resolution.fraction
-        sides = resolution.sides
-        past = outcome.commands[0].past
-        self._array("blocking")[k] = self._names.codes(resolution.qp, sides, past)
+        blocking = self._names.codes(resolution.qp, resolution.sides, command.past)
+        self._array("blocking")[k] = blocking
         if resolution.rows.any():
             self._array("blocking_rows", m=resolution.rows.size)[k] = resolution.rows
 

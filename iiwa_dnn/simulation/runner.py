@@ -88,24 +88,20 @@ class RunOptions:
     def of(cls, options: Mapping[str, Any]) -> RunOptions:
         """Make the options of those by name, fields of `Disturbance` among them.
 
-        A `VelocityDisturbance` as `disturbance` is that of the velocity alone.
+        Its `velocity` is the option ``disturbance``.
         """
         names = [each.name for each in fields(cls)]
         own = {name: options[name] for name in names if name in options}
         others = {name: options[name] for name in options if name not in own}
-        disturbance = own.pop("disturbance", None)
-        if not isinstance(disturbance, Disturbance):
-            disturbance = Disturbance(velocity=disturbance, **others)
-        elif others:
-            problem = f"holds {', '.join(others)} already"
-            raise InvalidInputError("disturbance", problem, disturbance)
-        return cls(disturbance=disturbance, **own)
+        velocity = own.pop("disturbance", None)
+        return cls(disturbance=Disturbance(velocity=velocity, **others), **own)
 
 
 class Simulation:
     """One run, its arguments checked; `run` carries it out.
 
     Attributes:
+        controller: The controller of the run.
         steps: Number of steps.
         interrupt: Signal at which a real arm was brought to rest; None: there was none.
     """
@@ -139,7 +135,6 @@ class Simulation:
             InvalidInputError: An argument is out of range; the message names it.
             TypeError: There is no argument of a name.
         """
-        checks.positive("dt", options.get("dt", RunOptions.dt))
         start = Configuration(robot, q0)
         chosen = RunOptions.of(options)
         dt = chosen.dt
@@ -149,7 +144,7 @@ class Simulation:
         checks.offers("plant", self._plant, "start", "read", "move", "packages", "settings")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
         solver = DNNSolver(tol=chosen.tol) if solver is None else solver
-        self._controller = Controller(
+        self.controller = Controller(
             robot, scheme, reference, dt=dt, mode=chosen.mode, policy=chosen.policy, solver=solver
         )
         self._q0 = start.arrays[0]
@@ -159,20 +154,15 @@ class Simulation:
             asked = max((path.duration for path in paths), default=dt)
         length = checks.positive("duration", asked)
         self.steps = step_count(length, dt)
-        self._controller.anchor(start)
+        self.controller.anchor(start)
         self._check_combination(scheme)
         self._plant.start(robot, self._q0, dt, chosen.seed)
-        self._controller.warn_if_far(start, 0.0, 4, refuses=not chosen.far_start)
+        self.controller.warn_if_far(start, 0.0, 4, refuses=not chosen.far_start)
         self._settings = self._stated(length)
-
-    @property
-    def controller(self) -> Controller:
-        """The controller of the run."""
-        return self._controller
 
     def _check_combination(self, scheme: Scheme) -> None:
         """Raise InvalidInputError if the arguments do not go together."""
-        controller = self._controller
+        controller = self.controller
         program = controller.program
         disturbance = self._options.disturbance
         one_clock = controller.mode != "converged" or not self._plant.exact
@@ -187,7 +177,7 @@ class Simulation:
 
     def _stated(self, duration: float) -> dict[str, Any]:
         """Return the settings of the run, of this duration [s]."""
-        controller = self._controller
+        controller = self.controller
         robot = controller.robot
         solver = controller.solver
         program = controller.program
@@ -240,7 +230,7 @@ class Simulation:
             NoSolutionError: A step has no solution and the policy is ``raise``.
         """
         began = time.perf_counter() - WATCH.seconds
-        controller = self._controller
+        controller = self.controller
         dt = controller.dt
         controller.reset()
         self._plant.start(controller.robot, self._q0, dt, self._options.seed)
@@ -279,7 +269,7 @@ class Simulation:
 
     def _rehearse(self) -> None:
         """Call all that a run may need once: a first call takes many of a robot's periods."""
-        controller = self._controller
+        controller = self.controller
         controller.warm_up()
         twin = copy.copy(controller)
         middle = 0.5 * self.steps * controller.dt
@@ -324,7 +314,7 @@ class Simulation:
 
     def _loop(self) -> Loop:
         """Make the loop of one run, its noise drawn."""
-        controller = self._controller
+        controller = self.controller
         disturbance = self._options.disturbance
         chain = SignalChain(
             disturbance, self.steps, controller.robot.dof, controller.dt, self._options.seed

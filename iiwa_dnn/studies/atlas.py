@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -128,20 +128,21 @@ class Entry(NamedTuple):
 
 def still(network: Network) -> Entry:
     """Return the entry of a network for a program that stands still."""
-
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        return DNNSolver(network, follower=Paced(count, share=share))
-
-    return Entry(network, make, network.work)
+    return Entry(
+        network,
+        lambda count, share, dt: DNNSolver(network, follower=Paced(count, share=share)),
+        network.work,
+    )
 
 
 def settled(network: Network) -> Entry:
     """Return the entry of a network that is integrated implicitly towards rest."""
-
-    def make(count: int, share: float, dt: float) -> DNNSolver:
-        return DNNSolver(network, follower=CutOff(max_steps=count))
-
-    return Entry(network, make, _condensed, paced=False)
+    return Entry(
+        network,
+        lambda count, share, dt: DNNSolver(network, follower=CutOff(max_steps=count)),
+        _condensed,
+        paced=False,
+    )
 
 
 def zeroing(formula: Formula = EULER, **options: Any) -> Entry:
@@ -169,10 +170,6 @@ def _factorised(sizes: Sizes) -> tuple[float, float]:
     """Count the operations of ADMM: one factorisation a program, one substitution an iteration."""
     size = sizes[0] + sum(sizes)
     return size**3 / 3.0, 2.0 * size**2
-
-
-def _admm(count: int, share: float, dt: float) -> DNNSolver:
-    return AdmmSolver(count)
 
 
 def _activated(network: Network, activation: Any) -> Entry:
@@ -206,49 +203,44 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, smooth": zeroing(form="smooth"),
     "noise-suppressing": follows(NoiseSuppressingNetwork(form="projected")),
     "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
-    "ADMM (OSQP)": Entry(AdmmSolver, _admm, _factorised, paced=False),
+    "ADMM (OSQP)": Entry(
+        AdmmSolver, lambda count, share, dt: AdmmSolver(count), _factorised, paced=False
+    ),
 }
 """Networks of the atlas by name, and the yardstick."""
 
 MEASURES = ("residual", "rms_error_m")
 
 
-def find_network(name: str) -> Entry:
-    """Return a network's entry by its name, or of one from outside: an `Entry` or a network.
+PARTS: dict[str, tuple[Mapping[str, Any], tuple[type[Any], ...]]] = {
+    "network": (NETWORKS, (Entry, Network)),
+    "scheme": (SCHEMES, (Scheme,)),
+    "disturbance": (DISTURBANCES, (Disturbance,)),
+    "reference": (PATHS, (Reference,)),
+}
+"""Parts of the atlas by kind: those that it knows by name, and the classes of one from outside."""
+
+
+def part(kind: str, name: str) -> Any:
+    """Return a part by its name or from outside, made anew where a class or a function makes it.
+
+    A disturbance is returned as its class, a network as its `Entry`.
 
     Raises:
-        InvalidInputError: The object is neither a network nor an entry; and as of `find_part`.
-        NotFoundError: There is no such network.
+        InvalidInputError: There is no such part in the file; and as of `find_part`.
+        NotFoundError: There is no part of that name.
     """
-    found = _made(find_part("network", name, NETWORKS), Entry)
-    if isinstance(found, Network):
-        return still(found)
-    if not isinstance(found, Entry):
-        raise InvalidInputError("networks", f"{name} is no network: {found!r}", found)
-    return found
-
-
-def _find(kind: str, name: str, known: Mapping[str, Any], wanted: type[Any]) -> Any:
-    """Return a scheme or a reference by its name, made anew, or from outside."""
-    found = _made(find_part(kind, name, known), wanted)
-    if not isinstance(found, wanted):
-        raise InvalidInputError(kind, f"{name} is no {wanted.__name__}: {found!r}", found)
-    return found
-
-
-def _made(part: Any, wanted: type[Any]) -> Any:
-    """Call a class or a function without arguments; return anything else as it is."""
-    if isinstance(part, wanted) or not callable(part):
-        return part
-    return part()
-
-
-def find_disturbance(name: str) -> type[Disturbance]:
-    """Return the class of a disturbance by its name, or from outside; errors as of `find_part`."""
-    found: Any = find_part("disturbance", name, DISTURBANCES)
-    if not (isinstance(found, type) and issubclass(found, Disturbance)):
-        raise InvalidInputError("disturbances", f"{name} is no class of a Disturbance", found)
-    return found
+    known, wanted = PARTS[kind]
+    found = find_part(kind, name, known)
+    if kind == "disturbance":
+        fits = isinstance(found, type) and issubclass(found, wanted)
+    else:
+        if callable(found) and not isinstance(found, wanted):
+            found = found()
+        fits = isinstance(found, wanted)
+    if not fits:
+        raise InvalidInputError(kind, f"{name} is no {wanted[-1].__name__}: {found!r}", found)
+    return still(found) if isinstance(found, Network) else found
 
 
 def cell(network: str, **changes: Any) -> dict[str, Any]:
@@ -273,11 +265,8 @@ def cell(network: str, **changes: Any) -> dict[str, Any]:
     }
     if settings["disturbance"] == "none":  # only the paths differ
         settings["seeds"] = min(settings["seeds"], len(settings["paths"]))
-    parts = [(network, NETWORKS), (settings["scheme"], SCHEMES)]
-    parts += [(settings["disturbance"], DISTURBANCES)]
-    parts += [(path, PATHS) for path in settings["paths"]]
-    files = [digest(name, cast("Mapping[str, object]", known)) for name, known in parts]
-    return {**settings, "files": [file for file in files if file]}
+    names = [network, settings["scheme"], settings["disturbance"], *settings["paths"]]
+    return {**settings, "files": [digest(name) for name in names if ":" in name]}
 
 
 class Size(NamedTuple):
@@ -309,14 +298,10 @@ class Size(NamedTuple):
 
     def check(self) -> None:
         """Check that all parts are there; raises NotFoundError or InvalidInputError."""
-        for network in self.networks:
-            find_network(network)
-        for scheme in self.schemes:
-            _find("scheme", scheme, SCHEMES, Scheme)
-        for disturbance in self.disturbances:
-            find_disturbance(disturbance)
-        for path in self.paths:
-            _find("reference", path, PATHS, Reference)
+        parts = (self.networks, self.schemes, self.disturbances, self.paths)
+        for kind, names in zip(PARTS, parts, strict=True):
+            for name in names:
+                part(kind, name)
 
 
 def gain_cells(size: Size) -> list[dict[str, Any]]:
@@ -329,7 +314,7 @@ def gain_cells(size: Size) -> list[dict[str, Any]]:
         cell(network, share=share, most=most, **common)
         for network in size.networks
         for share, most in product(SHARES, (None, 1))
-        if find_network(network).paced or (share == SHARES[-1] and most is None)
+        if part("network", network).paced or (share == SHARES[-1] and most is None)
     ]
 
 
@@ -401,7 +386,7 @@ def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[dict[str, 
     found += [
         more(network, dt=dt, work=UNLIMITED, most=1, seeds=1)
         for network, dt in product(size.networks, PERIODS)
-        if isinstance(find_network(network).network, ZeroingNetwork)
+        if isinstance(part("network", network).network, ZeroingNetwork)
     ]
     unique = {repr(settings): settings for settings in found}
     return list(unique.values())
@@ -448,16 +433,15 @@ def _run(settings: Settings, seed: int) -> dict[str, Any]:
     dt = settings["dt"]
     steps = round(DURATION / dt)
     robot = paper_robot()
-    scheme = _find("scheme", settings["scheme"], SCHEMES, Scheme)
-    path = settings["paths"][seed % len(settings["paths"])]
-    reference = _find("reference", path, PATHS, Reference)
+    scheme = part("scheme", settings["scheme"])
+    reference = part("reference", settings["paths"][seed % len(settings["paths"])])
     program = scheme.program(robot)
-    entry = find_network(settings["network"])
+    entry = part("network", settings["network"])
     count = evaluations_within(entry, program.sizes, settings["work"])
     if settings["most"] is not None:
         count = min(count, settings["most"])
     solver = entry.make(count, settings["share"], dt)
-    draw = find_disturbance(settings["disturbance"])
+    draw = part("disturbance", settings["disturbance"])
     disturbance = draw(robot, np.random.default_rng(seed), steps, dt)
     loop = DisturbedLoop(program, solver, disturbance, reference, steps, dt)
     taken = [loop.step(k) for k in range(steps)]

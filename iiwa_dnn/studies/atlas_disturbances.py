@@ -43,13 +43,6 @@ def pose_of(placement: Vector) -> pin.SE3:
     return pin.SE3(placement[:9].reshape(3, 3).T, placement[9:])
 
 
-def as_measured(target: Vector, tool: Vector, believed: Vector) -> None:
-    """Move a target (18,) so that the model's error from it is the one that was measured."""
-    target[:3] += believed[9:] - tool[9:]
-    turn = tool[:9].reshape(3, 3) @ believed[:9].reshape(3, 3).T  # both by columns
-    target[3:12] = (target[3:12].reshape(3, 3) @ turn).ravel()
-
-
 class Disturbance:
     """No disturbance, and the base of the others: each overrides the thought that it changes.
 
@@ -146,8 +139,14 @@ class OtherArm(Disturbance):
         super().__init__(other_arm(robot, rng), rng, steps, dt)
 
     def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
-        """Move the target (18,) by the model's error of the placement (12,); q is in [rad]."""
-        as_measured(target, tool, program.placement)
+        """Move the target (18,) by the model's error of the placement (12,); q is in [rad].
+
+        The program's error from it is then the one that was measured.
+        """
+        believed = program.placement
+        target[:3] += believed[9:] - tool[9:]
+        turn = tool[:9].reshape(3, 3) @ believed[:9].reshape(3, 3).T  # both by columns
+        target[3:12] = (target[3:12].reshape(3, 3) @ turn).ravel()
 
 
 class LockedJoint(Disturbance):

@@ -1,7 +1,5 @@
 """The loop of the atlas: an arm, a network and a disturbance, step by step."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from iiwa_dnn.errors import IiwaDnnError
@@ -14,18 +12,6 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.atlas_disturbances import Disturbance
-
-
-class Judged(NamedTuple):
-    """Numbers of one step.
-
-    Attributes:
-        error: Distance of the tool from its target before the step [m].
-        residual: Largest KKT residual of the answer.
-    """
-
-    error: float
-    residual: float
 
 
 class DisturbedLoop:
@@ -65,13 +51,18 @@ class DisturbedLoop:
         path = Ahead(self._reference, dt) if program.ahead else self._reference
         self._targets = path.sample(dt * np.arange(steps)).data
 
-    def step(self, k: int) -> Judged:
+    def step(self, k: int) -> tuple[float, float]:
         """Take step k.
+
+        Returns:
+            Distance of the tool from its target before the step [m], and the largest KKT residual
+            of the answer.
 
         Raises:
             IiwaDnnError: The tool is 1 m away from its target, or the network has diverged.
         """
-        tool = self._tool()
+        self._arm.update(self.q)
+        tool: Vector = self._arm.placements[self._arm.frame_ids[0]].copy()
         target = self._targets[k].copy()
         error = float(np.linalg.norm(target[:3] - tool[9:]))
         if not error < 1.0:
@@ -79,13 +70,7 @@ class DisturbedLoop:
         self._write(k, target, tool)
         x, residual = self._answer(k)
         self._move(k, x)
-        return Judged(error, residual)
-
-    def _tool(self) -> Vector:
-        """Return the true placement of the tool, (12,)."""
-        self._arm.update(self.q)
-        placement: Vector = self._arm.placements[self._arm.frame_ids[0]].copy()
-        return placement
+        return error, residual
 
     def _write(self, k: int, target: Vector, tool: Vector) -> None:
         """Write the program of step k for a target (18,) and the tool's placement (12,)."""

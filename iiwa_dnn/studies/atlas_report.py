@@ -16,7 +16,7 @@ from iiwa_dnn.files import write_text
 from iiwa_dnn.results.markdown import number, save_markdown
 from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
 from iiwa_dnn.results.publication import Table
-from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Size, find_network, of_league
+from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Size, of_league, part
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
@@ -242,7 +242,7 @@ def write_report(folder: Path, size: Size, rows: Sequence[Row], head: str, plots
 
 def card(rows: Sequence[Row], name: str, ranking: Mapping[str, str]) -> str:
     """Write a network's card: ODE, source and promises, its work, and what was measured."""
-    entry = find_network(name)
+    entry = part("network", name)
     kind = entry.network if isinstance(entry.network, type) else type(entry.network)
     inner = getattr(entry.network, "network", entry.network)
     modules = dict.fromkeys([kind.__module__, type(inner).__module__])

@@ -40,10 +40,8 @@ def find_part(kind: str, name: str, known: Mapping[str, T]) -> T:
     return found
 
 
-def digest(name: str, known: Mapping[str, object]) -> str:
-    """Hash the file that a part from outside stands in; empty for a known part."""
-    if name in known:
-        return ""
+def digest(name: str) -> str:
+    """Hash the file that a part from outside stands in."""
     file = _import("part", name.rpartition(":")[0]).__file__
     return hashlib.sha256(Path(str(file)).read_bytes()).hexdigest()[:24]
 

@@ -45,9 +45,3 @@ CASES_MAX_ERROR = (6.70e-5, 6.47e-5, 7.07e-5, 6.87e-5)
 
 CASES_MSE = (2.00e-10, 1.97e-10, 3.28e-10, 2.49e-10)
 """Table II, MSE [m^2], in the order of `CASES`."""
-
-TEXT_MAX_ERROR = (5.63e-5, None, 7.75e-5, 6.71e-5)
-"""The same [m] as its text says them, in the order of `CASES`; docs/errata.md compares them."""
-
-TEXT_MSE = (1.94e-10, None, 3.42e-10, 2.67e-10)
-"""The same for the mean squared error [m^2]."""

@@ -5,9 +5,9 @@ and every sentence about an experiment's outcome is put together from a table's 
 """
 
 import os
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from functools import partial, reduce
-from operator import getitem
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -180,24 +180,20 @@ def _choice(row: Mapping[str, Any]) -> str:
 
 def _verdicts(table1: Table, table2: Table, names: Sequence[str]) -> list[list[str]]:
     """Lay out a line for each row of the paper's tables, a column for each way to run them."""
-    paths: dict[str, tuple[str, ...]] = {
-        f"Table I, {_ROWS[key]}": ("variants", "verdicts", key, "verdict") for key in _JUDGED
-    }
-    for entry in next(iter(table2["modes"].values())):
-        for key, label in MEASURES.items():
-            row = ("modes", entry, key)
-            paths[f"Table II, {label}, noise at {entry}"] = (*row, "verdict", "verdict")
-            for change in table2["paper_changes"][key]:
-                title = f"effect of {change}, on {label}, noise at {entry}"
-                paths[title] = (*row, "changes", change, "verdict")
-    lines = []
-    for title, (kind, *path) in paths.items():
-        entries = (table1 if kind == "variants" else table2)[kind]
-        verdicts = (
-            reduce(getitem, path, entries[name]) if name in entries else "–" for name in names
-        )
-        lines.append([title, *verdicts])
-    return lines
+    found: defaultdict[str, dict[str, str]] = defaultdict(dict)
+    for name, variant in table1["variants"].items():
+        for key in _JUDGED:
+            found[f"Table I, {_ROWS[key]}"][name] = variant["verdicts"][key]["verdict"]
+    for name, entries in table2["modes"].items():
+        for entry, measures in entries.items():
+            for key, label in MEASURES.items():
+                where = f"{label}, noise at {entry}"
+                found[f"Table II, {where}"][name] = measures[key]["verdict"]["verdict"]
+                for change, effect in measures[key]["changes"].items():
+                    found[f"effect of {change}, on {where}"][name] = effect["verdict"]
+    return [
+        [title, *(verdicts.get(name, "–") for name in names)] for title, verdicts in found.items()
+    ]
 
 
 def _table1(table: Table) -> list[str]:

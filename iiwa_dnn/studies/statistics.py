@@ -70,27 +70,22 @@ class Estimate:
         return {"mean": self.mean, "low": self.low, "high": self.high, "samples": self.samples}
 
 
-def estimate(samples: ArrayLike, confidence: float = CONFIDENCE) -> Estimate:
+def estimate(samples: ArrayLike) -> Estimate:
     """Estimate the mean of independent samples (k,), with its confidence interval.
 
     Raises:
-        InvalidInputError: There are fewer than two samples, one is not finite, or the confidence
-            is out of range.
+        InvalidInputError: There are fewer than two samples, or one is not finite.
     """
     values = finite_array("samples", samples, (-1,))
     if values.size < 2:
         raise InvalidInputError("samples", f"must be two or more, not {values.size}", samples)
-    if not 0.0 < confidence < 1.0:
-        raise InvalidInputError("confidence", f"must be in (0, 1), not {confidence}", confidence)
     # Not scipy's ttest_1samp, whose interval is NaN where all samples are equal.
-    quantile = float(student.ppf(0.5 * (1.0 + confidence), values.size - 1))
+    quantile = float(student.ppf(0.5 * (1.0 + CONFIDENCE), values.size - 1))
     half_width = quantile * float(values.std(ddof=1)) / float(np.sqrt(values.size))
     return Estimate(float(values.mean()), half_width, values.size)
 
 
-def paired_difference(
-    after: ArrayLike, before: ArrayLike, confidence: float = CONFIDENCE
-) -> Estimate:
+def paired_difference(after: ArrayLike, before: ArrayLike) -> Estimate:
     """Estimate the mean of ``after - before`` over pairs, (k,) both: entry i shares its noise.
 
     Raises:
@@ -98,33 +93,22 @@ def paired_difference(
     """
     one = finite_array("after", after, (-1,))
     other = finite_array("before", before, (one.size,))
-    return estimate(one - other, confidence)
+    return estimate(one - other)
 
 
 def trend(x: ArrayLike, y: ArrayLike) -> Trend:
     """Find the trend of y over x, (k,): the sign of Kendall's tau, or ``none`` if that is zero.
 
     It is ``constant`` if y spreads over at most ``FLAT`` of its mean.
-
-    Raises:
-        InvalidInputError: The lengths differ, there are fewer than two, or one is not finite.
     """
-    one = finite_array("x", x, (-1,))
-    other = finite_array("y", y, (one.size,))
-    if one.size < 2:
-        raise InvalidInputError("x", f"must hold two or more numbers, not {one.size}", x)
-    if np.ptp(other) <= FLAT * abs(float(other.mean())):
+    if np.ptp(y) <= FLAT * np.abs(np.asarray(y).mean()):
         return "constant"
-    tau = kendalltau(one, other).statistic  # NaN of a constant x
+    tau = kendalltau(x, y).statistic  # NaN of a constant x
     return "rising" if tau > 0.0 else "falling" if tau < 0.0 else "none"
 
 
 def trend_words(x: ArrayLike, y: ArrayLike) -> str:
-    """Name the trend of y over x, (k,), and the steps that go against it, if any.
-
-    Raises:
-        InvalidInputError: As `trend`.
-    """
+    """Name the trend of y over x, (k,), and the steps that go against it, if any."""
     found = trend(x, y)
     steps = np.diff(np.asarray(y)[np.argsort(x)])
     against = {"rising": steps < 0.0, "falling": steps > 0.0}.get(found, np.zeros(0)).sum()

@@ -14,7 +14,7 @@ import hashlib
 import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -105,11 +105,9 @@ class Sweep:
             The numbers of each cell, in the order of `cells`.
 
         Raises:
-            InvalidInputError: `workers` is below 1, or there is no Dask at that address.
+            InvalidInputError: There is no Dask at that address.
             FileError: A file cannot be written.
         """
-        if workers is not None and workers < 1:
-            raise InvalidInputError("workers", f"must be at least 1, not {workers}", workers)
         prepare_folder(self.folder)
         names = [self.name(cell) for cell in cells]
         found = {name: self._read(name) for name in names}
@@ -173,7 +171,13 @@ class Sweep:
         compute = joblib.delayed(_compute)
         expected = fingerprint(self.task)
         calls = (compute(name, self.task, dict(cell), expected) for name, cell in todo.items())
-        with _backend(min(workers or joblib.cpu_count(), len(todo)), dask):
+        workers = min(workers or joblib.cpu_count(), len(todo))
+        client: AbstractContextManager[Any] = nullcontext()
+        backend = {"backend": "loky", "n_jobs": workers, "inner_max_num_threads": 1}
+        if dask is not None:
+            client = _connect(workers, dask)
+            backend = {"backend": "dask"}
+        with client, joblib.parallel_config(**backend):
             # One cell a message: a finished one is written at once.
             # max_nbytes: no arrays in shared memory, which a killed sweep would leave behind.
             options = {"batch_size": 1, "return_as": "generator_unordered", "max_nbytes": None}
@@ -194,32 +198,18 @@ def _compute(
         raise IiwaDnnError(f"{error} (in a sweep, at {json.dumps(plain(cell))})") from None
 
 
-@contextmanager
-def _backend(workers: int, dask: str | None) -> Iterator[None]:
-    """Send joblib's calls to this process, to processes of this machine, or to Dask."""
-    with ExitStack() as stack:
-        if dask is not None:
-            _connect(stack, workers, dask)
-            config = joblib.parallel_config("dask")
-        elif workers == 1:
-            config = joblib.parallel_config("sequential")
-        else:
-            config = joblib.parallel_config("loky", n_jobs=workers, inner_max_num_threads=1)
-        with config:
-            yield
-
-
-def _connect(stack: ExitStack, workers: int, address: Any) -> None:
-    """Connect to a Dask scheduler, or to a cluster of its own for ``"local"``."""
+def _connect(workers: int, address: str) -> Any:
+    """Return a client of a Dask scheduler, or of a cluster of its own for ``"local"``."""
     try:
-        from distributed import Client, LocalCluster
+        from distributed import Client
     except ImportError as error:
         raise InvalidInputError("dask", "is not installed: pip install iiwa-dnn[dask]") from error
+    options: dict[str, Any] = {"address": address}
     if address == "local":
-        options = {"threads_per_worker": 1, "dashboard_address": None, "env": _ONE_THREAD}
-        address = stack.enter_context(LocalCluster(n_workers=workers, **options))
+        options = {"n_workers": workers, "threads_per_worker": 1}
+        options |= {"dashboard_address": None, "env": _ONE_THREAD}
     try:
-        stack.enter_context(Client(address, timeout=_PATIENCE))
+        return Client(timeout=_PATIENCE, **options)
     except (OSError, ValueError) as error:
         problem = f"no scheduler at {address!r} ({one_line(error)})"
         raise InvalidInputError("dask", problem) from error

@@ -68,8 +68,7 @@ def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str
             None if value is None else value * scope.dt for value in rows["max_kinetic_index"]
         ]
         verdicts = {
-            key: judge_row(paper.WEIGHTS, printed, rows[key]).to_json()
-            for key, printed in _JUDGED.items()
+            key: judge_row(paper.WEIGHTS, printed, rows[key]) for key, printed in _JUDGED.items()
         }
         variants[name] = {"rows": rows, "verdicts": verdicts}
     kept = ("lap_drift_rad", "max_position_error_m", "status")

@@ -25,8 +25,8 @@ from iiwa_dnn.studies.runs import HeartRun, Scope
 from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference
 from iiwa_dnn.studies.verdicts import judge_change, judge_row
 
-# Eight sub-steps are what is computed to be stable along the whole heart; the runs' growth of a
-# sub-step, which is in the table, says so again, and to compute it at every step takes time.
+# Eight sub-steps are what is computed to be stable along the whole heart, as the ablation shows; to
+# compute it at every step takes time.
 MODES: dict[str, HeartRun] = {
     "continuous, block": HeartRun(substeps=8),
     "converged, SO(3)": HeartRun(mode="converged", orientation="so3"),
@@ -57,10 +57,7 @@ def cells(scope: Scope) -> dict[Any, HeartRun]:
 def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str, Any]:
     """Lay the results of `cells` out beside the paper's, with their verdicts, in JSON types."""
     modes: dict[str, Any] = {}
-    growth: dict[str, float | None] = {}
     for name in MODES:
-        growths = [values["amplification"] for key, values in results.items() if key[0] == name]
-        growth[name] = max((g for g in growths if g is not None), default=None)
         quiet = [results[name, window] for window in _WINDOWS]
         modes[name] = {}
         for entry in NOISE_ENTRIES:
@@ -80,7 +77,6 @@ def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str
         "paper": {key: list(values) for key, values in MEASURES.items()},
         "paper_changes": {key: _paper_changes(values) for key, values in MEASURES.items()},
         "modes": modes,
-        "amplification": growth,
     }
 
 
@@ -99,10 +95,10 @@ def _measure(
     printed = _paper_changes(MEASURES[key])
     return {
         "cases": [case.to_json() for case in cases],
-        "verdict": judge_row(range(4), MEASURES[key], [case.mean for case in cases]).to_json(),
+        "verdict": judge_row(range(4), MEASURES[key], [case.mean for case in cases]),
         "difference": paired_difference(filtered, plain).to_json(),
         "changes": {
-            name: change.to_json() | judge_change(printed[name], change).to_json()
+            name: change.to_json() | judge_change(printed[name], change)
             for name, change in changes.items()
         },
     }

@@ -5,12 +5,11 @@ ours goes the same way as the paper's along the row. Otherwise ``not reproduced`
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.files import plain
 from iiwa_dnn.studies.statistics import Estimate, trend, trend_words
 
 FACTOR = 2.0
@@ -19,80 +18,61 @@ FACTOR = 2.0
 NEGLIGIBLE = 1e-3
 """A relative change below this is none, however narrow its interval; the paper's least is 0.015."""
 
-Level = Literal["reproduced", "same trend", "not reproduced"]
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """A verdict on one row of the paper's numbers.
-
-    Attributes:
-        level: The verdict.
-        ratios: Ours over the paper's, entry by entry; None where either is missing.
-        ours: Direction of ours, and the steps against it.
-        paper: Direction of the paper's, likewise.
-    """
-
-    level: Level
-    ratios: tuple[float | None, ...]
-    ours: str
-    paper: str
-
-    def to_json(self) -> dict[str, Any]:
-        """Return the verdict in JSON types, for a table."""
-        return {
-            "verdict": self.level,
-            "ours_over_paper": list(self.ratios),
-            "our_trend": self.ours,
-            "paper_trend": self.paper,
-        }
-
 
 def judge_row(
     x: Sequence[float], paper: Sequence[float | None], ours: Sequence[float | None]
-) -> Verdict:
-    """Judge a row of numbers that belong to the increasing parameter x.
+) -> dict[str, Any]:
+    """Judge a row of numbers that belong to the increasing parameter x, all of one length.
 
     The verdict is on the entries that the paper has, two at least; a number that we lack makes it
     ``not reproduced``.
 
-    Raises:
-        InvalidInputError: The lengths differ, or the paper has fewer than two numbers.
+    Returns:
+        In JSON types: ``verdict``; ``ours_over_paper``, entry by entry, None where either is
+        missing; ``our_trend`` and ``paper_trend``, with the steps against them.
     """
-    if not len(x) == len(paper) == len(ours):
-        raise InvalidInputError("ours", f"has {len(ours)} entries for {len(x)}", ours)
     # A number that is missing, of the paper's or of ours, is NaN here.
     table = np.array([x, paper, ours], dtype=float)
-    ratios = tuple(None if np.isnan(ratio) else ratio for ratio in (table[2] / table[1]).tolist())
     at, theirs, mine = table[:, ~np.isnan(table[1])]
-    paper_trend = trend_words(at, theirs)
-    if np.isnan(mine).any():
-        return Verdict("not reproduced", ratios, "unknown", paper_trend)
-    our_trend = trend_words(at, mine)
-    same = trend(at, mine) == trend(at, theirs)
-    level: Level = "same trend" if same else "not reproduced"
-    if all(map(_within_factor, mine / theirs)):
-        level = "reproduced"
-    return Verdict(level, ratios, our_trend, paper_trend)
+    level = "not reproduced"
+    our_trend = "unknown"
+    if not np.isnan(mine).any():
+        our_trend = trend_words(at, mine)
+        if all(map(_within_factor, mine / theirs)):
+            level = "reproduced"
+        elif trend(at, mine) == trend(at, theirs):
+            level = "same trend"
+    return {
+        "verdict": level,
+        "ours_over_paper": plain(table[2] / table[1]),
+        "our_trend": our_trend,
+        "paper_trend": trend_words(at, theirs),
+    }
 
 
-def judge_change(paper: float, ours: Estimate) -> Verdict:
+def judge_change(paper: float, ours: Estimate) -> dict[str, Any]:
     """Judge a relative change, such as that of the error by the filter; -0.1 is a tenth less.
 
     It is ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
-    factor 2, ``same trend`` if only the former, else ``not reproduced``.
+    factor 2, ``same trend`` if only the former, else ``not reproduced``. Returned as by
+    `judge_row`.
     """
-    ratio = ours.mean / paper if paper else None
+    ratio = ours.mean / paper
     mine = _direction(ours)
     theirs = _direction(Estimate.exact(paper))
-    level: Level = "not reproduced"
+    level = "not reproduced"
     if mine == theirs and theirs != "no effect shown":
         level = "reproduced" if _within_factor(ratio) else "same trend"
-    return Verdict(level, (ratio,), mine, theirs)
+    return {
+        "verdict": level,
+        "ours_over_paper": [ratio],
+        "our_trend": mine,
+        "paper_trend": theirs,
+    }
 
 
-def _within_factor(ratio: float | None) -> bool:
-    return ratio is not None and 1.0 / FACTOR <= ratio <= FACTOR
+def _within_factor(ratio: float) -> bool:
+    return 1.0 / FACTOR <= ratio <= FACTOR
 
 
 def _direction(change: Estimate) -> str:

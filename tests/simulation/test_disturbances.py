@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -11,13 +13,13 @@ from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
 
 def test_the_default_is_none_and_typical_is_all_but_the_push():
     nothing = Disturbances()
-    assert nothing.settings() == {
+    assert asdict(nothing) == {
         "mass_error": 0.0, "friction": 0.0, "encoder_noise": 0.0, "encoder_bits": 0, "delay": 0,
         "push": None,
     }  # fmt: skip
     np.testing.assert_array_equal(nothing.mass_factors(7, seed=3), np.ones(7))
     typical = Disturbances.typical()
-    values = typical.settings()
+    values = asdict(typical)
     assert values.pop("push") is None
     assert all(value > 0 for value in values.values())
     assert typical.delay == 1
@@ -82,4 +84,3 @@ def test_wrong_disturbances(options, name):
 def test_wrong_pushes(options, name):
     with pytest.raises(InvalidInputError, match=name):
         Push(**options)
-    assert Push(start=1.0, duration=0.5).end == 1.5

@@ -459,16 +459,6 @@ def test_a_budget_that_is_too_small_falls_back_to_the_reference() -> None:
     assert any("49 steps answered at a second attempt" in reason for reason in failures(record))
 
 
-@pytest.mark.parametrize(("steps", "count"), [(100, 0), (101, 1), (150, 1)])
-def test_a_network_that_never_settles_says_so_after_a_hundred_steps(steps: int, count: int) -> None:
-    solver = DNNSolver(settler=ExplicitEuler(max_steps=50))  # settles at rest only, so at step 0
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always")
-        run(duration=1e-3 * steps, solver=solver, check=CrossCheck(("osqp",)))
-    assert len(told) == count
-    assert all("step 100: the network did not settle in 100 steps" in str(w.message) for w in told)
-
-
 def test_noise_does_not_stop_a_run() -> None:
     record = run(dt=1e-4, duration=0.05, noise=0.01)
     assert failures(record) == []

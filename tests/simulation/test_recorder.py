@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
 from numpy.testing import assert_array_equal
 
 from helpers_kinematics import PAPER_Q0
@@ -16,7 +15,7 @@ from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.qp import QP, Solution, Status
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation.loop import Outcome
-from iiwa_dnn.simulation.recorder import PATIENCE, Recorder
+from iiwa_dnn.simulation.recorder import Recorder
 
 ROWS = [{"part": "Wall", "row": 1}, {"part": "Ball", "row": 1}, {"part": "Ball", "row": 2}]
 SPEED = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
@@ -117,12 +116,3 @@ def test_multipliers_and_poses_are_those_of_the_first_stage() -> None:
     assert_array_equal(made.arrays["position_desired"][0], heart().at(0.0).position)
     iterations = sum(stage.solution.iterations for stage in stages)
     assert made.arrays["iterations"][0] == iterations
-
-
-def test_a_long_series_of_fallbacks_warns() -> None:
-    made = recorder(PATIENCE)
-    fallback = outcome(action=Action.FALLBACK)
-    for k in range(PATIENCE - 1):
-        made.observe(k, fallback)
-    with pytest.warns(UserWarning, match=f"did not settle in {PATIENCE} steps in a row"):
-        made.observe(PATIENCE - 1, fallback)

@@ -101,7 +101,7 @@ def test_a_network_that_diverges_is_a_number_less_and_a_reason_more() -> None:
 
 @pytest.mark.parametrize("name", ["projection (the paper's)", "dual", "one-layer", "gradient"])
 def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
-    network = atlas.find_network(name).network
+    network = atlas.part("network", name).network
     rng = np.random.default_rng(4)
     qp, _ = known_qp(rng, 5, 3, 0)
     qp = QP(qp.P, qp.q, A=qp.A, b=qp.b)
@@ -120,7 +120,7 @@ def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(atlas.NETWORKS))
 def test_work_grows_with_the_program_and_buys_evaluations(name: str) -> None:
-    entry = atlas.find_network(name)
+    entry = atlas.part("network", name)
     setup, each = entry.work((7, 0, 6))
     assert setup >= 0.0
     assert each > 0.0
@@ -235,12 +235,12 @@ def test_parts_of_ones_own_come_from_files_and_from_modules(
         ("--networks", "nowhere:My", "network: nowhere cannot be imported (No module"),
         ("--networks", "nowhere.py:My", "network: nowhere.py cannot be imported ("),
         ("--networks", "math:My", "no network in math 'My'"),
-        ("--networks", "math:pi", "networks: math:pi is no network: 3.14"),
+        ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: zeroing, E"),
         ("--schemes", "other", "no scheme 'other'"),
         ("--schemes", "math:pi", "scheme: math:pi is no Scheme"),
         ("--references", "math:pi", "reference: math:pi is no Reference"),
-        ("--disturbances", "math:pi", "disturbances: math:pi is no class of a Disturbance"),
+        ("--disturbances", "math:pi", "disturbance: math:pi is no Disturbance: 3.14"),
         ("--work", "-1", "work: must be a finite number above 0"),
         ("--seeds", "0", "seeds: "),
     ],

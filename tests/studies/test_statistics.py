@@ -21,16 +21,15 @@ def test_interval_of_four_numbers_worked_by_hand() -> None:
     assert found.samples == 4
 
 
-@pytest.mark.parametrize("confidence", [0.5, 0.95])
-def test_the_interval_holds_the_true_mean_as_often_as_it_says(confidence: float) -> None:
+def test_the_interval_holds_the_true_mean_as_often_as_it_says() -> None:
     rng = np.random.default_rng(0)
     trials = 2000
     inside = 0
     for _ in range(trials):
-        found = estimate(rng.normal(3.0, 2.0, 6), confidence)
+        found = estimate(rng.normal(3.0, 2.0, 6))
         inside += found.low <= 3.0 <= found.high
-    spread = np.sqrt(confidence * (1.0 - confidence) / trials)
-    assert abs(inside / trials - confidence) < 4.0 * spread
+    spread = np.sqrt(0.95 * 0.05 / trials)
+    assert abs(inside / trials - 0.95) < 4.0 * spread
 
 
 def test_a_paired_difference_sees_what_the_shared_noise_hides() -> None:
@@ -118,11 +117,7 @@ def test_trends(values: tuple[float, ...], expected: str) -> None:
     [
         (lambda: estimate([1.0]), "samples"),
         (lambda: estimate([1.0, np.nan]), "samples"),
-        (lambda: estimate([1.0, 2.0], confidence=1.0), "confidence"),
         (lambda: paired_difference([1.0, 2.0], [1.0, 2.0, 3.0]), "before"),
-        (lambda: trend([1.0], [1.0]), "x"),
-        (lambda: trend([1.0, 2.0], [1.0]), "y"),
-        (lambda: trend([1.0, np.inf], [1.0, 2.0]), "x"),
     ],
 )
 def test_bad_input_is_named(call, argument: str) -> None:

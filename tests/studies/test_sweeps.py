@@ -178,8 +178,6 @@ def test_a_worker_with_other_versions_refuses() -> None:
 def test_bad_input_is_named(tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweeps, "_PATIENCE", 0.5)
     sweep = Sweep(draw, tmp_path / "cells")
-    with pytest.raises(InvalidInputError, match=r"^workers: "):
-        sweep.run(cells(log, 1), workers=0)
     with pytest.raises(InvalidInputError, match=r"^dask: no scheduler at 'tcp://127\.0\.0\.1:1'"):
         sweep.run(cells(log, 1), dask="tcp://127.0.0.1:1")
     assert computed(log) == []

@@ -3,10 +3,9 @@
 A `RealPlant` is a robot in the world. It has a clock of its own and goes on without the loop.
 """
 
-import time
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.robot import Robot
 
 Feedback = Literal["commanded", "measured"]
-FEEDBACKS: tuple[Feedback, ...] = ("commanded", "measured")
 """Joint angles of a real arm that its controller gets: summed commands, or encoders."""
 
 JOINTS = 7
@@ -24,9 +22,6 @@ JOINTS = 7
 
 NEAR = 0.01
 """Largest distance of a joint of a real arm from the start posture of a run [rad]."""
-
-BEHIND = 20.0
-"""Time by which a robot's clock may fall behind before the robot is given up [s]."""
 
 
 class Plant(ABC):
@@ -106,10 +101,9 @@ class RealMotion:
         command: Last command [rad/s], (7,).
         previous: Command before it, as the robot has it [rad/s], (7,).
         substitutes: `Plant.substitutes`, (2, 7).
-        waits: Whether the state that answers the last command is still to come.
         time: Time since the motion began, by the robot's clock [s].
         late: Times at which commands were found to have come too late [s].
-        began: Time at which it began, by this machine's clock [s]; None: it did not.
+        began: Whether it has begun.
         fault: `Plant.fault`.
     """
 
@@ -117,10 +111,9 @@ class RealMotion:
     command: Vector = field(default_factory=lambda: np.zeros(JOINTS))
     previous: Vector = field(default_factory=lambda: np.zeros(JOINTS))
     substitutes: Matrix | None = None
-    waits: bool = False
     time: float = 0.0
     late: list[float] = field(default_factory=list)
-    began: float | None = None
+    began: bool = False
     fault: str | None = None
 
 
@@ -128,11 +121,10 @@ class RealPlant(Plant):
     """A robot of 7 joints that stands somewhere before a run begins.
 
     `start` connects and refuses a start posture from which the robot is far; the motion begins at
-    the first `read`. `move` sends a command. `q`, `read` and `time` are those of the robot's next
-    state after it, for which they wait.
+    the first `read`. `move` sends a command and waits for the robot's next state.
 
     A lost connection or an error of the robot is no exception but a `fault`, after which nothing
-    moves and the last state stays. So is a robot whose clock has fallen behind by `BEHIND`.
+    moves and the last state stays.
 
     Args:
         host: Address of the robot's controller.
@@ -149,7 +141,7 @@ class RealPlant(Plant):
     tip_speed: ClassVar[float | None] = None
 
     def __init__(self, host: str, feedback: Feedback) -> None:
-        checks.one_of("feedback", feedback, FEEDBACKS)
+        checks.one_of("feedback", feedback, get_args(Feedback))
         self.host = host
         self.feedback = feedback
         self._motion = RealMotion()
@@ -158,11 +150,6 @@ class RealPlant(Plant):
     @abstractmethod
     def period(self) -> float:
         """Control period of the robot [s]; connects if need be."""
-
-    @property
-    @abstractmethod
-    def posture(self) -> Vector:
-        """Measured joint angles of the last state [rad], (7,); connects if need be."""
 
     @abstractmethod
     def _begin(self) -> None:
@@ -189,10 +176,10 @@ class RealPlant(Plant):
         period = self.period
         if abs(dt - period) > 1e-9 * period:
             raise InvalidInputError("dt", f"must be the robot's {period:g} s, not {dt:g} s", dt)
-        away = np.abs(q0 - self.posture)
+        away = np.abs(q0 - self.q)
         if not away.max() <= NEAR:
             joint = int(away.argmax())
-            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
+            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.q[joint]:.4g}"
             raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
         self._motion = RealMotion(np.array(q0))
 
@@ -200,34 +187,19 @@ class RealPlant(Plant):
         """Return a robot with limits inside of which commands may also come too late."""
         return robot
 
-    def _wait(self) -> None:
-        """Wait for the robot's next state, if a command was sent since the last one."""
-        motion = self._motion
-        if not motion.waits or motion.began is None:
-            return
-        motion.waits = False
-        motion.substitutes = None
-        self._receive()
-        behind = time.monotonic() - motion.began - motion.time
-        if motion.fault is None and behind > BEHIND:
-            motion.fault = f"the robot's clock is {behind:.0f} s behind"
-
     @property
-    def q(self) -> Vector:
-        """Measured joint angles [rad], (7,), a copy."""
-        self._wait()
-        return self.posture
+    def posture(self) -> Vector:
+        """Measured joint angles of the last state [rad], (7,), a copy: those of `q`."""
+        return self.q
 
     @property
     def time(self) -> float:
         """Time since the motion began, by the robot's clock [s]."""
-        self._wait()
         return self._motion.time
 
     @property
     def substitutes(self) -> Matrix | None:
         """Last command and the one before, (2, 7) [rad/s], if the robot lost ours; else None."""
-        self._wait()
         return self._motion.substitutes
 
     @property
@@ -237,24 +209,23 @@ class RealPlant(Plant):
 
     def read(self) -> Vector:
         """Return the commanded or the measured joint angles [rad], (7,); the first call begins."""
-        if self._motion.began is None:
+        if not self._motion.began:
             self._begin()
-            self._motion.began = time.monotonic()
-        self._wait()
-        return self._motion.commanded.copy() if self.feedback == "commanded" else self.posture
+            self._motion.began = True
+        return self._motion.commanded.copy() if self.feedback == "commanded" else self.q
 
     def move(self, command: Vector) -> None:
         """Send a velocity command (7,) [rad/s] for the period of the last state."""
-        self._wait()
         motion = self._motion
-        if motion.fault is not None or motion.began is None:
+        if motion.fault is not None or not motion.began:
             return
         known = motion.substitutes
         motion.previous = motion.command if known is None else known[0]
         motion.command = np.array(command)
         motion.commanded = motion.commanded + self.period * motion.command
-        motion.waits = True
+        motion.substitutes = None
         self._send()
+        self._receive()
 
     def settings(self) -> dict[str, Any]:
         """Return the plant's entries in the settings of a record."""

@@ -43,9 +43,6 @@ PATIENCE = 5.0
 _CONNECT = struct.pack("<3I2H", 0, 0, 16, 0, 9)
 """Request to connect: command, its number, size in bytes, version, UDP port, here "discard"."""
 
-TIP_SPEED = 2.5
-"""Limit of the tip's speed [m/s]. The robot's own is 3, of the measured motion."""
-
 _ACCELERATION = 0.75
 _JERK = 0.24
 """Ratios to the robot's limits. A late command may be dropped or, by franka-sim, be taken after all
@@ -82,7 +79,7 @@ class FrankaPlant(RealPlant):
 
     name: ClassVar[str] = "franka"
     packages: ClassVar[tuple[str, ...]] = ("pylibfranka",)
-    tip_speed: ClassVar[float | None] = TIP_SPEED
+    tip_speed: ClassVar[float | None] = 2.5  # the robot's own is 3, of the measured motion
 
     def __init__(
         self,
@@ -96,7 +93,6 @@ class FrankaPlant(RealPlant):
             raise InvalidInputError("host", "is needed: the address of the robot's controller")
         self.lost_cycles = checks.integer("lost_cycles", lost_cycles, 0)
         self.lag = checks.not_negative("lag", lag)
-        self._franka: Any = None
         self._robot: Any = None
         self._control: Any = None
 
@@ -109,7 +105,7 @@ class FrankaPlant(RealPlant):
         """
         if self._robot is not None:
             return
-        self._franka = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
+        self._franka: Any = import_extra("pylibfranka", "pip install 'iiwa-dnn[franka]'")
         try:
             _await_answer(self.host)
             robot = self._franka.Robot(self.host, self._franka.RealtimeConfig.kIgnore)
@@ -125,7 +121,7 @@ class FrankaPlant(RealPlant):
         return PERIOD
 
     @property
-    def posture(self) -> Vector:
+    def q(self) -> Vector:
         """Measured joint angles of the last state [rad], (7,); connects if need be."""
         self._connect()
         return np.array(self._state.q)
@@ -230,7 +226,6 @@ class FrankaPlant(RealPlant):
     def stop(self) -> None:
         """End the motion and close the connection; libfranka brakes an arm that still moves."""
         if self._control is not None and self.fault is None:
-            self._wait()
             self._motion.command = np.zeros(JOINTS)
             self._send(is_last=True)
         self._control = None

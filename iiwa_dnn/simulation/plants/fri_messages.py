@@ -21,8 +21,14 @@ COMMAND_ID = 0x34001
 PORT = 30200
 """UDP port at which a client listens."""
 
+_REMEDY = "pip install 'iiwa-dnn[fri]'"
+
 LARGEST_MESSAGE = 1500
 """Size of the largest message [bytes]."""
+
+
+WRAP = 2**32
+"""Number at which the sequence counters begin again."""
 
 
 class SessionState(IntEnum):
@@ -45,11 +51,10 @@ class Quality(IntEnum):
 
 
 class MessageTypes(NamedTuple):
-    """Classes of the two messages, made by protobuf, and its error at bytes that are none."""
+    """Classes of the two messages, made by protobuf."""
 
     monitoring: Any
     command: Any
-    decode_error: type[Exception]
 
 
 # Each message with its fields: name, number, label, type. An enumeration is an int32 on the wire.
@@ -109,9 +114,8 @@ def message_types() -> MessageTypes:
     Raises:
         MissingDependencyError: The package protobuf is not installed.
     """
-    remedy = "pip install 'iiwa-dnn[fri]'"
-    descriptor = import_extra("google.protobuf.descriptor_pb2", remedy)
-    factory = import_extra("google.protobuf.message_factory", remedy)
+    descriptor = import_extra("google.protobuf.descriptor_pb2", _REMEDY)
+    factory = import_extra("google.protobuf.message_factory", _REMEDY)
     kind = descriptor.FieldDescriptorProto
     file = descriptor.FileDescriptorProto(name="fri.proto", package="fri", syntax="proto2")
     for message, fields in _FIELDS.items():
@@ -125,11 +129,7 @@ def message_types() -> MessageTypes:
             else:
                 field.type = kind.Type.Value(f"TYPE_{type_name.upper()}")
     classes = factory.GetMessages([file])
-    return MessageTypes(
-        classes["fri.FRIMonitoringMessage"],
-        classes["fri.FRICommandMessage"],
-        import_extra("google.protobuf.message", remedy).DecodeError,
-    )
+    return MessageTypes(classes["fri.FRIMonitoringMessage"], classes["fri.FRICommandMessage"])
 
 
 def parse(kind: Any, identifier: int, datagram: bytes) -> Any:
@@ -142,6 +142,6 @@ def parse(kind: Any, identifier: int, datagram: bytes) -> Any:
     """
     try:
         message = kind.FromString(datagram)
-    except message_types().decode_error:
+    except import_extra("google.protobuf.message", _REMEDY).DecodeError:
         return None
     return message if message.header.messageIdentifier == identifier else None

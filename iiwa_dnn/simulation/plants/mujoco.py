@@ -129,7 +129,8 @@ class MujocoPlant(Plant):
         if push is not None:
             data.qfrc_applied[:] = 0.0
             # The middle of the step, so that rounding of the time cannot cost or add a step.
-            if push.start <= data.time + 0.5 * self._model.opt.timestep < push.end:
+            middle = data.time + 0.5 * self._model.opt.timestep
+            if push.start <= middle < push.start + push.duration:
                 tip = self._model.site(TIP_SITE)
                 point = data.site_xpos[tip.id]
                 body = int(tip.bodyid[0])
@@ -147,7 +148,7 @@ class MujocoPlant(Plant):
             "damping": model.dof_damping.reshape(model.nv, -1)[:, 0].tolist(),
             "armature": model.dof_armature.tolist(),
             "friction": model.dof_frictionloss.tolist(),
-            "disturbances": self.disturbances.settings(),
+            "disturbances": asdict(self.disturbances),
             "torque_loop": asdict(self.gains),
         }
         return {"torque_max": self._torques.limit, "physics": physics}

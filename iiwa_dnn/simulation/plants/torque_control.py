@@ -90,8 +90,8 @@ class Observer:
 class TorqueController:
     """The torque loop of an arm with n joints, and its observer; `reset` comes first.
 
-    Robot and dynamics are as the controller knows them, the latter by default the estimates. A
-    velocity command is reached within a period [s]; `torque` is called every timestep [s].
+    Robot and dynamics are as the controller knows them. A velocity command is reached within a
+    period [s]; `torque` is called every timestep [s].
 
     Attributes:
         gains: Stiffness.
@@ -104,11 +104,10 @@ class TorqueController:
         robot: Robot,
         period: float,
         timestep: float,
-        gains: TorqueGains | None = None,
-        dynamics: JointDynamics | None = None,
+        gains: TorqueGains,
+        dynamics: JointDynamics,
     ) -> None:
-        dynamics = JointDynamics() if dynamics is None else dynamics
-        self.gains = TorqueGains() if gains is None else gains
+        self.gains = gains
         self.limit = torque_limits(robot)
         self.substeps = round(period / timestep)
         self._period = period

@@ -1,7 +1,6 @@
 """A Franka arm as a plant: against a stand-in here, against an independent server elsewhere."""
 
 import sys
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -15,7 +14,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Motion
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.schemes.motion_limits import braking_room
-from iiwa_dnn.simulation.plants import base, franka
+from iiwa_dnn.simulation.plants import franka
 
 ROBOT = iiwa_dnn.load_robot("fr3")
 START = ROBOT.start_posture()
@@ -133,17 +132,6 @@ def test_a_robot_that_does_not_answer_is_named(
     monkeypatch.setattr(franka, "PORT", port)  # where nobody listens any more
     with pytest.raises(InvalidInputError, match=r"host: 127\.0\.0\.1: Connection refused"):
         _ = iiwa_dnn.FrankaPlant("127.0.0.1").posture
-
-
-def test_a_robot_whose_clock_falls_behind_is_given_up(
-    arm: Arm, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(base, "BEHIND", 0.2)
-    read = arm.readOnce
-    monkeypatch.setattr(arm, "readOnce", lambda: (time.sleep(0.02), read())[1])
-    record = drive(iiwa_dnn.FrankaPlant("127.0.0.1"))
-    assert 5 < record.steps < 20
-    assert record.settings["status"].endswith("s): the robot's clock is 0 s behind")
 
 
 def test_a_command_that_was_taken_after_all_is_found_in_the_echo(arm: Arm) -> None:

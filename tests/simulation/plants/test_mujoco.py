@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -125,7 +127,7 @@ def test_its_settings_say_everything(robot):
             "damping": [0.3] * 7,
             "armature": [0.07] * 7,
             "friction": [0.01 * value for value in limit],
-            "disturbances": Disturbances(friction=0.01, delay=2).settings(),
+            "disturbances": asdict(Disturbances(friction=0.01, delay=2)),
             "torque_loop": {"bandwidth": 50.0, "observer_bandwidth": 300.0, "leash": 0.1},
         }
     }

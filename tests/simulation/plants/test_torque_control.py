@@ -37,7 +37,7 @@ def robot():
 
 
 def loop(robot):
-    torques = TorqueController(robot, PERIOD, TIMESTEP)
+    torques = TorqueController(robot, PERIOD, TIMESTEP, TorqueGains(), JointDynamics())
     torques.reset(START)
     return torques, Arm(robot, START)
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import runpy
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from helpers_kinematics import Array, finite_difference
 from iiwa_dnn import Circle, Configuration, Step
-from iiwa_dnn.studies import posture_obstacle as study
 
+SCRIPT = Path(__file__).parents[2] / "scripts" / "posture_obstacle.py"
+study = SimpleNamespace(**runpy.run_path(str(SCRIPT)))
 ARM = study.arm()
 FRAMES = ("base", *(f"link_{i}" for i in range(1, 7)))
 NEAR = np.array([-0.1, 0.05, 0.1, -0.2, 0.1, 0.3]) + study.START
