@@ -88,13 +88,18 @@ class RunOptions:
     def of(cls, options: Mapping[str, Any]) -> RunOptions:
         """Make the options of those by name, fields of `Disturbance` among them.
 
-        Its `velocity` is the option ``disturbance``.
+        A `VelocityDisturbance` as `disturbance` is that of the velocity alone.
         """
         names = [each.name for each in fields(cls)]
         own = {name: options[name] for name in names if name in options}
         others = {name: options[name] for name in options if name not in own}
-        velocity = own.pop("disturbance", None)
-        return cls(disturbance=Disturbance(velocity=velocity, **others), **own)
+        disturbance = own.pop("disturbance", None)
+        if not isinstance(disturbance, Disturbance):
+            disturbance = Disturbance(velocity=disturbance, **others)
+        elif others:
+            problem = f"holds {', '.join(others)} already"
+            raise InvalidInputError("disturbance", problem, disturbance)
+        return cls(disturbance=disturbance, **own)
 
 
 class Simulation:

@@ -28,6 +28,7 @@ from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
 from iiwa_dnn.simulation import NOISE_ENTRIES, Simulation, gaussian_noise, simulate
+from iiwa_dnn.simulation.noise import Disturbance
 
 OPTIONS = {
     "plain": {},
@@ -457,6 +458,14 @@ def test_a_budget_that_is_too_small_falls_back_to_the_reference() -> None:
     # Counted, and told: the network did not do what it is for.
     assert compute_metrics(record)["incidents"]["fallback_steps"] == 49
     assert any("49 steps answered at a second attempt" in reason for reason in failures(record))
+
+
+def test_a_disturbance_is_given_whole_or_by_its_parts() -> None:
+    whole = Disturbance(noise=0.01)
+    options = {"dt": 1e-4, "duration": 0.01}
+    np.testing.assert_array_equal(run(disturbance=whole, **options).q, run(noise=0.01, **options).q)
+    with pytest.raises(InvalidInputError, match="holds noise already"):
+        run(disturbance=whole, noise=0.01)
 
 
 def test_noise_does_not_stop_a_run() -> None:
