@@ -13,7 +13,8 @@ from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.naming import describe, in_the_way
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, cut
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -24,6 +25,9 @@ from iiwa_dnn.simulation.loop import Outcome
 PATIENCE = 100
 """Consecutive second attempts after which a run warns."""
 
+SEARCHED = 100
+"""Steps of the continuous mode of which one is tested for a solution."""
+
 _LATER = {"solution_gap", "objective_gap", "reference_residual", "t"}
 
 
@@ -33,6 +37,7 @@ class Recorder:
     Attributes:
         arrays: Columns by name; an optional one once there is something to put in.
         last_step: Step at which the run ended early; None: it has not.
+        infeasible: A step of the continuous mode that was shown to have no solution; None: none.
     """
 
     def __init__(
@@ -55,6 +60,7 @@ class Recorder:
         self._kinematics = Kinematics(program.robot, program.target_frames)
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
+        self.infeasible: int | None = None
         self._names = LimitNames(program, controller.dt)
         self._done = 0
         self._series = 0
@@ -98,6 +104,8 @@ class Recorder:
         figures = self.layout.view(rows, "figures").reshape(count, stages, -1)
         arrays["iterations"][steps] = figures[..., 0].sum(axis=1)
         arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
+        if self._controller.mode == "continuous" and self.infeasible is None:
+            self._look_for_infeasible(rows)
         first = rows[::stages]  # pose, target and multipliers are the first stage's
         self._add_samples(
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
@@ -116,6 +124,20 @@ class Recorder:
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return rows
+
+    def _look_for_infeasible(self, rows: Matrix) -> None:
+        """Solve the program of each `SEARCHED` rows (k, width) that is violated most.
+
+        What the network lags behind in continuous mode may have no solution at all.
+        """
+        layout = self.layout
+        violation = layout.view(rows, "figures")[:, 2]
+        for first in range(0, len(rows), SEARCHED):
+            k = first + int(violation[first : first + SEARCHED].argmax())
+            qp = QP.from_data(layout.view(rows[k], "program"), layout.sizes)
+            if DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE:
+                self.infeasible = self._done + k
+                return
 
     def _add_times(self, first: int, outcomes: Sequence[Outcome]) -> None:
         """Note the times after the outcomes from a first step on, where the plant has a clock."""
