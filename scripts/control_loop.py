@@ -2,8 +2,9 @@
 
 One sees the time of a step, which has to be far below the period, and the tracking error. A real
 robot takes the places of `read_encoders` and `send`; everything else stays as it is. With noise of
-the encoders, such as ``--noise 1e-4``, an estimator keeps it out of the commands; with a jerk
-limit, such as ``--jerk 100``, the arm takes a while to reach the speed of the path.
+the encoders, such as ``--noise 1e-4``, or drives that are late, such as ``--delay 2``, an estimator
+knows where the arm is when the command begins; with a jerk limit, such as ``--jerk 100``, the arm
+takes a while to reach the speed of the path.
 """
 
 import math
@@ -25,9 +26,10 @@ ACCELERATION = 10.0  # limit of every joint beside a jerk limit [rad/s^2]
 class Arm:
     """A simulated arm that moves as it is told; replace it by the driver of a real one."""
 
-    def __init__(self, q, noise):
+    def __init__(self, q, noise, delay):
         self.q = np.array(q, dtype=float)
         self.noise = noise
+        self.late = [np.zeros(self.q.size)] * delay  # commands on their way to the drives
         self.random = np.random.default_rng(0)
 
     def read_encoders(self):
@@ -36,16 +38,23 @@ class Arm:
 
     def send(self, dq):
         """Command the joint velocities [rad/s], (n,), for one period."""
-        self.q += DT * dq
+        self.late.append(dq)
+        self.q += DT * self.late.pop(0)
 
 
-def main(steps: tyro.conf.Positional[int] = 1000, noise: float = 0.0, jerk: float = math.inf):
+def main(
+    steps: tyro.conf.Positional[int] = 1000,
+    noise: float = 0.0,
+    jerk: float = math.inf,
+    delay: int = 0,
+):
     """Draw the heart's first steps in real time; 1 where the arm cannot follow.
 
     Args:
         steps: number of steps
         noise: standard deviation of the encoders' noise [rad]
         jerk: jerk limit of every joint [rad/s^3], beside an acceleration limit of 10 rad/s^2
+        delay: number of periods by which the drives are late
     """
     checks.integer("steps", steps, 1)
     checks.not_negative("noise", noise)
@@ -57,13 +66,15 @@ def main(steps: tyro.conf.Positional[int] = 1000, noise: float = 0.0, jerk: floa
         limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
         # A loop with these limits is stable below 1 / (acceleration / jerk + dt): docs/limits.md
         gain = min(gain, 0.9 / (ACCELERATION / jerk + DT))
-    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise)
+    model = None
+    if noise or delay:
+        model = NoiseModel(velocity=1e-3, measurement=noise or 1e-6, delay=delay)
+    arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise, delay)
     start = iiwa_dnn.Configuration(robot, arm.q)
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
     scheme = iiwa_dnn.DoubleIndicator(
         position_gain=gain, orientation_gain=gain, extra_limits=limits
     )
-    model = NoiseModel(velocity=1e-3, measurement=noise) if noise else None
     controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT, estimator=model)
     controller.warm_up()  # compiles, so that the first step is as quick as the others
     times = []

@@ -208,8 +208,8 @@ class ViewOptions:
     """folder or record of a run (none: live)"""
     robot: _Name = None  # robot, by its name or by its file (none: the record's, or iiwa7)
     tip: _Name = None  # frame that follows the target (none: the record's, or the chain's end)
-    lock: _Names = ()  # names of the joints that are held still
-    tool: _Floats = ()  # pose of the tool frame in the tip frame: X Y Z R P Y [m, rad]
+    lock: _Names = ()  # names of the joints that are held still (none: the run's)
+    tool: _Floats = ()  # tool frame in the tip frame: X Y Z R P Y [m, rad] (none: the run's)
     host: str = "127.0.0.1"  # address of the page; 0.0.0.0 lets other machines in
     port: int = 8080  # port of the page; 0 takes a free one
     verbose: _Verbose = False  # print the traceback of an error too

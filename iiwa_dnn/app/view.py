@@ -23,11 +23,13 @@ def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     """Open the page and keep it moving until `stop` returns True, or Ctrl-C; return 0."""
     record = None if options.run is None else load_run(options.run)
     settings = {} if record is None else record.settings
-    tip = options.tip
-    if not options.tool:  # else the record's tip may be that tool
+    kept = {} if options.run is None else kept_settings(options.run)
+    tool = options.tool or kept.get("tool")
+    tip = options.tip or kept.get("tip")
+    if not tool:  # else the record's tip may be that tool
         tip = tip or settings.get("tip")
     name = options.robot or ("iiwa7" if options.run is None else robot_of(options.run, settings))
-    robot = load_robot(name, tip=tip, locked=options.lock, tool=options.tool or None)
+    robot = load_robot(name, tip=tip, locked=options.lock or kept.get("lock", ()), tool=tool)
     if record is None:
         page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
     elif robot.dof == record.dof:
@@ -59,6 +61,12 @@ def load_run(path: Path) -> Record:
     return Record.load(path)
 
 
+def kept_settings(run: Path) -> dict[str, Any]:
+    """Read the settings file beside a run's record; empty if there is none."""
+    file = (run if run.is_dir() else run.parent) / SETTINGS_FILE
+    return read_toml(file) if file.exists() else {}
+
+
 def robot_of(run: Path, settings: Mapping[str, Any]) -> str:
     """Name the robot of a run: as the folder's settings file does, or else the record's settings.
 
@@ -67,10 +75,7 @@ def robot_of(run: Path, settings: Mapping[str, Any]) -> str:
     Raises:
         InvalidInputError: There is no robot of that name, and no file.
     """
-    file = (run if run.is_dir() else run.parent) / SETTINGS_FILE
-    if file.exists():
-        settings = {**settings, **read_toml(file)}
-    name = str(settings.get("robot", "iiwa7"))
+    name = str({**settings, **kept_settings(run)}.get("robot", "iiwa7"))
     if name not in (*package_robots(), *ARMS) and not Path(name).exists():
         raise InvalidInputError(
             "--robot", f"{name!r} came from a file: add --robot FILE.urdf", name

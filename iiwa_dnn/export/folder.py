@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.export.code import code_of, filled
@@ -150,6 +151,7 @@ def _texts(
 ) -> dict[str, Any]:
     """Return the texts of the templates that are about the run and the settings."""
     robot = controller.robot
+    tip = controller.program.target_frames[0]
     limits = np.where(robot.dq_max < np.inf, robot.dq_max, 1.0)
     settings = plain(settings_of(controller))
     sample = "        controller_target(&c, k * CONTROLLER_DT, target);\n"
@@ -161,6 +163,8 @@ def _texts(
         "tolerance": f"{10.0 * controller.solver.tol:g}",
         "q0": _numbers(start.q),
         "target": _numbers(vectors.targets[0]),
+        "tip": PLACEMENT * robot.frame_id(tip) + 9,
+        "tip_name": tip,
         "sample": sample * has_reference,
         "fri_sample": sample_of_fri * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,

@@ -198,10 +198,10 @@ class DNNSolver:
         Returns:
             The solution; `found` only if every residual is at most `tol`.
         """
-        n, m, p = sizes = qp.sizes
         network = self.network
         tol = self.tol
         state = self._take(network, qp)
+        n, m, p = sizes = qp.sizes
         point = np.empty(2 * n + m + p)
         if self._first_try is None:
             settled = self.settler.settle(network, qp, state, point, tol)
@@ -264,8 +264,8 @@ class DNNSolver:
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        n, m, p = sizes = qp.sizes
         state = self._take(self.network, qp)
+        n, m, p = sizes = qp.sizes
         answer = self._following(sizes, duration)
         if answer is not None:
             point = np.empty(2 * n + m + p)
@@ -348,6 +348,8 @@ class DNNSolver:
 
     def _take(self, network: Network, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is put back."""
+        if type(qp) is not QP:
+            checks.instance("qp", qp, QP)
         try:
             owner, sizes, state = self._kept.pop()
             if owner is network and sizes == qp.sizes:

@@ -70,8 +70,8 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
 
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
-    the program count as exact. Where a `Solution` has a certificate instead, the reason says
-    whether it proves that there is none.
+    the program count as exact. Where an answer has a certificate instead, as a field or among its
+    extras, the reason says whether it proves that there is none; it needs no x then.
 
     Args:
         qp: The program, also as qpsolvers has it.
@@ -85,16 +85,19 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     """
     if not isinstance(qp, QP):
         qp = QP.from_qpsolvers(qp)
-    n, m, _ = qp.sizes
+    n, m, p = qp.sizes
+    active = np.zeros((1, n + m), dtype=np.int64)
+    extras: Any = getattr(solution, "extras", None) or {}
+    certificate: Any = getattr(solution, "certificate", extras.get("certificate"))
+    is_farkas = certificate is not None and np.size(certificate) == n + m + p
+    if is_farkas and proves_infeasible(qp, certificate):
+        return Proof(np.inf, active[0], REASONS[INFEASIBLE])
+    if "last_x" in extras:
+        return Proof(np.inf, active[0], f"there is no answer: {extras['status']}")
     point = point_of(solution, qp)
-    active = np.empty((1, n + m), dtype=np.int64)
     bound = np.empty(1)
     reason = np.empty(1, dtype=np.int64)
     prove_block(qp.data[np.newaxis], n, m, point[np.newaxis], bound, reason, active)
-    certificate: Any = getattr(solution, "certificate", None)
-    is_farkas = certificate is not None and certificate.size == point.size - n
-    if bound[0] == np.inf and is_farkas and proves_infeasible(qp, certificate):
-        reason[0] = INFEASIBLE
     return Proof(float(bound[0]), active[0], REASONS[reason[0]])
 
 

@@ -49,7 +49,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         raise InvalidInputError("run", f"must be a record or its metrics, not {run!r:.80}", run)
     metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
     return [
-        *path_completed(metrics),
+        *_path_completed(metrics),
         *_early_end(metrics),
         *_policies(metrics, record),
         *_not_finite(metrics),
@@ -61,7 +61,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     ]
 
 
-def path_completed(metrics: Mapping[str, Any]) -> list[str]:
+def _path_completed(metrics: Mapping[str, Any]) -> list[str]:
     """Report an incomplete path as ``path completed 12.3 %``; a completed one has no line."""
     fraction = metrics.get("path_completed", 1.0)  # older metrics lack it
     return [f"path completed {percent(fraction)}"] if fraction < 1.0 else []
@@ -69,16 +69,20 @@ def path_completed(metrics: Mapping[str, Any]) -> list[str]:
 
 def _early_end(metrics: Mapping[str, Any]) -> list[str]:
     settings = metrics["settings"]
-    if settings["status"] == "completed":
+    status = settings["status"]
+    if status == "completed":
         return []
     planned = round(settings["duration"] / settings["dt"])
-    return [f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"]
+    early = f"ended after {metrics['steps']:,} of {planned:,} steps: "
+    return [f"{early if metrics['steps'] < planned else ''}{status}"]
 
 
 def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
     incidents = metrics.get("incidents")
     if incidents is None or incidents["first"] is None:
+        return []
+    if metrics["settings"]["mode"] == "continuous":  # it has no policies, and its status says why
         return []
     first = incidents["first"]
     at = f", the first at step {first['step']} (t = {first['time_s']:.6g} s)"
@@ -103,7 +107,8 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
         path_time = number(incidents["path_time_s"])
         needed = _needed(incidents.get("needed"))  # older metrics lack it
         took = number(metrics["duration_s"])
-        reasons.append(f"slowed: path time {path_time} s after {took} s{needed}")
+        off = _off_path(incidents)
+        reasons.append(f"slowed: path time {path_time} s after {took} s{needed}{off}")
     return reasons
 
 
@@ -117,6 +122,16 @@ def _needed(needed: Mapping[str, Any] | None) -> str:
         f"; needs {ratio:g} times the joints' speed, most of all joint {needed['joint']}'s, or "
         f"{ratio:g} times as long a time; slowed as here it ends after about {time:g} s"
     )
+
+
+def _off_path(incidents: Mapping[str, Any]) -> str:
+    """Name the row that was longest in the way, and how far it kept the tip from the path."""
+    off = incidents.get("off_path_m")  # older metrics lack it
+    if off is None:
+        return ""
+    row = max(incidents["blocking_rows"], key=lambda row: row["steps"])
+    never = ", which no longer time mends" if off > FAR else ""
+    return f"; {describe(row)} kept the tip up to {_show(off)} m off the path{never}"
 
 
 def _blocking(metrics: Mapping[str, Any]) -> str:

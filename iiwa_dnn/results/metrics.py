@@ -30,6 +30,7 @@ RECOVERED_BELOW = 1e-3
 """Largest distance to the path of a tip that has recovered from a push [m]."""
 
 _AT_LIMIT = 1.0 - 1e-9
+_VELOCITY = 1 + KINDS.index("velocity")
 
 BoolArray = NDArray[np.bool_]
 Codes = NDArray[Any]
@@ -157,7 +158,8 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     """Sum up a run in plain JSON types, as metrics.json holds them.
 
     ``path_completed`` is the fraction of the path's time that the reference's clock covered. Below
-    1 the errors say little: they are measured against the slowed target. The mean squared error
+    1 the errors say little: they are measured against the slowed target. The path's time is that of
+    the path once, or the run's if it is shorter. The mean squared error
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
@@ -337,6 +339,7 @@ def _incidents(record: Record) -> dict[str, Any]:
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
             "needed": _needed(record, action, blocking),
+            "off_path_m": _off_path(record, action, blocking),
             "first": _first_action(record, action),
             "blocking": _spells(record, _blocking(record)),
             "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
@@ -350,13 +353,13 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
     """Estimate what would have sufficed where velocity limits alone slowed the path.
 
     With its velocity over the fraction of the path's speed that it had, a slowed step would have
-    followed the path at its own speed. The time is that of the whole path at the mean pace. What is
+    followed the path at its own speed. The time is that of the path once at the mean pace. What is
     left of an incomplete path may need more. A tip that begins far from the path was slowed on its
     way there, which says nothing of the path.
     """
     slow = action == _SLOW
     acting = np.abs(blocking[slow])
-    others = (acting != 0) & (acting != KINDS.index("velocity") + 1)
+    others = (acting != 0) & (acting != _VELOCITY)
     nothing = ~acting.any(axis=1)
     far = start_distance(record) > FAR
     rows = record.filled("blocking_rows").any()
@@ -365,8 +368,20 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
     fraction = record.filled("fraction")[slow, np.newaxis]
     ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
     joint = int(ratio.argmax())
-    time = record.t[-1] / max(record.path_completed, np.finfo(float).tiny)
+    time = record.t[-1] * record.path_duration / max(record.path_time, np.finfo(float).tiny)
     return {"joint": joint + 1, "speed_ratio": ratio[joint], "time_s": time}
+
+
+def _off_path(record: Record, action: Codes, blocking: Codes) -> float | None:
+    """Compute the largest distance [m] to the slowed target where inequality rows slowed the path.
+
+    A tip that begins far from the path, or that acceleration limits hold back, says nothing of it.
+    """
+    rows = record.filled("blocking_rows").any(axis=1)
+    slowed = rows & (action == _SLOW) & (np.abs(blocking) <= _VELOCITY).all(axis=1)
+    if not slowed.any() or start_distance(record) > FAR:
+        return None
+    return _max(np.linalg.norm(position_error(record)[1:][slowed], axis=1))
 
 
 def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:

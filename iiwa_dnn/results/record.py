@@ -244,14 +244,16 @@ class Record:
         return float(self.settings["dt"]) * float(self.filled("fraction").sum())
 
     @property
-    def path_completed(self) -> float:
-        """Fraction of the path's duration that the reference's clock covered, 0 to 1.
-
-        The duration is the run's, or where the path has an end before that, the path's.
-        """
+    def path_duration(self) -> float:
+        """Time of the path once, or of the run if that is shorter, in whole steps [s]."""
         dt = float(self.settings["dt"])
         duration = self.settings.get("path_duration", self.settings["duration"])
-        fraction = self.path_time / (dt * max(1, round(duration / dt)))
+        return dt * float(max(1, round(duration / dt)))
+
+    @property
+    def path_completed(self) -> float:
+        """Fraction of `path_duration` that the reference's clock covered, 0 to 1."""
+        fraction = self.path_time / self.path_duration
         return float(np.nan_to_num(np.clip(fraction, 0.0, 1.0)))
 
     def filled(self, name: str) -> NDArray[Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.naming import describe
-from iiwa_dnn.results.failures import failures, path_completed
+from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import save_figures
@@ -212,7 +212,7 @@ def settings_lines(metrics: Mapping[str, Any]) -> str:
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
     """Sum up a run in about ten aligned lines of ASCII, for the terminal.
 
-    An incomplete path is its first line. The reasons of a failure are those of the metrics, or
+    The gravest reason of a failure is its first line. The reasons are those of the metrics, or
     more detailed ones: `failures` of the record itself.
     """
     settings = metrics["settings"]
@@ -242,7 +242,7 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
-    return "\n".join([*path_completed(metrics), *aligned])
+    return "\n".join([*reasons[:1], *aligned])
 
 
 def _success(metrics: Mapping[str, Any]) -> str:

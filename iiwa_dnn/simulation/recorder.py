@@ -10,13 +10,17 @@ from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.naming import describe, in_the_way
-from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, cut
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
+
+SEARCHED = 100
+"""Steps of the continuous mode of which one is tested for a solution."""
 
 _LATER = {"solution_gap", "objective_gap", "reference_residual", "t"}
 
@@ -28,6 +32,7 @@ class Recorder:
         arrays: Columns by name; an optional one once there is something to put in.
         last_step: Step at which the run ended early; None: it has not.
         layout: Columns of the commands' rows.
+        infeasible: A step of the continuous mode that was shown to have no solution; None: none.
     """
 
     def __init__(
@@ -51,6 +56,7 @@ class Recorder:
         self._outcomes: list[Outcome] = []
         self.last_step: int | None = None
         self.layout = controller.layout
+        self.infeasible: int | None = None
         self._names = LimitNames(program, controller.dt)
         self._done = 0
         self.arrays: dict[str, NDArray[Any]] = {}
@@ -86,6 +92,8 @@ class Recorder:
         arrays["iterations"][steps] = figures[..., 0].sum(axis=1)
         arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
         first = rows[::stages]  # pose, target and multipliers are the first stage's
+        if self._controller.mode == "continuous" and self.infeasible is None:
+            self._look_for_infeasible(first)
         self._add_samples(
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
         )
@@ -103,6 +111,20 @@ class Recorder:
         self._add_kinetic_index(steps, outcomes[-1].ends)
         self._done += count
         return rows
+
+    def _look_for_infeasible(self, rows: Matrix) -> None:
+        """Solve the program of each `SEARCHED` rows (k, width) that is violated most.
+
+        What the network lags behind in continuous mode may have no solution at all.
+        """
+        layout = self.layout
+        violation = layout.view(rows, "figures")[:, 2]
+        for first in range(0, len(rows), SEARCHED):
+            k = first + int(violation[first : first + SEARCHED].argmax())
+            qp = QP.from_data(layout.view(rows[k], "program"), layout.sizes)
+            if DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE:
+                self.infeasible = self._done + k
+                return
 
     def finish(self) -> dict[str, NDArray[Any]]:
         """Return the columns, cut to the steps that were taken."""

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, fields
 from importlib.metadata import version
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
@@ -331,14 +330,23 @@ class Simulation:
     def _status(self, recorder: Recorder) -> str:
         """Describe the end of a run."""
         k = recorder.last_step
-        if k is None:
+        if k is None and recorder.infeasible is None:
             return COMPLETED
+        if k is None:
+            return (
+                "no joint velocity inside the limits fulfils the task, as at step "
+                f"{recorder.infeasible} (t = {recorder.arrays['t'][recorder.infeasible]:g} s): the "
+                "path is too quick, or out of reach"
+            )
         where = f"stopped at step {k} (t = {recorder.arrays['t'][k]:g} s)"
         if self._plant.fault is not None:
             return f"{where}: {self._plant.fault}"
         if self.interrupt is not None:
             return f"{where}: {_INTERRUPTS[self.interrupt]}"
-        return f"{where}: no solution{recorder.stop_reason(k)}"
+        against = recorder.stop_reason(k)
+        if self.controller.mode == "continuous" and not against:
+            return f"{where}: the network diverged: take a smaller dt, larger rho or more substeps"
+        return f"{where}: no solution{against}"
 
 
 def simulate(
@@ -384,10 +392,8 @@ def _reference_settings(reference: References | None) -> dict[str, Any]:
 
 
 def _end_of_path(reference: References | None, duration: float) -> dict[str, float]:
-    """Return the duration of a path that ends before the run of this duration does [s]."""
-    paths = by_frame(reference, "").values()
-    ends = [path.duration if path.period == np.inf else np.inf for path in paths]
-    end = max(ends, default=np.inf)
+    """Return the time of a path that is once through before the run of this duration is [s]."""
+    end = max((path.duration for path in by_frame(reference, "").values()), default=duration)
     return {"path_duration": end} if end < duration else {}
 
 

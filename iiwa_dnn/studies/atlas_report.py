@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -281,12 +281,24 @@ def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list
         and claim.disturbance in size.disturbances
     ]
     tables = [
-        Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, "residual")),
+        Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
         Table(
             "errors",
             f"RMS position error of the tool [m]: {of}",
             head,
-            _league(rows, ranking, "rms_error_m"),
+            _league(rows, ranking, partial(_shown, measure="rms_error_m")),
+        ),
+        Table(
+            "seeds",
+            f"Median RMS KKT residual of the seeds (seeds below {SOLVED:g}, above 1): {of}",
+            head,
+            _league(rows, ranking, _of_seeds),
+        ),
+        Table(
+            "spread",
+            f"Geometric mean of the columns, residuals below {SOLVED:g} counted as that: {of}",
+            ["place", "network", "mean of the seeds", "smallest", "largest"],
+            _spread(rows, ranking),
         ),
         Table(
             "verdicts",
@@ -312,17 +324,52 @@ def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list
         ]
         caption = "RMS KKT residual of each scheme, undisturbed"
         tables.append(Table("schemes", caption, ["network", *size.schemes], lines))
+        caption = "The smallest geometric means of each other scheme's columns"
+        columns = ["scheme", "first", "second", "third", "networks that lost a run"]
+        others = [row for row in rows if row["seeds"] <= size.others]
+        firsts = [_firsts(others, scheme) for scheme in size.schemes[1:]]
+        tables.append(Table("firsts", caption, columns, firsts))
     return tables
 
 
-def _league(rows: Sequence[Row], ranking: Mapping[str, str], measure: str) -> list[list[str]]:
-    """Lay out a measure of every network under every disturbance, the best network first."""
+def _firsts(rows: Sequence[Row], scheme: str) -> list[str]:
+    """Lay out the first three networks with a scheme, and how many lost a run."""
+    own = [row for row in rows if row["scheme"] == scheme]
+    ranking = places(own)
+    three = [f"{name} {mean}" for _, name, mean, *_ in _spread(own, ranking)[:3]]
+    lost = list(ranking.values()).count("–")
+    return [scheme, *three, *["–"] * (3 - len(three)), str(lost)]
+
+
+def _spread(rows: Sequence[Row], ranking: Mapping[str, str]) -> list[list[str]]:
+    """Lay out the geometric mean of the disturbances of every network that lost no run."""
+    lines = []
+    for name, place in ranking.items():
+        logarithms = scores(rows, name)
+        if logarithms is not None:
+            spread = (logarithms.mean(), logarithms.min(), logarithms.max())
+            lines.append([place, name, *(f"{10.0**value:.1e}" for value in spread)])
+    return lines
+
+
+def _of_seeds(row: Row) -> str:
+    """Show the median residual of a cell, and how many of its seeds are solved and lost."""
+    residuals = [np.inf if value is None else value for value in row["residual"]]
+    solved = sum(value <= SOLVED for value in residuals)
+    far = sum(value > 1.0 for value in residuals)
+    return f"{np.median(residuals):.1e} ({solved}, {far})"
+
+
+def _league(
+    rows: Sequence[Row], ranking: Mapping[str, str], show: Callable[[Row], str]
+) -> list[list[str]]:
+    """Lay out what is shown of every network and disturbance, the best network first."""
     lines = []
     for name, place in ranking.items():
         found = of_every_disturbance(rows, name)
         taken = next((row["taken"] for row in found if row["taken"]), None)
         count = "–" if taken is None else str(taken[0])
-        lines.append([place, name, count, *(_shown(row, measure) for row in found)])
+        lines.append([place, name, count, *map(show, found)])
     return lines
 
 

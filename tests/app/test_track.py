@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import resource
 import socket
 import subprocess
@@ -432,6 +433,20 @@ def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture
     assert f"ended after {steps} of 2,000 steps" in output
     assert "against joint 4 lower velocity limit" in output
     np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
+
+
+def test_programs_without_a_solution_are_no_lag(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--mode", "continuous", "--dt", "1e-3", "--duration", "0.2", "--no-plots"]
+    fast = ["--scale", "0.008", "--period", "1"]
+    assert call([*words, *fast, "--out", str(tmp_path / "fast")]) == 1
+    said = re.match(r"no joint velocity inside .* step (\d+) ", capsys.readouterr().out)
+    assert said is not None
+    record, metrics = results(tmp_path / "fast")
+    assert not record["reference_residual"][int(said[1])] <= 1e-8  # ProxQP finds none either
+    assert metrics["settings"]["status"].startswith(said[0])
+    assert call([*words, "--out", str(tmp_path / "slow")]) == 0
 
 
 def test_a_step_that_raises_writes_nothing(

@@ -81,6 +81,13 @@ def test_a_robot_from_a_file_is_found_by_the_runs_settings(capsys, tmp_path, run
 
 
 @needs_viser
+def test_locked_joints_are_the_runs(capsys, tmp_path):
+    make_record(dof=6, position_desired=np.ones((11, 3))).save(tmp_path / "record.npz")
+    (tmp_path / "settings.toml").write_text('lock = ["iiwa7_joint_3"]\n')
+    assert opened(capsys, str(tmp_path))[0] == 0
+
+
+@needs_viser
 def test_ctrl_c_ends_it(capsys, run_folder):
     def interrupt() -> bool:
         raise KeyboardInterrupt

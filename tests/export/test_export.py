@@ -111,8 +111,12 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
     controller, q0 = drawing()
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     vectors = run_controller(controller, q0, 1001)
-    shown = [float(value) for value in re.findall(r"= (\S+) rad", run(tmp_path / "example"))]
+    said = run(tmp_path / "example")
+    shown = [float(value) for value in re.findall(r"= (\S+) rad", said)]
     np.testing.assert_allclose(shown, vectors.q[-1], rtol=0, atol=1e-6)
+    last = controller.placement(vectors.q[999])[9:] - vectors.targets[999, :3]
+    (far,) = re.findall(r"distance of \S+ from its target: (\S+) m", said)
+    assert float(far) == pytest.approx(np.linalg.norm(last), rel=1e-2)
 
 
 @needs("clang")

@@ -191,6 +191,14 @@ def test_bad_problem_names_the_argument() -> None:
         iiwa_dnn.solve_problem(qpsolvers.Problem(-np.eye(2), np.zeros(2)))
 
 
+@pytest.mark.parametrize("call", [DNNSolver.solve, lambda *own: DNNSolver.advance(*own, 1e-4)])
+def test_a_problem_of_qpsolvers_is_for_another_function(
+    call: Callable[..., object],
+) -> None:
+    with pytest.raises(InvalidInputError, match=r"qp: must be an iiwa_dnn\.QP"):
+        call(DNNSolver(), qpsolvers.Problem(np.eye(2), np.zeros(2)))
+
+
 @pytest.mark.parametrize(
     ("name", "arguments"),
     [

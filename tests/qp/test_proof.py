@@ -11,7 +11,7 @@ import pytest
 import iiwa_dnn
 from benchmarks import exact, programs
 from helpers_qp import known_qp
-from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove
+from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
 from iiwa_dnn.qp.proof import REASONS, Proof
 
 NOT_CONVEX = "the cost is not shown to be convex"
@@ -243,6 +243,11 @@ def test_a_certificate_is_proven_or_is_not() -> None:
         assert (proof.bound < np.inf) is (reason == "")
         farkas = DNNSolver().solve(qp)._replace(certificate=np.ones(3))
         assert prove(qp, farkas).reason == reason
+    problem = QP(np.eye(2), np.zeros(2), G=rows, h=[-3.0], ub=[1.0, 1.0]).to_qpsolvers()
+    refuted = solve_problem(problem)
+    assert prove(problem, refuted).reason == "proven: no point satisfies the constraints"
+    del refuted.extras["certificate"]
+    assert prove(problem, refuted).reason == "there is no answer: primal infeasible"
 
 
 def test_a_check_hands_the_proof_on() -> None:

@@ -302,6 +302,8 @@ def test_an_early_end():
         "path completed 30.0 %",
         "ended after 3 of 10 steps: step 3 has no solution",
     ]
+    whole = make_record(settings={"status": "no velocity fulfils the task"})
+    assert failures(whole) == ["no velocity fulfils the task"]
     nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
     metrics = compute_metrics(nothing)
     assert metrics["max_kinetic_index"] is metrics["max_kkt_residual"] is None
@@ -347,7 +349,12 @@ def test_what_would_suffice_does_and_less_does_not():
     assert failures(run_at(0.05 * ratio)) == []
     assert failures(run_at(0.05, 3.0 * ratio, 3.0 * ratio)) == []
     assert failures(run_at(0.05 * ratio * 0.9)) != []
-    assert run_at(0.05, float(said[3])).path_time == pytest.approx(3.0, rel=0.1)
+    later = run_at(0.05, float(said[3]))
+    assert later.path_time == pytest.approx(3.0, rel=0.1)
+    assert later.path_completed > 0.9  # of one round
+    assert compute_metrics(later)["incidents"]["needed"]["time_s"] == pytest.approx(
+        needed["time_s"], rel=0.1
+    )
 
 
 def test_what_would_suffice_is_not_said_of_other_limits():
@@ -432,6 +439,12 @@ def test_rows_in_the_way_are_named():
         "joint 5 lower position limit, row 1 of Obstacle; most often in the way: "
         "row 1 of Obstacle, row 2 of CollisionAvoidance, joint 5 lower position limit"
     )
+    kept = "row 1 of Obstacle kept the tip up to {} m off the path"
+    assert failures(record)[2].endswith(kept.format(0))
+    off = sample(record, "position", 9, [0.0, 0.04, 0.0])
+    assert failures(off)[2].endswith(kept.format(0.04) + ", which no longer time mends")
+    off = sample(record, "position", 10, [0.0, 0.04, 0.0])  # when no row was in the way
+    assert failures(off)[2].endswith(kept.format(0))
     away = sample(record, "position_desired", 0, record.position[0] + [0.0, 0.3, 0.4])
     assert failures(away)[1] == failures(record)[1] + "; the path begins 0.5 m from the tip"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -17,6 +18,7 @@ from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.networks import PrimalDualNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
@@ -287,6 +289,19 @@ def test_the_more_weight_on_energy_the_more_drift() -> None:
     whole = {"reference": heart(period=2.0), "duration": None, "dt": 2e-3}
     drifts = [drift(run(DoubleIndicator(weight=w), **whole)) for w in (0.0, 0.2, 0.5, 0.9, 1.0)]
     assert (np.diff(drifts) > 0.0).all()
+
+
+def test_a_network_that_diverges_is_called_that() -> None:
+    solver = DNNSolver(PrimalDualNetwork(rho=1e-5), follower=ExplicitEuler(substeps=1))
+    circle = Circle(0.05, period=1.0).anchored(paper_start())
+    options: Any = {"mode": "continuous", "dt": 1e-3, "duration": 0.2}
+    record = simulate(
+        paper_robot(), DoubleIndicator(), circle, PAPER_Q0, solver=solver, check=UNCHECKED,
+        **options,
+    )  # fmt: skip
+    reasons = failures(record)
+    assert len(reasons) == 2  # the path, and why it ended
+    assert "the network diverged: take a smaller dt" in reasons[1]
 
 
 def test_the_orientation_is_held() -> None:

@@ -352,6 +352,23 @@ def test_the_command_writes_a_report_and_goes_on_where_it_was(
         table = list(csv.reader(file))
     assert len(table) == 1 + len(FEW)
     assert table[0][1] == "network"
+    with (tmp_path / "a" / "seeds.csv").open(encoding="utf-8") as file:
+        medians = {line["network"]: line for line in csv.DictReader(file)}
+    two = next(row for row in rows if row["disturbance"] == "white")
+    residual = np.array(two["residual"])
+    counts = f"{np.sum(residual <= 1e-9)}, {np.sum(residual > 1.0)}"
+    assert medians[two["network"]]["white"] == f"{residual.mean():.1e} ({counts})"  # of two seeds
+    with (tmp_path / "a" / "firsts.csv").open(encoding="utf-8") as file:
+        (line,) = csv.DictReader(file)
+    name = line["first"].rpartition(" ")[0]
+    own = [
+        row["residual"][0]
+        for row in rows
+        if (row["network"], row["scheme"], row["work"]) == (name, "minimum velocity", 1e4)
+    ]
+    assert len(own) == len(kinds)
+    mean = np.exp(np.mean(np.log(np.maximum(own, 1e-9))))
+    assert line["first"] == f"{name} {mean:.1e}"
     latex = (tmp_path / "a" / "league.tex").read_text(encoding="utf-8")
     assert latex.count(r"\\") == len(table)
     assert r"\toprule" in latex
