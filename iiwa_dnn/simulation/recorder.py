@@ -92,8 +92,7 @@ class Recorder:
         arrays["iterations"][steps] = figures[..., 0].sum(axis=1)
         arrays["kkt_residual"][steps] = figures[..., 2:].max(axis=(1, 2))
         first = rows[::stages]  # pose, target and multipliers are the first stage's
-        if self._controller.mode == "continuous" and self.infeasible is None:
-            self._look_for_infeasible(first)
+        self._look_for_infeasible(first)
         self._add_samples(
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
         )
@@ -117,6 +116,8 @@ class Recorder:
 
         What the network lags behind in continuous mode may have no solution at all.
         """
+        if self._controller.mode != "continuous" or self.infeasible is not None:
+            return
         layout = self.layout
         violation = layout.view(rows, "figures")[:, 2]
         for first in range(0, len(rows), SEARCHED):
