@@ -139,20 +139,21 @@ def _words_of_file(kind: type[Any], path: Path) -> list[str]:
 def _words_of_value(name: str, value: Any) -> list[str]:
     """Return the words of the command line that set an option of this name."""
     if isinstance(value, bool):
-        return [_option(name if value else f"no_{name}")]
+        return [flag_of(name if value else f"no_{name}")]
     if isinstance(value, list):
-        return [_option(name), *map(str, value)]
-    return [f"{_option(name)}={value}"]
+        return [flag_of(name), *map(str, value)]
+    return [f"{flag_of(name)}={value}"]
 
 
-def _option(field: str) -> str:
-    return "--" + field.replace("_", "-")
+def flag_of(option: str) -> str:
+    """Return an option as it is written on the command line."""
+    return "--" + option.replace("_", "-")
 
 
 def _read_options(kind: type[S], prog: str, words: Sequence[str], default: S) -> S:
     """Read words over default options; see `parse` for the errors."""
     about = f"{getdoc(kind)}\n\n{EXIT_CODES}"
-    names = [_option(field.name) for field in fields(kind)]  # type: ignore[arg-type]
+    names = [flag_of(field.name) for field in fields(kind)]  # type: ignore[arg-type]
     options: S = _read(kind, words, names, prog=prog, description=about, default=default)
     return options
 

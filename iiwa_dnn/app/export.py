@@ -1,15 +1,13 @@
 """``export``: the controller of a run as C99."""
 
 import sys
-from typing import Any
 
 import numpy as np
 
 from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import ExportOptions
-from iiwa_dnn.app.track import arm, beyond_data_sheet, simulation
-from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.app.track import arm, beyond_data_sheet, refuse_set, simulation
 from iiwa_dnn.export import c99
 
 _OUTSIDE = ("filter_window", "integral_gain", "motion")
@@ -19,10 +17,7 @@ _OUTSIDE = ("filter_window", "integral_gain", "motion")
 def run(options: ExportOptions) -> int:
     """Write the folder and print what is in it; return 0."""
     for name in _OUTSIDE:
-        value: Any = getattr(options, name)
-        if value != getattr(ExportOptions, name):
-            flag = f"--{name.replace('_', '-')}"
-            raise InvalidInputError(flag, "is no part of a controller and is not exported", value)
+        refuse_set(options, name, "is no part of a controller and is not exported")
     robot, q0 = arm(options)
     controller = simulation(options, robot, q0).controller
     folder = claim_folder(options)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import print_lines, progress_bar
+from iiwa_dnn.app.command_line import flag_of, print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, PlantName, TrackOptions
 from iiwa_dnn.control.posing import solve_pose
@@ -176,7 +176,7 @@ def simulation(
     """Return the simulation that the options describe from q0 (n,) [rad]; no file is written."""
     for name, (is_idle, needed) in _IDLE.items():
         if hasattr(options, name) and is_idle(options):
-            _refuse_set(options, name, f"has no effect but beside {needed}")
+            refuse_set(options, name, f"has no effect but beside {needed}")
     scheme = scheme_of(options)
     start = Configuration(robot, q0)
     reference = path(options)
@@ -260,15 +260,11 @@ def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Schem
     )
 
 
-def _refuse_set(options: TrackOptions, name: str, problem: str) -> None:
+def refuse_set(options: TrackOptions, name: str, problem: str) -> None:
     """Raise an InvalidInputError if an option differs from its default."""
     value = getattr(options, name)
     if value != getattr(type(options), name):
-        raise InvalidInputError(_flag(name), problem, value)
-
-
-def _flag(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
+        raise InvalidInputError(flag_of(name), problem, value)
 
 
 def draw(
@@ -321,7 +317,7 @@ def path(options: TrackOptions) -> Reference:
     own, make = _PATHS[kind]
     for names, _ in _PATHS.values():
         for other in set(names) - set(own):
-            _refuse_set(options, other, f"is no option of the path {name!r}")
+            refuse_set(options, other, f"is no option of the path {name!r}")
     return make(options)
 
 
@@ -359,7 +355,7 @@ def _number_or_word(option: str, text: str, word: str) -> float | None:
     if text == word:
         return None
     try:
-        return checks.positive(_flag(option), float(text))
+        return checks.positive(flag_of(option), float(text))
     except ValueError as error:
         problem = f"must be a number above 0 or {word!r}, not {text!r}"
-        raise InvalidInputError(_flag(option), problem, text) from error
+        raise InvalidInputError(flag_of(option), problem, text) from error

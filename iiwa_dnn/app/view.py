@@ -12,6 +12,7 @@ from iiwa_dnn.app.track import limited
 from iiwa_dnn.app.viewer.page import Page
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import read_toml
+from iiwa_dnn.results.metrics import limits
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot, load_robot
 from iiwa_dnn.robot.arms import ARMS
@@ -93,10 +94,8 @@ def scheme_of(record: Record) -> DoubleIndicator:
 
 def limits_of(record: Record, robot: Robot) -> Robot:
     """Return the robot with the limits of a record, in which None stands for no limit."""
-    keys = ("q_lower", "q_upper", "dq_max")
-    lower, upper, velocity = (np.array(record.settings[key], dtype=float) for key in keys)
     return robot.with_limits(
-        lower=np.where(np.isnan(lower), -np.inf, lower),
-        upper=np.where(np.isnan(upper), np.inf, upper),
-        velocity=np.where(np.isnan(velocity), np.inf, velocity),
+        lower=limits(record, "q_lower", -np.inf),
+        upper=limits(record, "q_upper"),
+        velocity=limits(record, "dq_max"),
     )

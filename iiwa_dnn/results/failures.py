@@ -48,11 +48,12 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     if record is None and not (isinstance(run, Mapping) and "settings" in run):
         raise InvalidInputError("run", f"must be a record or its metrics, not {run!r:.80}", run)
     metrics: Mapping[str, Any] = compute_metrics(run) if isinstance(run, Record) else run
+    is_finite = metrics["max_position_error_m"] is not None
     return [
         *_path_completed(metrics),
         *_early_end(metrics),
         *_policies(metrics, record),
-        *_not_finite(metrics),
+        *([] if is_finite else ["the tip position is not finite at every step"]),
         *_unsolved(metrics, record),
         *_crosscheck(metrics["crosscheck"], metrics["steps"]),
         *_broken_limits(metrics, record),
@@ -151,11 +152,6 @@ def _far_start(record: Record | None) -> str:
     return f"; the path begins {_show(distance)} m from the tip" if distance > FAR else ""
 
 
-def _not_finite(metrics: Mapping[str, Any]) -> list[str]:
-    finite = metrics["max_position_error_m"] is not None
-    return [] if finite else ["the tip position is not finite at every step"]
-
-
 def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     worst = metrics["max_kkt_residual"]
     tolerance = metrics["settings"]["tol"]
@@ -176,18 +172,15 @@ def _unsolved(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
 def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
     reasons = []
     first = check["first_disagreement"]
-    if first is not None and first["solver"] == PROOF:
+    if first is not None:
+        said = f"{first['solver']} differs by {_show(first['gap'])} rad/s"
+        disagree = " disagrees" if check["disagreements"] == 1 else " disagree"
+        if first["solver"] == PROOF:
+            said = f"proven within {_show(first['gap'])} rad/s of the exact solution alone"
+            disagree = ""
         reasons.append(
-            f"step {first['step']} (t = {first['time_s']:.6g} s): proven within "
-            f"{_show(first['gap'])} rad/s of the exact solution alone, tolerance "
-            f"{_show(check['tolerance'])}; {_count(check['disagreements'])} in all"
-        )
-    elif first is not None:
-        disagree = "disagrees" if check["disagreements"] == 1 else "disagree"
-        reasons.append(
-            f"step {first['step']} (t = {first['time_s']:.6g} s): {first['solver']} differs by "
-            f"{_show(first['gap'])} rad/s, tolerance {_show(check['tolerance'])}; "
-            f"{_count(check['disagreements'])} {disagree} in all"
+            f"step {first['step']} (t = {first['time_s']:.6g} s): {said}, tolerance "
+            f"{_show(check['tolerance'])}; {_count(check['disagreements'])}{disagree} in all"
         )
     if not check["judged"]:  # in continuous mode the gap is a lag
         return reasons

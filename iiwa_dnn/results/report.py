@@ -212,8 +212,8 @@ def settings_lines(metrics: Mapping[str, Any]) -> str:
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
     """Sum up a run in about ten aligned lines of ASCII, for the terminal.
 
-    The gravest reason of a failure is its first line. The reasons are those of the metrics, or
-    more detailed ones: `failures` of the record itself.
+    An incomplete path is its first line, or that the path cannot be followed. The reasons of a
+    failure are those of the metrics, or more detailed ones: `failures` of the record itself.
     """
     settings = metrics["settings"]
     check = metrics["crosscheck"]
@@ -242,7 +242,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
-    return "\n".join([*reasons[:1], *aligned])
+    first = [text for text in reasons[:1] if text.startswith("path ") or text == settings["status"]]
+    return "\n".join([*first, *aligned])
 
 
 def _success(metrics: Mapping[str, Any]) -> str:

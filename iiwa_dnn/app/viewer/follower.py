@@ -95,19 +95,15 @@ class FollowerState:
         q: Joint positions [rad], (n,).
         position_error: Distance from tip to target [m].
         orientation_error: Angle between them [rad].
-        kkt_residual: Largest KKT residual of the network's answer.
-        ok: Whether the arm can follow the target within its limits.
+        command: Command of the step.
         seconds: Wall time of the control step [s].
-        against: Limits in the way of following it, in words.
     """
 
     q: Vector
     position_error: float
     orientation_error: float
-    kkt_residual: float
-    ok: bool
+    command: Command
     seconds: float
-    against: tuple[str, ...] = ()
 
 
 class Follower:
@@ -201,18 +197,14 @@ class Follower:
         began = time.perf_counter()
         outcome = self._loop.step(self._steps)
         seconds = time.perf_counter() - began
-        command = outcome.commands[0]
-        resolution = command.resolution
-        self._command = command
+        self._command = outcome.commands[0]
         self._steps += 1
         return FollowerState(
             q=outcome.q,
             position_error=float(np.linalg.norm(position - conf.position)),
             orientation_error=float(np.linalg.norm(pin.log3(rotation @ conf.rotation.T))),
-            kkt_residual=command.solution.residuals.largest,
-            ok=command.ok,
+            command=self._command,
             seconds=seconds,
-            against=() if resolution is None else resolution.against,
         )
 
     @property

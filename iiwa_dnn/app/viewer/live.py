@@ -61,7 +61,8 @@ class LiveDiagrams:
     def add(self, state: FollowerState, follower: Follower) -> None:
         """Add the state of a follower; draw the settling once a second."""
         errors = (state.position_error, state.orientation_error)
-        values = (*errors, follower.distance, state.kkt_residual, state.seconds)
+        residual = state.command.solution.residuals.largest
+        values = (*errors, follower.distance, residual, state.seconds)
         self._samples.append([follower.time, *values])
         times, *columns = np.split(np.array(self._samples), [1, 3, 4, 5], axis=1)
         if len(times) > 1:
@@ -88,15 +89,11 @@ class BallHandle:
         scene.add_icosphere("/ball/shape", BALL_RADIUS, color=_BALL_COLOR, opacity=0.3)
         self._avoided = scene.add_icosphere("/ball_now", BALL_RADIUS, _BALL_COLOR, visible=False)
 
-    def set_visible(self, visible: bool) -> None:
-        """Show or hide both."""
-        self.handle.visible = visible
-        self._avoided.visible = visible
-
-    def place(self, position: FloatArray) -> None:
-        """Put both at a point (3,) [m]."""
-        self.handle.position = position
-        self._avoided.position = position
+    def place(self, position: FloatArray, visible: bool) -> None:
+        """Put both at a point (3,) [m], and show or hide them there."""
+        for ball in (self.handle, self._avoided):
+            ball.position = position
+            ball.visible = visible
 
     def move(self, ball: Ball, dt: float) -> None:
         """Let the avoided ball move towards the dragged one for a time [s]."""
@@ -180,8 +177,7 @@ class LivePanel:
     def _set_ball(self, visible: bool) -> None:
         position = self.follower.configuration.position + np.array([0.0, 0.0, 0.35])
         self.follower.avoid(Ball(position, BALL_RADIUS) if visible else None)
-        self.ball.place(position)
-        self.ball.set_visible(visible)
+        self.ball.place(position, visible)
 
     def tick(self, elapsed: float) -> None:
         """Let the arm follow for `elapsed` seconds and show it."""
@@ -216,14 +212,16 @@ class LivePanel:
             "status": describe(state),
             "distance to the target": readout.length(state.position_error),
             "angle to the target": f"{state.orientation_error:.2e} rad",
-            "KKT residual of the network": f"{state.kkt_residual:.1e}",
+            "KKT residual of the network": f"{state.command.solution.residuals.largest:.1e}",
             f"cross-check gap ({'+'.join(check.solvers)})": f"{gap:.1e} rad/s",
         }
 
 
 def describe(state: FollowerState) -> str:
     """Describe the arm's progress in a few words."""
-    if not state.ok:
-        return f"held back by {', '.join(state.against)}" if state.against else "out of reach"
+    if not state.command.ok:
+        resolution = state.command.resolution
+        against = ", ".join(resolution.against) if resolution is not None else ""
+        return f"held back by {against}" if against else "out of reach"
     arrived = state.position_error < 1e-4 and state.orientation_error < 1e-3
     return "at the target" if arrived else "on its way"
