@@ -22,23 +22,7 @@ from iiwa_dnn.schemes import DoubleIndicator
 
 def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     """Open the page and keep it moving until `stop` returns True, or Ctrl-C; return 0."""
-    record = None if options.run is None else load_run(options.run)
-    settings = {} if record is None else record.settings
-    kept = {} if options.run is None else kept_settings(options.run)
-    tool = options.tool or kept.get("tool")
-    tip = options.tip or kept.get("tip")
-    if not tool:  # else the record's tip may be that tool
-        tip = tip or settings.get("tip")
-    name = options.robot or ("iiwa7" if options.run is None else robot_of(options.run, settings))
-    robot = load_robot(name, tip=tip, locked=options.lock or kept.get("lock", ()), tool=tool)
-    if record is None:
-        page = Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
-    elif robot.dof == record.dof:
-        robot = limits_of(record, robot)
-        page = Page(robot, record.q[0], record, scheme_of(record), options.host, options.port)
-    else:
-        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
-        raise InvalidInputError("--robot", problem, options.robot)
+    page = _open(options)
     print(f"open {page.address} in a browser; Ctrl-C ends it", flush=True)
     try:
         page.run(stop)
@@ -47,6 +31,27 @@ def run(options: ViewOptions, stop: Callable[[], bool] = lambda: False) -> int:
     finally:
         page.close()
     return 0
+
+
+def _open(options: ViewOptions) -> Page:
+    """Make the page of a run, or of an arm to be led."""
+    if options.run is None:
+        name = options.robot or "iiwa7"
+        robot = load_robot(name, tip=options.tip, locked=options.lock, tool=options.tool or None)
+        return Page(limited(robot), robot.start_posture(), host=options.host, port=options.port)
+    record = load_run(options.run)
+    kept = kept_settings(options.run)
+    tool = options.tool or kept.get("tool")
+    tip = options.tip or kept.get("tip")
+    if not tool:  # else the record's tip may be that tool
+        tip = tip or record.settings.get("tip")
+    name = options.robot or robot_of(record, kept)
+    robot = load_robot(name, tip=tip, locked=options.lock or kept.get("lock", ()), tool=tool)
+    if robot.dof != record.dof:
+        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
+        raise InvalidInputError("--robot", problem, options.robot)
+    robot = limits_of(record, robot)
+    return Page(robot, record.q[0], record, scheme_of(record), options.host, options.port)
 
 
 def load_run(path: Path) -> Record:
@@ -68,7 +73,7 @@ def kept_settings(run: Path) -> dict[str, Any]:
     return read_toml(file) if file.exists() else {}
 
 
-def robot_of(run: Path, settings: Mapping[str, Any]) -> str:
+def robot_of(record: Record, kept: Mapping[str, Any]) -> str:
     """Name the robot of a run: as the folder's settings file does, or else the record's settings.
 
     The record has the name alone of a robot that came from a file, the settings file its path.
@@ -76,7 +81,7 @@ def robot_of(run: Path, settings: Mapping[str, Any]) -> str:
     Raises:
         InvalidInputError: There is no robot of that name, and no file.
     """
-    name = str({**settings, **kept_settings(run)}.get("robot", "iiwa7"))
+    name = str({**record.settings, **kept}.get("robot", "iiwa7"))
     if name not in (*package_robots(), *ARMS) and not Path(name).exists():
         raise InvalidInputError(
             "--robot", f"{name!r} came from a file: add --robot FILE.urdf", name

@@ -104,13 +104,17 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
             f"{steps} without a solution ({counts}){'' if fell_back else at}; "
             f"{often}in the way: {_blocking(metrics)}{_far_start(record)}"
         )
-    if incidents["slow_steps"]:
-        path_time = number(incidents["path_time_s"])
-        needed = _needed(incidents.get("needed"))  # older metrics lack it
-        took = number(metrics["duration_s"])
-        off = _off_path(incidents)
-        reasons.append(f"slowed: path time {path_time} s after {took} s{needed}{off}")
-    return reasons
+    return [*reasons, *_slowed(incidents, metrics["duration_s"])]
+
+
+def _slowed(incidents: Mapping[str, Any], took: float) -> list[str]:
+    """State how far a slowed path came in a time [s], and what would have sufficed."""
+    if not incidents["slow_steps"]:
+        return []
+    path_time = number(incidents["path_time_s"])
+    needed = _needed(incidents.get("needed"))  # older metrics lack it
+    off = _off_path(incidents)
+    return [f"slowed: path time {path_time} s after {number(took)} s{needed}{off}"]
 
 
 def _needed(needed: Mapping[str, Any] | None) -> str:

@@ -313,23 +313,30 @@ def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list
         columns = ["network", *(f"{1e3 * dt:g} ms" for dt in periods), "slope"]
         caption = "RMS KKT residual against the control period, one evaluation each"
         tables.append(Table("orders", caption, columns, found))
-    if len(size.schemes) > 1 and "none" in size.disturbances:
-        lines = [
-            [name]
-            + [
-                _shown(find(rows, network=name, scheme=scheme, disturbance="none")[0])
-                for scheme in size.schemes
-            ]
-            for name in ranking
+    return [*tables, *_of_schemes(size, rows, ranking)]
+
+
+def _of_schemes(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list[Table]:
+    """Lay out the tables of several schemes."""
+    if len(size.schemes) == 1 or "none" not in size.disturbances:
+        return []
+    lines = []
+    for name in ranking:
+        found = [
+            find(rows, network=name, scheme=scheme, disturbance="none")[0]
+            for scheme in size.schemes
         ]
-        caption = "RMS KKT residual of each scheme, undisturbed"
-        tables.append(Table("schemes", caption, ["network", *size.schemes], lines))
-        caption = "The smallest geometric means of each other scheme's columns"
-        columns = ["scheme", "first", "second", "third", "networks that lost a run"]
-        others = [row for row in rows if row["seeds"] <= size.others]
-        firsts = [_firsts(others, scheme) for scheme in size.schemes[1:]]
-        tables.append(Table("firsts", caption, columns, firsts))
-    return tables
+        lines.append([name, *map(_shown, found)])
+    caption = "RMS KKT residual of each scheme, undisturbed"
+    others = [row for row in rows if row["seeds"] <= size.others]
+    firsts = [_firsts(others, scheme) for scheme in size.schemes[1:]]
+    columns = ["scheme", "first", "second", "third", "networks that lost a run"]
+    return [
+        Table("schemes", caption, ["network", *size.schemes], lines),
+        Table(
+            "firsts", "The smallest geometric means of each other scheme's columns", columns, firsts
+        ),
+    ]
 
 
 def _firsts(rows: Sequence[Row], scheme: str) -> list[str]:

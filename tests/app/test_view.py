@@ -16,7 +16,7 @@ from helpers_records import make_record
 from iiwa_dnn import Configuration, DoubleIndicator, PseudoInverse, load_robot
 from iiwa_dnn.app.command_line import run_command
 from iiwa_dnn.app.options import ViewOptions
-from iiwa_dnn.app.view import limits_of, robot_of, run, scheme_of
+from iiwa_dnn.app.view import kept_settings, limits_of, robot_of, run, scheme_of
 from iiwa_dnn.results.record import Record
 
 needs_viser = pytest.mark.usefixtures("viser")
@@ -74,8 +74,9 @@ def test_a_robot_from_a_file_is_found_by_the_runs_settings(capsys, tmp_path, run
     assert err.endswith("'my_arm' came from a file: add --robot FILE.urdf\n")
     urdf = Path(load_robot("iiwa7").path).resolve()
     (tmp_path / "settings.toml").write_text(f'robot = "{urdf}"\n')
+    record = Record.load(tmp_path / "record.npz")
     for path in (tmp_path, tmp_path / "record.npz"):
-        assert robot_of(path, {"robot": "my_arm"}) == str(urdf)
+        assert robot_of(record, kept_settings(path)) == str(urdf)
     code, _, err = opened(capsys, str(tmp_path))
     assert (code, err) == (0, "")
 
