@@ -52,6 +52,7 @@ class MovingTarget(Reference):
     """
 
     name: ClassVar[str] = "moving target"
+    period: float = math.inf
 
     def __init__(
         self,
@@ -102,11 +103,6 @@ class MovingTarget(Reference):
         goal = Target(position, self._goal.rotation if rotation is None else rotation)
         if not np.array_equal(goal.data, self._goal.data):
             self._goal = goal
-
-    @property
-    def period(self) -> float:
-        """Infinite: it does not repeat."""
-        return math.inf
 
     def move(self, t: float, target: Array) -> None:
         """Set a target to the pose and the velocity at time t [s]; see `Reference.move`."""

@@ -290,13 +290,13 @@ def _read(path: Path) -> tuple[list[str], Array]:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file)
-            lines = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+            lines = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except UnicodeDecodeError as error:
         raise FileError(path, "not UTF-8 text") from error
     except (OSError, ValueError, csv.Error) as error:  # a NUL in the path is a ValueError
         raise FileError(path, one_line(error)) from error
-    (first, header), *filled = [line for line in lines if any(line[1])] or [(1, [])]
-    columns = [cell.lower() for cell in header]
+    (first, header), *filled = lines or [(1, [])]
+    columns = [cell.strip().lower() for cell in header]
     if columns not in _HEADERS:
         problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
         raise FileError(path, f"line {first}: {problem}")

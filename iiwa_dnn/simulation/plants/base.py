@@ -151,6 +151,11 @@ class RealPlant(Plant):
     def period(self) -> float:
         """Control period of the robot [s]; connects if need be."""
 
+    @property
+    @abstractmethod
+    def posture(self) -> Vector:
+        """Measured joint angles of the last state [rad], (7,); connects if need be."""
+
     @abstractmethod
     def _begin(self) -> None:
         """Begin a motion from rest, or note the fault."""
@@ -176,10 +181,10 @@ class RealPlant(Plant):
         period = self.period
         if abs(dt - period) > 1e-9 * period:
             raise InvalidInputError("dt", f"must be the robot's {period:g} s, not {dt:g} s", dt)
-        away = np.abs(q0 - self.q)
+        away = np.abs(q0 - self.posture)
         if not away.max() <= NEAR:
             joint = int(away.argmax())
-            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.q[joint]:.4g}"
+            stands = f"the arm stands {away[joint]:.3g} rad from it, at {self.posture[joint]:.4g}"
             raise InvalidInputError("q0", f"joint {joint + 1}: {stands} rad", q0)
         self._motion = RealMotion(np.array(q0))
 
@@ -188,9 +193,9 @@ class RealPlant(Plant):
         return robot
 
     @property
-    def posture(self) -> Vector:
-        """Measured joint angles of the last state [rad], (7,), a copy: those of `q`."""
-        return self.q
+    def q(self) -> Vector:
+        """Measured joint angles [rad], (7,), a copy."""
+        return self.posture
 
     @property
     def time(self) -> float:
@@ -212,7 +217,7 @@ class RealPlant(Plant):
         if not self._motion.began:
             self._begin()
             self._motion.began = True
-        return self._motion.commanded.copy() if self.feedback == "commanded" else self.q
+        return self._motion.commanded.copy() if self.feedback == "commanded" else self.posture
 
     def move(self, command: Vector) -> None:
         """Send a velocity command (7,) [rad/s] for the period of the last state."""

@@ -121,7 +121,7 @@ class FrankaPlant(RealPlant):
         return PERIOD
 
     @property
-    def q(self) -> Vector:
+    def posture(self) -> Vector:
         """Measured joint angles of the last state [rad], (7,); connects if need be."""
         self._connect()
         return np.array(self._state.q)

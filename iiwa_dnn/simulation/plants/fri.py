@@ -154,7 +154,7 @@ class FriPlant(RealPlant):
         # From FRI 2 on, states before COMMANDING_WAIT have measured positions alone.
         shown = (self._message.ipoData.jointPosition, data.commandedJointPosition)
         known = [each.value for each in shown if len(each.value) == JOINTS]
-        return np.array(known[0]) if known else self.q
+        return np.array(known[0]) if known else self.posture
 
     def _describe(self) -> str:
         """Describe the state of the session and the connection's quality."""
@@ -168,7 +168,7 @@ class FriPlant(RealPlant):
         return 1e-3 * float(self._message.connectionInfo.sendPeriod)
 
     @property
-    def q(self) -> Vector:
+    def posture(self) -> Vector:
         """Measured joint angles of the last state [rad], (7,); connects if need be."""
         self._connect()
         return np.array(self._message.monitorData.measuredJointPosition.value)
