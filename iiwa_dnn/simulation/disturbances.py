@@ -82,11 +82,6 @@ class Disturbances:
             push=push,
         )
 
-    @property
-    def encoder_step(self) -> float:
-        """Resolution of the encoders [rad]; 0 where they do not round."""
-        return 2.0 * math.pi / 2**self.encoder_bits if self.encoder_bits else 0.0
-
     def mass_factors(self, joints: int, seed: int) -> Vector:
         """Draw the factor on mass and inertia of the links that each joint carries, (n,)."""
         signs = np.random.default_rng([seed, 0]).choice([-1.0, 1.0], joints)
@@ -98,13 +93,13 @@ class Encoder:
 
     Args:
         noise: Standard deviation of a reading [rad].
-        step: Resolution [rad]; 0 for none.
+        bits: Readings are rounded to 2 pi / 2^bits [rad]; 0 rounds nothing.
         seed: Seed of the noise.
     """
 
-    def __init__(self, noise: float, step: float, seed: int) -> None:
+    def __init__(self, noise: float, bits: int, seed: int) -> None:
         self.noise = noise
-        self.step = step
+        self.step = 2.0 * math.pi / 2.0**bits if bits else 0.0
         self._rng = np.random.default_rng([seed, 1])
 
     def __call__(self, q: Vector) -> Vector:

@@ -13,16 +13,6 @@ DT = 2e-3
 """Control period [s]."""
 
 
-def other_arm(robot: Robot, rng: np.random.Generator) -> Robot:
-    """Return an arm whose links are 5 % longer or shorter."""
-    model = pin.Model(robot.model)
-    for i, sign in enumerate(rng.choice([-1.0, 1.0], robot.dof)):
-        placement = model.jointPlacements[i + 1]
-        placement.translation = (1.0 + 0.05 * sign) * placement.translation
-        model.jointPlacements[i + 1] = placement
-    return replace(robot, model=model)
-
-
 def learn(jacobian: Matrix, moved: Vector, motion: pin.SE3) -> None:
     """Correct an estimated Jacobian by the last motion, in place: Broyden's update.
 
@@ -135,8 +125,13 @@ class OtherArm(Disturbance):
     """An arm with other links than the controller's model, and a tool whose pose is measured."""
 
     def __init__(self, robot: Robot, rng: np.random.Generator, steps: int, dt: float = DT) -> None:
-        """Draw the lengths of the links."""
-        super().__init__(other_arm(robot, rng), rng, steps, dt)
+        """Draw the lengths of the links: each is 5 % longer or shorter."""
+        model = pin.Model(robot.model)
+        for i, sign in enumerate(rng.choice([-1.0, 1.0], robot.dof)):
+            placement = model.jointPlacements[i + 1]
+            placement.translation = (1.0 + 0.05 * sign) * placement.translation
+            model.jointPlacements[i + 1] = placement
+        super().__init__(replace(robot, model=model), rng, steps, dt)
 
     def mislead(self, program: StepProgram, target: Vector, tool: Vector, q: Vector) -> None:
         """Move the target (18,) by the model's error of the placement (12,); q is in [rad].

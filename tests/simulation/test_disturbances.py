@@ -36,24 +36,24 @@ def test_every_mass_is_off_by_as_much_and_the_seed_says_which_way():
 
 def test_an_encoder_without_faults_returns_a_copy():
     q = np.linspace(-1.0, 1.0, 7)
-    reading = Encoder(0.0, 0.0, seed=0)(q)
+    reading = Encoder(0.0, 0, seed=0)(q)
     np.testing.assert_array_equal(reading, q)
     reading[0] = 5.0
     assert q[0] == -1.0
 
 
 def test_encoder_noise_and_rounding():
-    step = Disturbances(encoder_bits=18).encoder_step
+    step = Encoder(0.0, 18, seed=0).step
     assert step == pytest.approx(2.0 * np.pi / 262144)
     q = np.full(7, 0.3)
-    rounded = Encoder(0.0, step, seed=0)(q)
+    rounded = Encoder(0.0, 18, seed=0)(q)
     np.testing.assert_allclose(rounded / step, np.round(rounded / step), atol=1e-9)
     assert 0.0 < np.abs(rounded - q).max() <= 0.5 * step
-    noisy = Encoder(1e-3, 0.0, seed=0)
+    noisy = Encoder(1e-3, 0, seed=0)
     readings = np.array([noisy(q) for _ in range(3000)]) - q
     assert readings.std() == pytest.approx(1e-3, rel=0.03)
     assert abs(readings.mean()) < 3e-5
-    np.testing.assert_array_equal(Encoder(1e-3, step, 5)(q), Encoder(1e-3, step, 5)(q))
+    np.testing.assert_array_equal(Encoder(1e-3, 18, 5)(q), Encoder(1e-3, 18, 5)(q))
 
 
 @pytest.mark.parametrize(

@@ -75,9 +75,8 @@ class MujocoPlant(Plant):
         self._data = self._mj.MjData(self._model)
         self._data.qpos[:] = q0
         self._mj.mj_forward(self._model, self._data)
-        self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_step, seed)
-        self._torques = TorqueController(robot, dt, timestep, self.gains, self.dynamics)
-        self._torques.reset(q0)
+        self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_bits, seed)
+        self._torques = TorqueController(robot, dt, timestep, self.gains, self.dynamics, q0)
         self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay
         self._largest: Vector = np.zeros(robot.dof)
         self._reading: Vector | None = None

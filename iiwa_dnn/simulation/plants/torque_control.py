@@ -88,7 +88,7 @@ class Observer:
 
 
 class TorqueController:
-    """The torque loop of an arm with n joints, and its observer; `reset` comes first.
+    """The torque loop of an arm with n joints, and its observer, from rest.
 
     Robot and dynamics are as the controller knows them. A velocity command is reached within a
     period [s]; `torque` is called every timestep [s].
@@ -106,7 +106,9 @@ class TorqueController:
         timestep: float,
         gains: TorqueGains,
         dynamics: JointDynamics,
+        q: Vector,
     ) -> None:
+        """Start at rest at joint angles `q` (n,) [rad]."""
         self.gains = gains
         self.limit = torque_limits(robot)
         self.substeps = round(period / timestep)
@@ -116,9 +118,6 @@ class TorqueController:
         self._model = robot.model.copy()  # the robot's own stays as it is
         self._model.armature = np.full(robot.dof, dynamics.armature)
         self._data = self._model.createData()
-
-    def reset(self, q: Vector) -> None:
-        """Start at rest at joint angles `q` (n,) [rad]."""
         self._observer = Observer(self.gains.observer_bandwidth, self._timestep, q)
         self._q_desired = q.copy()
         self._v_desired = np.zeros_like(q)

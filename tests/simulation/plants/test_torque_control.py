@@ -36,10 +36,9 @@ def robot():
     return load_robot("iiwa7")
 
 
-def loop(robot):
-    torques = TorqueController(robot, PERIOD, TIMESTEP, TorqueGains(), JointDynamics())
-    torques.reset(START)
-    return torques, Arm(robot, START)
+def loop(robot, q=START):
+    torques = TorqueController(robot, PERIOD, TIMESTEP, TorqueGains(), JointDynamics(), q)
+    return torques, Arm(robot, q)
 
 
 def test_it_holds_still_with_the_arms_weight(robot):
@@ -69,8 +68,7 @@ def test_it_reaches_what_the_commands_add_up_to(robot):
 
 def test_an_offset_dies_out_at_the_stated_bandwidth(robot):
     offset = 1e-3 * np.array([1, -1, 1, -1, 1, -1, 1.0])
-    torques, arm = loop(robot)[0], Arm(robot, START + offset)
-    torques.reset(arm.q)
+    torques, arm = loop(robot, START + offset)
     torques._q_desired = START.copy()
     shares = []
     for _ in range(800):
