@@ -142,7 +142,7 @@ def _loop(options: BenchLoopSettings) -> int:
             options.steps * options.period, options.period, options.rounds
         ),
         "runs": measure_runs(options.duration, options.dt, options.rounds),
-        "profile": profile_step(options.dt),
+        "profile": profile_step(options.dt, min(options.steps, 2000)),
         "startup": measure_startup(options.rounds),
         "memory": measure_memory(0.2 * options.duration),
     }

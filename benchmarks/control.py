@@ -309,7 +309,7 @@ def _proxqp_alone(robot: Robot, scheme: Any, reference: Any, record: Any) -> tup
     return solving, making
 
 
-def profile_step(dt: float, steps: int = 2000) -> list[tuple[str, float]]:
+def profile_step(dt: float, steps: int) -> list[tuple[str, float]]:
     """Measure the parts of a step on their own [us], called in a row from Python."""
     robot = paper_robot()
     start = Configuration(robot, paper.START)

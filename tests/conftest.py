@@ -40,8 +40,12 @@ def _forget_stale_kernels() -> None:
     numba looks at a function's own file only, and would go on with what it once made of others.
     """
     package = Path(__file__).parents[1] / "iiwa_dnn"
-    imports = {source: _imported(source, package) for source in package.rglob("*.py")}
-    newest = {source: source.stat().st_mtime for source in imports}
+    newest = {source: source.stat().st_mtime for source in package.rglob("*.py")}
+    compiled = {index: index.stat().st_mtime for index in package.rglob("__pycache__/*.nbi")}
+    latest = max(newest.values(), default=0.0)
+    if min(compiled.values(), default=latest) >= latest:
+        return  # without reading all of the package, which takes seconds
+    imports = {source: _imported(source, package) for source in newest}
     changed = True
     while changed:
         changed = False
@@ -49,9 +53,9 @@ def _forget_stale_kernels() -> None:
             latest = max([newest[source], *(newest[other] for other in others)])
             changed |= latest > newest[source]
             newest[source] = latest
-    for index in package.rglob("__pycache__/*.nbi"):
+    for index, made in compiled.items():
         source = index.parents[1] / f"{index.name.split('.')[0]}.py"
-        if index.stat().st_mtime < newest.get(source, np.inf):
+        if made < newest.get(source, np.inf):
             index.unlink()
 
 

@@ -105,6 +105,8 @@ class Lines:
 
 def wrapped(text: str, indent: str = "") -> str:
     """Break a line of C where it is too long."""
+    if text and len(indent) + len(text) <= WIDTH:
+        return indent + text
     return textwrap.fill(
         text,
         WIDTH,

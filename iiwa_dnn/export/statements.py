@@ -199,8 +199,8 @@ class Body(Expressions):
 
     def _reads_table(self, node: ast.For, name: str) -> bool:
         """Test whether a loop reads a table that C does not have, at the loop's own variable."""
-        for each in ast.walk(node):
-            if isinstance(each, ast.Subscript) and name in _names(each.slice):
+        for each in _subscripts(node):
+            if name in _names(each.slice):
                 is_here = _names(each.value) <= set(self.names)
                 is_plain = isinstance(each.value, ast.Name | ast.Attribute)
                 if is_here and is_plain and getattr(self.value(each.value).kind, "is_table", False):
@@ -389,9 +389,16 @@ def _stored(tree: ast.AST) -> list[str]:
     return [node.id for node in names if isinstance(node.ctx, ast.Store)]
 
 
-def _names(tree: ast.AST) -> set[str]:
+@lru_cache(maxsize=10_000)
+def _names(tree: ast.AST) -> frozenset[str]:
     """Return the names in a tree."""
-    return {each.id for each in ast.walk(tree) if isinstance(each, ast.Name)}
+    return frozenset(each.id for each in ast.walk(tree) if isinstance(each, ast.Name))
+
+
+@lru_cache(maxsize=10_000)
+def _subscripts(tree: ast.AST) -> list[ast.Subscript]:
+    """List the subscripts in a tree."""
+    return [each for each in ast.walk(tree) if isinstance(each, ast.Subscript)]
 
 
 def _is_known(value: Value) -> bool:

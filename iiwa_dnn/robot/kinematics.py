@@ -74,7 +74,7 @@ def _placements(model: pin.Model, data: pin.Data) -> Array:
     shape = (model.nframes, _PLACEMENT)
     view: Array = np.lib.stride_tricks.as_strided(data.oMf[0].rotation, shape, (8 * _PLACEMENT, 8))
     pin.framesForwardKinematics(model, data, pin.neutral(model))
-    copies = [np.append(pose.rotation.T, pose.translation) for pose in data.oMf]
-    if not np.array_equal(view, copies):
+    last = data.oMf[model.nframes - 1]  # where it lies in the block, the others do too
+    if not np.array_equal(view[-1], np.append(last.rotation.T, last.translation)):
         raise RuntimeError("this build of Pinocchio keeps its frame placements in another way")
     return view

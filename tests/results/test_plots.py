@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from matplotlib import image
 
-from helpers_records import heart_record, make_record
+from helpers_records import draw_only, heart_record, make_record
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results.envelope import envelope, stretches
 from iiwa_dnn.results.plots import (
@@ -276,7 +276,8 @@ def slowed():
     )
 
 
-def test_the_paths_time_is_drawn_of_slowed_runs_alone(slowed, tmp_path):
+def test_the_paths_time_is_drawn_of_slowed_runs_alone(slowed, monkeypatch, tmp_path):
+    draw_only(monkeypatch, "path", "path_time")
     assert tmp_path / "path_time.png" in save_figures(slowed, tmp_path)
     assert tmp_path / "path_time.png" not in save_figures(make_record(), tmp_path)
 
