@@ -40,6 +40,7 @@ def test_it_writes_tables_figures_and_a_report(folder: Path) -> None:
     names = {path.name for path in folder.iterdir()} - {"cells"}
     figures = {f"{name}.{kind}" for name in ("fig1", "fig2", "tables") for kind in ("png", "pdf")}
     assert names == {*TABLES, "report.md", "settings.toml", *figures}
+    assert all((folder / name).stat().st_size > 10_000 for name in figures)
     for name in TABLES:
         table = json.loads((folder / name).read_text(encoding="utf-8"))
         assert table["scope"]["duration"] == 0.002

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from helpers_paper import made_up_tables
 from helpers_records import heart_record
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.studies.paper_plots import PANELS, error_figure, save_paper_figures, tables_figure
+from iiwa_dnn.studies.paper_plots import PANELS, error_figure, tables_figure
 
 
 @pytest.fixture(scope="module")
@@ -66,12 +64,3 @@ def test_a_change_far_off_is_named_at_the_edge() -> None:
     axes = tables_figure(tables).axes[2]
     assert "× 10 →" in [text.get_text() for text in axes.texts]
     assert max(axes.get_xlim()) < 100.0
-
-
-def test_each_figure_is_written_as_picture_and_as_print(
-    records: dict[str, Record], tmp_path: Path
-) -> None:
-    written = save_paper_figures(records[PANELS[-1]], records, made_up_tables(), tmp_path)
-    names = [f"{name}.{kind}" for name in ("fig1", "fig2", "tables") for kind in ("png", "pdf")]
-    assert [path.name for path in written] == names
-    assert all(path.stat().st_size > 10_000 for path in written)
