@@ -1,4 +1,4 @@
-"""The paper's figures: all panels there, on one scale, and the same bytes from the same numbers."""
+"""The paper's figures: all panels there, on one scale, the published numbers beside ours."""
 
 from __future__ import annotations
 
