@@ -18,7 +18,7 @@ from helpers_simulation import (
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import OrientationTask, PseudoInverse, Scheme
-from iiwa_dnn.simulation.motion import rk4
+from iiwa_dnn.simulation.motion import MOTIONS
 
 POSTURES = np.random.default_rng(21).uniform(-2.5, 2.5, (30, 7))
 
@@ -117,7 +117,7 @@ def test_so3_feedback_makes_the_error_decay_exponentially(gain: float) -> None:
 
     dt, initial = 5e-3, float(rotation_angle(rotation, target.rotation))
     for k in range(100):
-        q = q + dt * rk4(velocity, q, k * dt, dt)
+        q = q + dt * MOTIONS["rk4"].step(velocity, q, k * dt, dt)
         angle = float(rotation_angle(dh_pose(q)[1], target.rotation))
         assert angle == pytest.approx(initial * np.exp(-gain * (k + 1) * dt), rel=1e-4)
     np.testing.assert_allclose(dh_pose(q)[0], position, rtol=0, atol=1e-5)
