@@ -23,6 +23,9 @@ from iiwa_dnn.results.record import Record
 LIMIT_SLACK = 1e-9
 """Excess over a limit [rad, rad/s, m] that is forgiven: rounding of the motion's integration."""
 
+INFEASIBLE = "no joint velocity inside the limits fulfils the task"
+"""Beginning of a reason: a program of the continuous mode was shown to have no solution."""
+
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
 
 _show = partial(number, form=".3g", unknown="not a number")
@@ -52,6 +55,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     return [
         *_path_completed(metrics),
         *_early_end(metrics),
+        *_infeasible(metrics["settings"]),
         *_policies(metrics, record),
         *([] if is_finite else ["the tip position is not finite at every step"]),
         *_unsolved(metrics, record),
@@ -70,12 +74,19 @@ def _path_completed(metrics: Mapping[str, Any]) -> list[str]:
 
 def _early_end(metrics: Mapping[str, Any]) -> list[str]:
     settings = metrics["settings"]
-    status = settings["status"]
-    if status == "completed":
+    if settings["status"] == "completed":
         return []
     planned = round(settings["duration"] / settings["dt"])
-    early = f"ended after {metrics['steps']:,} of {planned:,} steps: "
-    return [f"{early if metrics['steps'] < planned else ''}{status}"]
+    return [f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"]
+
+
+def _infeasible(settings: Mapping[str, Any]) -> list[str]:
+    """Report a step of the continuous mode whose program was shown to have no solution."""
+    step = settings.get("infeasible_step")
+    if step is None:
+        return []
+    where = f"step {step} (t = {step * settings['dt']:g} s)"
+    return [f"{INFEASIBLE}, as at {where}: the path is too quick, or out of reach"]
 
 
 def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:

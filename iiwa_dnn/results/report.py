@@ -9,7 +9,7 @@ from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.naming import describe
-from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.failures import INFEASIBLE, failures
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import save_figures
@@ -242,7 +242,7 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
     )
-    first = [text for text in reasons[:1] if text.startswith("path ") or text == settings["status"]]
+    first = [text for text in reasons[:1] if text.startswith(("path ", INFEASIBLE))]
     return "\n".join([*first, *aligned])
 
 

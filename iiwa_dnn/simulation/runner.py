@@ -266,6 +266,7 @@ class Simulation:
                 **self._settings,
                 **self._plant.settings(),
                 "status": self._status(recorder),
+                "infeasible_step": recorder.infeasible,
             },
             **collision_arrays(controller.scheme, controller.robot, columns["q"], columns["t"]),
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
@@ -330,14 +331,8 @@ class Simulation:
     def _status(self, recorder: Recorder) -> str:
         """Describe the end of a run."""
         k = recorder.last_step
-        if k is None and recorder.infeasible is None:
-            return COMPLETED
         if k is None:
-            return (
-                "no joint velocity inside the limits fulfils the task, as at step "
-                f"{recorder.infeasible} (t = {recorder.arrays['t'][recorder.infeasible]:g} s): the "
-                "path is too quick, or out of reach"
-            )
+            return COMPLETED
         where = f"stopped at step {k} (t = {recorder.arrays['t'][k]:g} s)"
         if self._plant.fault is not None:
             return f"{where}: {self._plant.fault}"

@@ -302,8 +302,10 @@ def test_an_early_end():
         "path completed 30.0 %",
         "ended after 3 of 10 steps: step 3 has no solution",
     ]
-    whole = make_record(settings={"status": "no velocity fulfils the task"})
-    assert failures(whole) == ["no velocity fulfils the task"]
+    whole = make_record(settings={"infeasible_step": 3, "dt": 0.1})
+    assert failures(whole)[0].endswith(
+        "as at step 3 (t = 0.3 s): the path is too quick, or out of reach"
+    )
     nothing = make_record(steps=0, settings={"duration": 1.0, "status": "interrupted"})
     metrics = compute_metrics(nothing)
     assert metrics["max_kinetic_index"] is metrics["max_kkt_residual"] is None
