@@ -25,6 +25,7 @@ from iiwa_dnn import (
     Target,
     load_robot,
 )
+from iiwa_dnn.control.state import REST
 from iiwa_dnn.control.stopping import (
     Motion,
     bend_of,
@@ -152,6 +153,26 @@ def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
     jerk = 500.0 if len(limits) == 2 else np.inf
     robot = (ROBOT.q_lower, ROBOT.q_upper, ROBOT.dq_max, ROBOT.ddq_max)
     assert breaches(path, 4e-3, *robot, jerk) == []
+
+
+def test_the_braking_motion_in_hand_is_that_of_the_last_command() -> None:
+    """The state notes its periods, the least that the accelerations allow from the command."""
+    start = Configuration(ROBOT, ROBOT.start_posture())
+    wall = HalfSpace([-1, 0, 0], float(-start.position[0] - 0.35))
+    avoidance = CollisionAvoidance([wall], distance=0.02, self_collision=False)
+    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
+    controller = Controller(ROBOT, scheme, dt=4e-3)
+    target = Target(start.position + [2.0, 0.0, 0.0], start.rotation)
+    q = start.q
+    noted = []
+    least = []
+    for k in range(100):
+        dq = controller.step(q, k * 4e-3, target).dq
+        q = q + 4e-3 * dq
+        noted.append(controller._state.past[REST, 0])
+        least.append(np.ceil(np.abs(dq / (4e-3 * ROBOT.ddq_max)).max() - 1e-9))
+    np.testing.assert_array_equal(noted, least)
+    assert max(noted) > 10.0
 
 
 @pytest.mark.parametrize("limits", [ACCELERATION, JERK], ids=["acceleration", "jerk"])
