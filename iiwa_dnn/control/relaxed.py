@@ -22,7 +22,10 @@ The **softened program** moves the violation of the task into the cost,
 with :math:`\sigma_1` the smallest singular value of W A: away from singular poses its solution is
 the task's velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction
 of singular value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at
-most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift.
+most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. A velocity
+that fulfils the task within the limits is taken in its place if it is no quicker than the strongest
+damping would let it be: an arm that has to gather speed would otherwise follow the damped one, and
+its task would never be fulfilled.
 
 Rows of joints that follow others are limits: both programs keep them as they are.
 
@@ -330,12 +333,22 @@ def _least_violation(
     damping = _write_softened(qp, yielding, q, soft)
     if not _settled_in_retreat(qp, yielding, soft, point):
         return False
-    # The scheme's own cost may not bend the task: where that can be had, all of it is wanted.
+    # Neither the scheme's own cost nor damping may bend a task that can be had: all is wanted.
     exact = point[:n].copy()
-    if damping == 0.0 and on_rows(qp, exact) and inside(soft, exact):
-        for i in range(n):
-            point[i] = exact[i]
+    if on_rows(qp, exact) and inside(soft, exact):
+        if damping == 0.0 or _length(exact) <= _damped_speed(qp.b, yielding.weights):
+            for i in range(n):
+                point[i] = exact[i]
     return True
+
+
+@compiled
+def _damped_speed(b: Vector, weights: Vector) -> float:
+    """Compute the joints' speed that the strongest damping allows for a task velocity b (p,)."""
+    asked = 0.0
+    for j in range(b.size):
+        asked += (weights[j] * b[j]) ** 2
+    return math.sqrt(asked) / (2.0 * DAMPING)
 
 
 @compiled
