@@ -63,7 +63,8 @@ def suggestion(name: str, available: Iterable[str]) -> str:
     """Return ``; did you mean: ...`` with the names nearest to one, else ``; there are: ...``."""
     names = tuple(available)
     near = get_close_matches(name, names, n=3)
-    listed = ", ".join(near or names[:12]) + (", ..." if not near and names[12:] else "")
+    shown = [repr(each) if ", " in each else each for each in near or names[:12]]
+    listed = ", ".join(shown) + (", ..." if not near and names[12:] else "")
     return f"; {'did you mean' if near else 'there are'}: {listed}" if listed else ""
 
 

@@ -22,10 +22,10 @@ The **softened program** moves the violation of the task into the cost,
 with :math:`\sigma_1` the smallest singular value of W A: away from singular poses its solution is
 the task's velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction
 of singular value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at
-most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. A velocity
-that fulfils the task within the limits is taken in its place if it is no quicker than the strongest
-damping would let it be: an arm that has to gather speed would otherwise follow the damped one, and
-its task would never be fulfilled.
+most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. A
+velocity that fulfils the task within the limits is taken in its place if it is no quicker than the
+strongest damping would let it be: an arm that has to gather speed would otherwise follow the damped
+one, and its task would never be fulfilled.
 
 Rows of joints that follow others are limits: both programs keep them as they are.
 
@@ -335,10 +335,10 @@ def _least_violation(
         return False
     # Neither the scheme's own cost nor damping may bend a task that can be had: all is wanted.
     exact = point[:n].copy()
-    if on_rows(qp, exact) and inside(soft, exact):
-        if damping == 0.0 or _length(exact) <= _damped_speed(qp.b, yielding.weights):
-            for i in range(n):
-                point[i] = exact[i]
+    fastest = _damped_speed(qp.b, yielding.weights) if damping > 0.0 else np.inf
+    if on_rows(qp, exact) and inside(soft, exact) and _length(exact) <= fastest:
+        for i in range(n):
+            point[i] = exact[i]
     return True
 
 

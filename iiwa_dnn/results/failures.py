@@ -115,27 +115,32 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
             f"{steps} without a solution ({counts}){'' if fell_back else at}; "
             f"{often}in the way: {_blocking(metrics)}{_far_start(record)}"
         )
-    return [*reasons, *_slowed(incidents, metrics["duration_s"])]
+    return [*reasons, *_slowed(metrics)]
 
 
-def _slowed(incidents: Mapping[str, Any], took: float) -> list[str]:
-    """State how far a slowed path came in a time [s], and what would have sufficed."""
+def _slowed(metrics: Mapping[str, Any]) -> list[str]:
+    """State how far a slowed path came, and what would have sufficed."""
+    incidents = metrics["incidents"]
     if not incidents["slow_steps"]:
         return []
     path_time = number(incidents["path_time_s"])
-    needed = _needed(incidents.get("needed"))  # older metrics lack it
+    took = number(metrics["duration_s"])
+    needed = _needed(metrics)
     off = _off_path(incidents)
-    return [f"slowed: path time {path_time} s after {number(took)} s{needed}{off}"]
+    return [f"slowed: path time {path_time} s after {took} s{needed}{off}"]
 
 
-def _needed(needed: Mapping[str, Any] | None) -> str:
+def _needed(metrics: Mapping[str, Any]) -> str:
     """State what would have sufficed, 2 % and more above it; nothing if that is not known."""
+    needed = metrics["incidents"].get("needed")  # older metrics lack it
     if needed is None:
         return ""
+    part = "" if metrics.get("path_completed", 1.0) == 1.0 else "what was drawn "
     ratio = np.ceil(10.0 * 1.02 * needed["speed_ratio"]) / 10.0
     time = np.ceil(10.0 * needed["time_s"]) / 10.0
     return (
-        f"; needs {ratio:g} times the joints' speed, most of all joint {needed['joint']}'s, or "
+        f"; {part}needs {ratio:g} times the joints' speed, "
+        f"most of all joint {needed['joint']}'s, or "
         f"{ratio:g} times as long a time; slowed as here it ends after about {time:g} s"
     )
 

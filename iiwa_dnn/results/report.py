@@ -69,7 +69,8 @@ _PROVEN = (
     "{reference_failures} not proven"
 )
 _COMPARED = (
-    "{solver}, {steps_checked} steps compared, not judged, {reference_failures} failures\n"
+    "{solver}, {steps_checked} steps compared, not judged; "
+    "{reference_failures} of them it could not solve\n"
     "largest lag {max_solution_gap} rad/s"
 )
 _FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"

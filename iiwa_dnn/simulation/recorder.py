@@ -114,18 +114,23 @@ class Recorder:
     def _look_for_infeasible(self, rows: Matrix) -> None:
         """Solve the program of each `SEARCHED` rows (k, width) that is violated most.
 
-        What the network lags behind in continuous mode may have no solution at all.
+        What the network lags behind in continuous mode may have no solution at all. The first one
+        of those rows without a solution is noted.
         """
         if self._controller.mode != "continuous" or self.infeasible is not None:
             return
-        layout = self.layout
-        violation = layout.view(rows, "figures")[:, 2]
+        violation = self.layout.view(rows, "figures")[:, 2]
         for first in range(0, len(rows), SEARCHED):
-            k = first + int(violation[first : first + SEARCHED].argmax())
-            qp = QP.from_data(layout.view(rows[k], "program"), layout.sizes)
-            if DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE:
-                self.infeasible = self._done + k
+            worst = first + int(violation[first : first + SEARCHED].argmax())
+            if self._is_infeasible(rows[worst]):
+                found = (k for k in range(first, worst) if self._is_infeasible(rows[k]))
+                self.infeasible = self._done + next(found, worst)
                 return
+
+    def _is_infeasible(self, row: Vector) -> bool:
+        """Test whether the program of a row (width,) is shown to have no solution."""
+        qp = QP.from_data(self.layout.view(row, "program"), self.layout.sizes)
+        return DNNSolver().solve(qp).status is Status.PRIMAL_INFEASIBLE
 
     def finish(self) -> dict[str, NDArray[Any]]:
         """Return the columns, cut to the steps that were taken."""

@@ -446,6 +446,8 @@ def test_programs_without_a_solution_are_no_lag(
     record, metrics = results(tmp_path / "fast")
     assert not record["reference_residual"][int(said[1])] <= 1e-8  # ProxQP finds none either
     assert metrics["settings"]["infeasible_step"] == int(said[1])
+    before = record["reference_residual"][: int(said[1])]
+    assert (before <= 1e-8).all()  # it is the first one
     assert call([*words, "--out", str(tmp_path / "slow")]) == 0
 
 

@@ -350,6 +350,7 @@ def test_what_would_suffice_does_and_less_does_not():
     assert int(said[2]) == needed["joint"]
     assert failures(run_at(0.05 * ratio)) == []
     assert failures(run_at(0.05, 3.0 * ratio, 3.0 * ratio)) == []
+    assert "what was drawn needs" in failures(slow)[-1]
     assert failures(run_at(0.05 * ratio * 0.9)) != []
     later = run_at(0.05, float(said[3]))
     assert later.path_time == pytest.approx(3.0, rel=0.1)

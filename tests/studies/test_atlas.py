@@ -236,7 +236,7 @@ def test_parts_of_ones_own_come_from_files_and_from_modules(
         ("--networks", "nowhere.py:My", "network: nowhere.py cannot be imported ("),
         ("--networks", "math:My", "no network in math 'My'"),
         ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
-        ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: zeroing, E"),
+        ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
         ("--schemes", "other", "no scheme 'other'"),
         ("--schemes", "math:pi", "scheme: math:pi is no Scheme"),
         ("--references", "math:pi", "reference: math:pi is no Reference"),
