@@ -3,8 +3,6 @@
 This is the only file that knows where a number lies in a row.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

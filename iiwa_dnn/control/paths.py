@@ -1,7 +1,5 @@
 """The references of a control loop, one for each frame that tasks track."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -20,8 +20,6 @@ method", IEEE Trans. Robotics 27(5), 2011, for the damping; D. W. Marquardt, "An
 least-squares estimation of nonlinear parameters", J. SIAM 11(2), 1963, for its change.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The state of a controller: all that one step leaves behind for the next."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from iiwa_dnn.control.estimation import JointEstimator

@@ -4,8 +4,6 @@ For seven joints the way into compiled code is a large part of the cost of a cal
 enters it once a step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

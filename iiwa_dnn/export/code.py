@@ -1,7 +1,5 @@
 """A controller as C code: what is translated of it, and the texts of its templates."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.resources import files

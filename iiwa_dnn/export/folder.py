@@ -1,7 +1,5 @@
 """The folder of an exported controller: code, vectors of a run, a test, examples."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os

@@ -1,7 +1,5 @@
 """Lines of a C function as it is made."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Collection

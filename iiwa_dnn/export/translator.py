@@ -6,8 +6,6 @@ that it is called with: lengths become constants, a loop that enters functions b
 written out, and an array that a function makes for itself becomes an array of fixed size.
 """
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -19,8 +19,6 @@ Source: "Enhanced Orientation Tracking for Redundant Manipulators via DNN-Based 
 section III, its slips corrected (docs/errata.md).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import TypeGuard
 

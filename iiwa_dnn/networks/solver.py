@@ -1,7 +1,5 @@
 """The dynamic neural network as a solver of quadratic programs."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from functools import lru_cache

@@ -5,8 +5,6 @@ counts the references of a view. Indices are unsigned because numba compares sig
 which keeps the compiler from using vector instructions.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

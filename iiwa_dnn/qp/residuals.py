@@ -1,7 +1,5 @@
 """Residuals of a primal-dual point, all zero exactly at a KKT point; compiled."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

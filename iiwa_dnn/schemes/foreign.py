@@ -1,7 +1,5 @@
 """The step program of a scheme that is any object with a `build_qp` of its own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

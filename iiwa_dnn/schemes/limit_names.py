@@ -4,8 +4,6 @@ With acceleration or jerk limits a bound is made of all of them at once. It is s
 first limit, in the order of `iiwa_dnn.naming.KINDS`, without which it would be another one.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

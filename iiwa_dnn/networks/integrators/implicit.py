@@ -14,8 +14,6 @@ bounds, so the answer is the same, and the one that is handed out is put inside 
 on the whole state.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import ClassVar

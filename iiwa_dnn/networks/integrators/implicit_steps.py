@@ -29,8 +29,6 @@ in convex programming", Math. Oper. Res. 1 (1976), for the same step of the plai
 which is his method of multipliers.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
