@@ -245,6 +245,24 @@ def test_the_least_violation_is_a_quadratic_programs_solution(outside: float) ->
     assert in_the_way > 5
 
 
+@pytest.mark.parametrize(("asked", "is_damped"), [(0.002, False), (0.1, True)])
+def test_what_is_no_quicker_than_damping_allows_is_not_damped(
+    asked: float, is_damped: bool
+) -> None:
+    """The second joint moves the tip by 0.03 m/rad; the bound is |b| / (2 * 0.05)."""
+    sigma = 0.03
+    rows = np.diag([1.0, sigma])
+    b = np.array([0.1, asked])
+    qp = QP(np.eye(2), np.zeros(2), A=rows, b=b, lb=[-9.0, -9.0], ub=[9.0, 9.0])
+    exact = asked / sigma
+    assert (np.hypot(0.1, exact) > np.linalg.norm(b) / (2.0 * DAMPING)) == is_damped
+    found = softened(qp)
+    assert found is not None
+    damping = DAMPING**2 * (1.0 - (sigma / NEAR) ** 2)
+    damped = sigma * asked / (sigma**2 + damping + 1e-4)
+    assert found.dq[1] == pytest.approx(damped if is_damped else exact, rel=1e-6)
+
+
 def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
     blamed = 0
     for seed in range(10):
