@@ -21,11 +21,12 @@ The **softened program** moves the violation of the task into the cost,
 
 with :math:`\sigma_1` the smallest singular value of W A: away from singular poses its solution is
 the task's velocity, near them it is damped, towards a slow drift :math:`v_0` along -q. A direction
-of singular value s is short of its velocity by the share :math:`\lambda^2 / (\lambda^2 + s^2)` at
-most, and the joints' speed is at most :math:`\|W b\| / (2 \lambda)` and that of the drift. A
-velocity that fulfils the task within the limits is taken in its place if it is no quicker than the
-strongest damping would let it be: an arm that has to gather speed would otherwise follow the damped
-one, and its task would never be fulfilled.
+of singular value s is short of its velocity by the share :math:`\mu / (\mu + s^2)` at most, with
+:math:`\mu = \lambda^2 + \varepsilon p` and p the curvature of P there, and the joints' speed is at
+most :math:`\|W b\| / (2 \lambda)` and that of the drift. The nearest velocity that fulfils all of
+the task within the limits is taken in its place if it is no quicker than the strongest damping
+would let it be: an arm that has to gather speed would otherwise follow the other one, and its task
+would never be fulfilled.
 
 Rows of joints that follow others are limits: both programs keep them as they are.
 
@@ -92,6 +93,9 @@ depend on each other it may stay above one. What is asked for then is what its s
 
 TRIES = 3
 """Parts that are tried, down to none, where several rows ask for more than all can have."""
+
+SHORT = 0.1
+"""Share of the task velocity up to which it may be missing if a point that gives all is sought."""
 
 REACHED = 1e-9
 """Residual of the task rows below which a point counts as on them."""
@@ -336,10 +340,30 @@ def _least_violation(
     # Neither the scheme's own cost nor damping may bend a task that can be had: all is wanted.
     exact = point[:n].copy()
     fastest = _damped_speed(qp.b, yielding.weights) if damping > 0.0 else np.inf
-    if on_rows(qp, exact) and inside(soft, exact) and _length(exact) <= fastest:
+    if _fulfil(qp, soft, yielding, exact) and _length(exact) <= fastest:
         for i in range(n):
             point[i] = exact[i]
     return True
+
+
+@compiled
+def _fulfil(qp: QPViews, soft: QPViews, yielding: Yielding, x: Vector) -> bool:
+    """Move x (n,), near a solution, to the nearest point that fulfils a task within soft limits.
+
+    Returns:
+        False if there is none, or x does not give nearly all of the task.
+    """
+    asked = 0.0
+    missing = 0.0
+    for j in range(qp.b.size):
+        asked += (yielding.weights[j] * qp.b[j]) ** 2
+        missing += (yielding.weights[j] * (row_dot(qp.A, j, x) - qp.b[j])) ** 2
+    if not on_rows(qp, x):
+        return False
+    if inside(soft, x):
+        return True
+    data = np.zeros(data_size(x.size, qp.h.size, qp.b.size))
+    return missing <= SHORT * SHORT * asked and _move_within(soft, qp, qp.b.size, x, yielding, data)
 
 
 @compiled
@@ -554,7 +578,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> bool:
     if inside(qp, x):
         return True
     data = np.zeros(data_size(x.size, qp.h.size, 0))
-    if _nearest_within(qp, x, yielding, data):
+    if _move_within(qp, qp, 0, x, yielding, data):
         return True
     for i in range(x.size):
         x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
@@ -562,22 +586,28 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> bool:
 
 
 @compiled
-def _nearest_within(qp: QPViews, x: Vector, yielding: Yielding, data: Vector) -> bool:
-    """Move x (n,) within bounds and rows, in the room for the program, (size,), if they allow."""
+def _move_within(
+    limits: QPViews, task: QPViews, p: int, x: Vector, yielding: Yielding, data: Vector
+) -> bool:
+    """Move x (n,) to the nearest point within bounds and inequality rows, if they allow any.
+
+    The point is on the first `p` of a task's rows too. The program has its room in `data` (size,).
+    """
     n = x.size
-    m = qp.h.size
-    nearest = qp_views(data, n, m, 0)
+    m = limits.h.size
+    nearest = qp_views(data, n, m, p)
     for i in range(n):
         nearest.P[i, i] = 1.0
         nearest.q[i] = -x[i]
-        nearest.lb[i] = qp.lb[i]
-        nearest.ub[i] = qp.ub[i]
-    for j in range(m):
-        nearest.h[j] = qp.h[j]
+        nearest.lb[i] = limits.lb[i]
+        nearest.ub[i] = limits.ub[i]
+    _copy_rows(limits, nearest)
+    for j in range(p):
+        nearest.b[j] = task.b[j]
         for i in range(n):
-            nearest.G[j, i] = qp.G[j, i]
-    point = np.empty(2 * n + m)
-    state = np.zeros(3 * n + m)
+            nearest.A[j, i] = task.A[j, i]
+    point = np.empty(2 * n + m + p)
+    state = np.zeros(3 * n + m + p)
     if not settled(nearest, yielding, state, point, 1.0):
         return False
     for i in range(n):

@@ -56,10 +56,10 @@ from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
-ATTEMPTS = 15
+ATTEMPTS = 16
 """Programs at most: the step's own with a budget of its own, five passes of the scaled one, then
 three times the step's own from its last state and from a cold start, and the softened one, with
-each part of `relaxed.TRIES`, or that of the nearest command."""
+each part of `relaxed.TRIES` and the nearest point that gives all, or the nearest command's."""
 
 NONE = int(Action.NONE)
 FALLBACK = int(Action.FALLBACK)

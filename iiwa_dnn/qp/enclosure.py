@@ -44,9 +44,10 @@ LARGEST = 0.5
 def unit_of(qp: QPViews) -> float:
     """Bound the relative rounding of all sums of an enclosure, (k + 16) 2^-53 for k terms.
 
-    No sum has more than n + p + m terms; nor more than 3 n, for there are 2 n unknowns at most.
+    No sum has more than n + p + m terms: rows that repeat others are no unknowns, but their
+    multipliers count.
     """
-    return _ROUNDING * (16 + qp.q.size + min(qp.b.size + qp.h.size, 2 * qp.q.size))
+    return _ROUNDING * (16 + qp.q.size + qp.b.size + qp.h.size)
 
 
 @compiled

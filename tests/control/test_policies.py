@@ -263,6 +263,17 @@ def test_what_is_no_quicker_than_damping_allows_is_not_damped(
     assert found.dq[1] == pytest.approx(damped if is_damped else exact, rel=1e-6)
 
 
+@pytest.mark.parametrize("sigma", [0.04, 0.2])
+def test_all_of_a_task_is_wanted_where_a_bound_leaves_room_for_it(sigma: float) -> None:
+    """Joint 2 is at its bound, joint 3 can do the rest: neither damping nor the cost bends it."""
+    rows = np.array([[sigma, 0.0, 0.0], [0.0, 1.0, 1.0]])
+    box = np.array([3.0, 0.1, 3.0])
+    qp = QP(np.eye(3), np.zeros(3), A=rows, b=[0.0, 0.3], lb=-box, ub=box)
+    found = softened(qp)
+    assert found is not None
+    np.testing.assert_allclose(found.dq, [0.0, 0.1, 0.2], rtol=0, atol=1e-8)
+
+
 def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
     blamed = 0
     for seed in range(10):

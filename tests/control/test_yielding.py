@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,31 @@ def test_near_a_singular_pose_a_path_that_fits_is_caught_up_with() -> None:
     assert np.linalg.svd(weighted, compute_uv=False)[-1] < 0.05
     assert Action.SLOW in actions[:50]
     assert set(actions[50:]) == {Action.NONE}
+
+
+def test_a_joint_at_its_velocity_limit_leaves_no_path_slowed_that_fits() -> None:
+    """The other joints do what joint 1 cannot; it was 0.2 % too slow in all 600 steps."""
+    robot = paper_robot()
+    home = robot.start_posture()
+    fastest = robot.dq_max.copy()
+    fastest[0] = 0.02
+    slower = robot.with_limits(velocity=fastest)
+    circle = Circle(radius=0.05, period=4.0).anchored(Configuration(slower, home))
+    scheme = DoubleIndicator(orientation="so3", home=home)
+    limited = replace(scheme, extra_limits=(AccelerationLimits(10.0), JerkLimits(300.0)))
+    actions = []
+    held = []
+    for each in (scheme, limited):
+        controller = Controller(slower, each, circle, dt=2e-3)
+        q = home
+        for k in range(300):
+            command = controller.step(q, 2e-3 * k)
+            q = q + 2e-3 * command.dq
+            if k >= 100:
+                actions.append(command.action)
+                held.append(abs(command.dq[0]) > 0.02 - 1e-6)
+    assert np.mean(held) > 0.5
+    assert set(actions) == {Action.NONE}
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])

@@ -274,3 +274,19 @@ def test_a_check_hands_the_proof_on() -> None:
     assert alone.solution_gap[0, 0] == bounds[0]
     # x alone will do where no multiplier has to be known.
     assert CrossCheck(("proof",)).check(known[0], points[0, :5]).solution_gap[0, 0] < 1e-7
+
+
+@pytest.mark.parametrize("count", [1000, 4000])
+def test_the_multipliers_of_rows_that_repeat_count_in_the_rounding(count: int) -> None:
+    """One row many times, with huge multipliers that cancel: their sum is as wrong as they are."""
+    share = 2.0**53 / count + 0.67
+    y = np.full(count, share)
+    row = np.array([1.0, 0.75])
+    q = np.array([0.3, -0.2])
+    true = -(1.0 + row @ q) / (row @ row)  # of min |x|^2 / 2 + q x on the row
+    y[0] = -(count - 1) * share + true
+    exact_x = -q - true * row
+    qp = QP(np.eye(2), q, A=np.tile(row, (count, 1)), b=np.ones(count))
+    moved = exact_x + 0.17 * count * np.array([-0.75, 1.0])
+    bound = prove(qp, answer(moved.tolist(), y=y)).bound
+    assert np.abs(moved - exact_x).max() <= bound
