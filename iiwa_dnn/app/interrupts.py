@@ -1,5 +1,7 @@
 """Ctrl-C and SIGTERM in the middle of a command: no traceback, whole files, the usual exit code."""
 
+from __future__ import annotations
+
 import signal
 import sys
 import threading
