@@ -77,15 +77,17 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
         f"status     {extras['status']} after {extras['iterations']:,} linear systems",
         f"residuals  {_residuals(solution)}, tolerance {options.tol:.3g}",
     ]
+    check = CrossCheck(CHECKS[options.check])
     if not solution.found:
         if options.check == "proof":
             proven = "the status is proven by a certificate, rounding counted"
             lines.append(f"proof      {proven if 'certificate' in extras else 'none'}")
+        else:
+            lines += [f"{name:<11}{check.status(name, qp)}" for name in check.solvers]
         return [*lines, f"last x     {_text(extras['last_x'])} (not an answer)"]
     lines += [f"objective  {solution.obj:.12g}", f"x          {_text(solution.x)}"]
     if options.verbose:
         lines += [f"{name:<11}{_text(value)}" for name, value in _multipliers(solution).items()]
-    check = CrossCheck(CHECKS[options.check])
     if options.check == "proof":
         proof = prove(qp, solution)
         shown = f"within {proof.bound:.3g} of the exact solution in x"

@@ -8,8 +8,8 @@ residuals are judged before it is believed. "proof" stands among the references 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from contextlib import redirect_stdout
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass, field
 from io import StringIO
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -198,15 +198,11 @@ class CrossCheck:
         residuals = np.empty((len(programs), 1))
         # Solvers may take minutes over one NaN.
         askable = ~np.isnan(programs).any(axis=1)
-        with warnings.catch_warnings(), redirect_stdout(StringIO()):
-            # They speak of dense matrices for OSQP, and of programs that are not solved, as the
-            # residual does; OSQP prints, too. Once a block: for each program it would take a tenth
-            # of ProxQP's time.
-            warnings.simplefilter("ignore", UserWarning)
+        with _silence():
             for i in np.flatnonzero(askable):
                 problem = QP.from_data(programs[i], sizes).to_qpsolvers()
                 reference = self._solve(name, problem)
-                if reference is not None and reference.x is not None:
+                if reference is not None and reference.found and reference.x is not None:
                     _copy_point(reference, sizes, points[i, 0])
         largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
         return points[:, 0], residuals[:, 0]
@@ -223,15 +219,36 @@ class CrossCheck:
             "reference_tolerance": self.reference_tolerance,
         }
 
+    def status(self, name: str, qp: QP) -> str:
+        """Ask the reference of this name for a program's solution; return its status in words."""
+        with _silence():
+            solution = self._solve(name, qp.to_qpsolvers())
+        if solution is None:
+            return "refused"
+        info = solution.extras.get("info")
+        status = getattr(info, "status", "solved" if solution.found else "not solved")
+        return str(getattr(status, "name", status)).lower().replace("_", " ")
+
     def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
-        """Ask one reference; returns None where it has no solution."""
+        """Ask one reference; returns None where it refuses the problem."""
         import qpsolvers
 
         try:
-            solution = qpsolvers.solve_problem(problem, solver=name, **self._options[name])
+            return qpsolvers.solve_problem(problem, solver=name, **self._options[name])
         except Exception:  # whatever a reference raises, it has no answer
             return None
-        return solution if solution.found else None
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keep the references' warnings and prints back.
+
+    They speak of dense matrices for OSQP, and of programs that are not solved, as the residual
+    does; OSQP prints, too. Once a block: for each program it would take a tenth of ProxQP's time.
+    """
+    with warnings.catch_warnings(), redirect_stdout(StringIO()):
+        warnings.simplefilter("ignore", UserWarning)
+        yield
 
 
 def _proven(

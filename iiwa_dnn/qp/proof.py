@@ -47,6 +47,12 @@ REASONS = (
 )
 """Reasons by their number; the first two come with a finite bound."""
 
+NO_ANSWER = (
+    "the solver found no answer, and handed over no certificate that there is none; "
+    "iiwa_dnn.solve_problem looks for one, which is proven in place of an answer"
+)
+"""Reason of another solver's solution that is marked as not found, where its x is not proven."""
+
 
 class Proof(NamedTuple):
     """A rigorous bound on the distance of an answer from the exact solution.
@@ -72,6 +78,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
     the program count as exact. Where an answer has a certificate instead, as a field or among its
     extras, the reason says whether it proves that there is none; it needs no x then.
+    Nor does another solver's answer that is marked as not found.
 
     Args:
         qp: The program, also as qpsolvers has it.
@@ -94,11 +101,15 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
         return Proof(np.inf, active[0], REASONS[INFEASIBLE])
     if "last_x" in extras:
         return Proof(np.inf, active[0], f"there is no answer: {extras['status']}")
+    unsolved = not (isinstance(solution, Solution) or getattr(solution, "found", True))
+    if unsolved and solution.x is None:
+        return Proof(np.inf, active[0], NO_ANSWER)
     point = point_of(solution, qp)
     bound = np.empty(1)
     reason = np.empty(1, dtype=np.int64)
     prove_block(qp.data[np.newaxis], n, m, point[np.newaxis], bound, reason, active)
-    return Proof(float(bound[0]), active[0], REASONS[reason[0]])
+    words = NO_ANSWER if unsolved and bound[0] == np.inf else REASONS[reason[0]]
+    return Proof(float(bound[0]), active[0], words)
 
 
 def point_of(solution: Any, qp: QP) -> Vector:
@@ -118,7 +129,7 @@ def point_of(solution: Any, qp: QP) -> Vector:
                 raise InvalidInputError("solution", problem, solution)
             point[start : start + size] = part
         elif name == "x":
-            raise InvalidInputError("solution", f"has no x: {solution!r:.80}", solution)
+            raise InvalidInputError("solution", f"has no x: {type(solution).__name__}", solution)
         start += size
     return point
 

@@ -84,6 +84,16 @@ def test_that_there_is_no_solution_is_proven(
         assert f"\nproof      {words}\n" in capsys.readouterr().out
 
 
+def test_both_solvers_say_what_they_make_of_a_program_without_a_solution(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    crossed = {"P": np.eye(1), "q": [0.0], "G": [[1.0], [-1.0]], "h": [-1.0, -1.0]}
+    assert run("solve", [saved(tmp_path, **crossed), "--check", "both"]) == 1
+    lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
+    assert lines["proxqp"] == "proxqp primal infeasible"
+    assert lines["osqp"] == "primal infeasible"
+
+
 def test_quiet_prints_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("solve", [saved(tmp_path, **PROGRAM), "-q"]) == 0
     assert capsys.readouterr() == ("", "")

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import qpsolvers
 
 import iiwa_dnn
 from benchmarks import exact, programs
@@ -218,7 +219,7 @@ def test_a_bound_counts_what_the_answer_lacks() -> None:
 def test_answers_that_are_none_are_refused() -> None:
     qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=[1.0])
     for wrong, problem in (
-        (SimpleNamespace(x=None), "has no x"),
+        (SimpleNamespace(x=None), "^solution: has no x: SimpleNamespace$"),
         (answer([1.0, 2.0, 3.0]), "has 3 entries in x, not 2"),
         (answer([1.0, 2.0], y=np.zeros(2)), "has 2 entries in y, not 1"),
     ):
@@ -248,6 +249,21 @@ def test_a_certificate_is_proven_or_is_not() -> None:
     assert prove(problem, refuted).reason == "proven: no point satisfies the constraints"
     del refuted.extras["certificate"]
     assert prove(problem, refuted).reason == "there is no answer: primal infeasible"
+
+
+@pytest.mark.parametrize("solver", ["daqp", "proxqp"])
+def test_what_another_solver_calls_infeasible_is_said_in_words(solver: str) -> None:
+    rows = np.array([[1.0, 1.0], [-1.0, -1.0]])
+    problem = qpsolvers.Problem(np.eye(2), np.ones(2), rows, -np.ones(2))
+    proof = prove(problem, qpsolvers.solve_problem(problem, solver))
+    assert proof.bound == np.inf
+    assert proof.reason.startswith("the solver found no answer, and handed over no certificate")
+    assert "solve_problem" in proof.reason
+    # An x that is marked as not found is judged like any other.
+    marked = qpsolvers.Solution(problem, found=False, x=-np.ones(2) / 2.0)
+    flat = QP(np.eye(2), np.ones(2) / 2.0)
+    proof = prove(flat, marked)
+    assert (proof.reason, proof.bound < 1e-12) == ("", True)
 
 
 def test_a_check_hands_the_proof_on() -> None:
