@@ -12,7 +12,7 @@ from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
-from iiwa_dnn.qp.layout import Sizes, compiled
+from iiwa_dnn.qp.layout import Sizes, compiled, offsets
 from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -149,15 +149,38 @@ class RowLayout:
         self.view(row, "figures")[:] = figures
         self.view(row, "decision")[:] = (Action.NONE, 1.0, STATUSES.index(solution.status))
 
-    def bound_multipliers(self, rows: Matrix) -> Matrix:
-        """Return the multipliers of the joints' bounds, `Solution.z_box`, (..., dof)."""
-        n, _, _ = self.sizes
-        return self.view(rows, "point")[..., -n:][..., : self.dof]
+    def bound_multipliers(self, rows: Matrix, tol: float) -> Matrix:
+        """Return the multipliers of the joints' active bounds, (..., dof), as `Solution.z_box`.
 
-    def row_multipliers(self, rows: Matrix) -> Matrix:
-        """Return the multipliers of the inequality rows, `Solution.z`, (..., m)."""
+        A bound or row is active where its multiplier is above the tolerance `tol` and its part of
+        the duality gap, multiplier times slack, is not; above one, the slack itself. Without a
+        smaller multiplier the residuals were still within the tolerance, and in continuous mode one
+        that is left from earlier takes a while to decay.
+        """
+        n, _, _ = self.sizes
+        dof = self.dof
+        point = self.view(rows, "point")
+        bounds = self.view(rows, "program")[..., -2 * n :]
+        multipliers = point[..., -n:][..., :dof]
+        above = bounds[..., n:][..., :dof] - point[..., :dof]
+        below = point[..., :dof] - bounds[..., :dof]
+        return _active(multipliers, np.where(multipliers > 0.0, above, below), tol)
+
+    def row_multipliers(self, rows: Matrix, tol: float) -> Matrix:
+        """Return the multipliers of the active inequality rows, (..., m), as `Solution.z`."""
         n, m, p = self.sizes
-        return self.view(rows, "point")[..., n + p : n + p + m]
+        _, at_G, at_A, _ = offsets(n, m, p)
+        point = self.view(rows, "point")
+        G, h = np.split(self.view(rows, "program")[..., at_G:at_A], [m * n], axis=-1)
+        values = np.einsum("...ji,...i->...j", G.reshape(*h.shape, n), point[..., :n])
+        return _active(point[..., n + p : n + p + m], h - values, tol)
+
+
+def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
+    """Put zero in place of the multipliers of inactive bounds or rows."""
+    sizes = np.abs(multipliers)
+    active = (sizes > tol) & (slacks <= tol / np.clip(sizes, tol, 1.0))
+    return np.where(active, multipliers, 0.0)
 
 
 class Command:

@@ -112,8 +112,8 @@ class Record:
         FloatArray | None,
         Column(
             "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
-            "lower one, 0 at an inactive one; the decrease of the objective per rad/s by which the "
-            "bound is relaxed. None if no bound was ever active",
+            "lower one, 0 at an inactive one (`RowLayout.bound_multipliers`); the decrease of the "
+            "objective per rad/s by which the bound is relaxed. None if no bound was ever active",
             ("N", "n"),
         ),
     ] = None
@@ -153,7 +153,7 @@ class Record:
     bound_kind: Annotated[
         CodeArray | None,
         Column(
-            "Kind of each bound with a multiplier, as in `blocking`. None if there is no "
+            "Kind of each active bound, as in `blocking`. None if there is no "
             "acceleration or jerk limit: a bound below the velocity limit is then of a position",
             ("N", "n"),
             np.int8,
@@ -163,7 +163,8 @@ class Record:
         FloatArray | None,
         Column(
             'Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names '
-            '(``{"part": ..., "row": ...}``, row from 1). None if no row was ever active',
+            '(``{"part": ..., "row": ...}``, row from 1), 0 of an inactive one. '
+            "None if no row was ever active",
             ("N", "m"),
         ),
     ] = None

@@ -9,11 +9,13 @@ from numpy.testing import assert_array_equal
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot
-from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.qp import QP, Solution, Status
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.schemes import DoubleIndicator
+from iiwa_dnn.simulation import simulate
 from iiwa_dnn.simulation.loop import Outcome
 from iiwa_dnn.simulation.recorder import Recorder
 
@@ -116,3 +118,38 @@ def test_multipliers_and_poses_are_those_of_the_first_stage() -> None:
     assert_array_equal(made.arrays["position_desired"][0], heart().at(0.0).position)
     iterations = sum(stage.solution.iterations for stage in stages)
     assert made.arrays["iterations"][0] == iterations
+
+
+def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
+    """Multipliers of rounding, and such as decay after the joint has left its bound, do not act."""
+    rows = [[1.0, 0.0], [-1.0, 0.0], [1.0, 1.0]]
+    qp = QP(np.eye(2), np.zeros(2), rows, [1.0, 0.0, 2.0], lb=[-1.0, -2.0], ub=[1.0, 1.5])
+    layout = RowLayout(qp.sizes, 2, 1)
+    for x, z, z_box, active_rows, active_bounds in (
+        ([1.0, 1.0], [2.0, 3.0, 1e-16], [1e-16, 1e-16], [2.0, 0.0, 0.0], [0.0, 0.0]),
+        ([1.0, -2.0], [1e-9, 0.0, 40.0], [0.5, -0.1], [0.0, 0.0, 0.0], [0.5, -0.1]),
+        ([0.9, 1.5 - 1e-7], [0.2, 9.0, 0.0], [5.0, 5e-3], [0.0, 0.0, 0.0], [0.0, 5e-3]),
+    ):
+        point = np.concatenate([x, z, z_box])
+        answer = Solution(point, qp.sizes, Status.SOLVED, 0, 0.0, 0.0, 0.0, 0.0)
+        row = np.zeros(layout.width)
+        layout.fill(row, qp, answer)
+        assert_array_equal(layout.row_multipliers(row, 1e-9), active_rows)
+        assert_array_equal(layout.bound_multipliers(row[np.newaxis], 1e-9), [active_bounds])
+
+
+def test_too_quick_a_path_in_continuous_mode_names_the_limits_that_the_arm_is_at() -> None:
+    path = heart(period=0.4)
+    scheme = DoubleIndicator(home=PAPER_Q0)
+    options = {"mode": "continuous", "check": None, "dt": 1e-3, "duration": 0.4}
+    record = simulate(paper_robot(), scheme, path, PAPER_Q0, **options)
+    active = compute_metrics(record)["incidents"]["active_bounds"]
+    assert record.q[:, 0].min() < -2.47  # beside its limit of -2.5, and no other joint is
+    assert [(bound["joint"], bound["side"], bound["limit"]) for bound in active] == [
+        (1, "lower", "position"),
+        (1, "lower", "velocity"),
+        (1, "upper", "velocity"),
+        (4, "lower", "velocity"),
+        (4, "upper", "velocity"),
+        (7, "upper", "velocity"),
+    ]
