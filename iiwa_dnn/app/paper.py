@@ -15,10 +15,10 @@ from typing import Any
 from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import run_sweep
 from iiwa_dnn.app.options import PaperOptions
-from iiwa_dnn.files import write_json
+from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.studies import ablation, paper, table1, table2
 from iiwa_dnn.studies.paper_plots import save_paper_figures
-from iiwa_dnn.studies.paper_report import findings, write_paper_report
+from iiwa_dnn.studies.paper_report import column_report, findings, write_paper_report
 from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, measure
 from iiwa_dnn.studies.sweeps import fingerprint
 
@@ -29,6 +29,8 @@ def run(options: PaperOptions) -> int:
     """Run every experiment of the paper, write tables, figures and report; return the exit code."""
     began = time.perf_counter()
     scope = _scope(options)
+    if options.weight is not None:
+        return _run_column(options, scope, options.weight)
     figures = figure_runs(scope)
     parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
     runs = [*chain(*(part.values() for part in parts.values())), *figures.values()]
@@ -48,12 +50,42 @@ def run(options: PaperOptions) -> int:
     head = _head(scope, results, time.perf_counter() - began)
     write_paper_report(options.out, tables, head, drawn)
     lines = [f"{name:<14}{value}" for name, value in head.items()] if options.verbose else []
-    print_lines(options, *lines, *findings(tables), f"written to {options.out}")
+    said = [*findings(tables), *_caveats(scope), f"written to {options.out}"]
+    print_lines(options, *lines, *said)
+    return _exit_code(results)
+
+
+def _run_column(options: PaperOptions, scope: Scope, weight: float) -> int:
+    """Run one column of Table I, write and print it; return the exit code."""
+    runs = table1.column_cells(scope, weight)
+    cells = [run.settings() for run in runs.values()]
+    _, results = run_sweep(options, measure, cells, options.dask)
+    table = table1.tabulate_column(scope, weight, dict(zip(runs, results, strict=True)))
+    lines = [column_report(table), *_caveats(scope)]
+    file = options.out / f"table1_{weight:g}.md"
+    write_text(file, "\n\n".join(lines) + "\n")
+    print_lines(options, *lines, f"written to {file}")
+    return _exit_code(results)
+
+
+def _exit_code(results: Sequence[Mapping[str, Any]]) -> int:
+    """Return 1 and say so if a run ended early, else 0."""
     ended_early = [values["status"] for values in results if values["status"] != "completed"]
     if not ended_early:
         return 0
     print(f"{len(ended_early)} runs ended early, the first: {ended_early[0]}", file=sys.stderr)
     return 1
+
+
+def _caveats(scope: Scope) -> list[str]:
+    """Say of runs that are shorter than the heart what their figures are not."""
+    period = HeartRun().reference().period
+    if scope.duration >= period:
+        return []
+    return [
+        f"Runs of {scope.duration:g} s: less than the heart's {period:g} s does not close it, so "
+        "the drift is another, and no figure is the paper's."
+    ]
 
 
 def _scope(options: PaperOptions) -> Scope:
@@ -79,19 +111,18 @@ def _head(scope: Scope, results: Sequence[Mapping[str, Any]], wall: float) -> di
     """Return the date, the machine, the versions and the sizes of the sweep, for its report."""
     runs = len(results)
     spent = sum(values["wall_time_s"] for values in results)
-    period = HeartRun().reference().period
-    note = f": less than the heart's {period:g} s does not close it, so the drift is another"
-    open_end = note if scope.duration < period else ""
     versions = fingerprint(measure)["versions"] | {"python": platform.python_version()}
-    return {
+    head = {
         "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
         "machine": f"{processor()}, {os.cpu_count()} cores, {platform.system()}",
         "versions": ", ".join(f"{name} {number}" for name, number in versions.items()),
         "runs": f"{runs:,} of {scope.duration:g} s at {scope.dt:g} s; {scope.seeds} seeds in "
-        f"Table II, {scope.laps} laps at {scope.laps_dt:g} s{open_end}",
+        f"Table II, {scope.laps} laps at {scope.laps_dt:g} s",
         "wall time": f"{wall:.0f} s, of which runs found finished took none; all runs together "
         f"took {spent:.0f} s, {spent / runs:.2f} s each",
     }
+    caveats = _caveats(scope)
+    return {**head, "caveat": " ".join(caveats)} if caveats else head
 
 
 def processor() -> str:

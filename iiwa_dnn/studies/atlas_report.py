@@ -302,8 +302,8 @@ def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list
         ),
         Table(
             "verdicts",
-            "Claims, by the residual of pairs of runs",
-            ["claim", "disturbance", "ours", "beside", "verdict"],
+            "Claims of papers, by the residual of pairs of runs",
+            ["claim", "disturbance", "network of the claim", "network beside it", "verdict"],
             [judge(rows, claim) for claim in claims],
         ),
     ]

@@ -70,6 +70,16 @@ _LIMITS = """\
   they go the same way, else *not reproduced*. A change (filter, noise) must also have an interval
   that leaves zero out, and be of 0.1 % at least."""
 
+_TRUST = """\
+How far to trust the paper's (docs/paper.md, docs/errata.md):
+
+- All: the scale and the period of its heart are not printed, so errors compare in magnitude only.
+- MAX E: its text contradicts the table's trend over ξ (erratum 12), and Table II prints 6.70e-5 m
+  for the run that has 5.59e-5 m here, ξ = 0.2 (erratum 7).
+- Drift: four of seven cells cannot be read; a network whose steps are stable stays far below the
+  others (erratum 13).
+- q̇ᵀGq̇ · Δt: no evidence, for the heart's scale was inferred from this row (erratum 8)."""
+
 
 def write_paper_report(
     folder: str | os.PathLike[str],
@@ -104,6 +114,21 @@ def write_paper_report(
         *show_figures(figures, _CAPTIONS),
     ]
     return save_markdown(folder, parts)
+
+
+def column_report(table: Table) -> str:
+    """Put the runs of one weight beside that column of the paper's Table I, and how to take it."""
+    head = (f"ξ = {table['weight']:g}", "paper", *table["variants"])
+    rows = []
+    for key in _JUDGED:
+        printed = table["paper"][key]
+        row = [_ROWS[key], short(printed)]
+        for values in table["variants"].values():
+            ours = values[key]
+            known = printed is not None and ours is not None
+            row.append(short(ours) + (f" ({short(ours / printed)} times)" if known else ""))
+        rows.append(row)
+    return f"{markdown_table(head, rows)}\n\n{_TRUST}"
 
 
 def findings(tables: Mapping[str, Table]) -> list[str]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import HeartRun, Scope
 from iiwa_dnn.studies.verdicts import judge_row
@@ -56,6 +57,36 @@ def cells(scope: Scope) -> dict[Any, HeartRun]:
     length = scope.laps * HeartRun().reference().period
     laps = {name: replace(run, dt=scope.laps_dt, duration=length) for name, run in DRIFTERS.items()}
     return weights | laps
+
+
+def column_cells(scope: Scope, weight: float) -> dict[str, HeartRun]:
+    """Make the runs of one column of the table by variant.
+
+    Raises:
+        InvalidInputError: The table has no column of this weight.
+    """
+    if weight not in paper.WEIGHTS:
+        columns = ", ".join(map(str, paper.WEIGHTS))
+        raise InvalidInputError("weight", f"must be one of {columns}, not {weight!r}", weight)
+    runs = cells(scope)
+    return {name: runs[name, weight] for name in VARIANTS}
+
+
+def tabulate_column(
+    scope: Scope, weight: float, results: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Lay the results of `column_cells` out beside the paper's, in JSON types."""
+    column = paper.WEIGHTS.index(weight)
+    runs = {}
+    for name, values in results.items():
+        index = values["max_kinetic_index"]
+        scaled = None if index is None else index * scope.dt
+        runs[name] = {**values, "max_kinetic_index_times_dt": scaled}
+    return {
+        "weight": weight,
+        "paper": {key: printed[column] for key, printed in _JUDGED.items()},
+        "variants": runs,
+    }
 
 
 def tabulate(scope: Scope, results: Mapping[Any, Mapping[str, Any]]) -> dict[str, Any]:

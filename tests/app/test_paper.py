@@ -74,6 +74,32 @@ def test_two_workers_write_the_same_tables(folder: Path, tmp_path: Path) -> None
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes(), name
 
 
+def test_one_column_of_table_1_is_run_alone_and_says_how_far_to_trust_it(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(folder / "cells", tmp_path / "cells")
+    command = [*TINY, "--workers", "1", "--out", str(tmp_path)]
+    assert run("paper", [*command, "--weight", "0.2"]) == 0
+    said = capsys.readouterr().out
+    table = json.loads((folder / "table1.json").read_text(encoding="utf-8"))
+    ours = table["variants"]["continuous, block"]["rows"]["max_position_error_m"][1]
+    (line,) = (line for line in said.splitlines() if "MAX E [m] |" in line)
+    assert line.startswith(f"| MAX E [m] | 5.59e-05 | {ours:.3g} ({ours / 5.59e-5:.3g} times) | ")
+    assert "(erratum 8)" in said
+    assert "less than the heart's 10 s does not close it" in said
+    assert "(erratum 8)" in (tmp_path / "table1_0.2.md").read_text(encoding="utf-8")
+    assert len(list((tmp_path / "cells").iterdir())) == len(list((folder / "cells").iterdir()))
+    assert run("paper", [*command, "--weight", "0.3"]) == 2
+    assert "weight: must be one of 0.1, 0.2, 0.4, " in capsys.readouterr().err
+
+
+def test_a_shortened_run_says_on_the_terminal_what_its_figures_are_not(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("paper", [*TINY, "--workers", "1", "--out", str(folder), "--no-plots"]) == 0
+    assert "so the drift is another, and no figure is the paper's." in capsys.readouterr().out
+
+
 def test_figures_are_drawn_from_the_runs_that_they_name() -> None:
     cases = figure_runs(Scope(duration=2e-3))
     assert list(cases) == [
