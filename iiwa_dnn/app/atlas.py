@@ -25,10 +25,12 @@ def run(options: AtlasOptions) -> int:
     rows = tabulate(cells, run_sweep(options, atlas.measure, cells)[1])
     write_json(options.out / "atlas.json", rows)
     runs = sum(row["seeds"] for row in rows) + len(trials)
+    paths = dict.fromkeys(path for row in rows for path in row["paths"][: row["seeds"]])
+    turns = " in turn" if len(paths) > 1 else ""
     head = (
         f"{runs} runs of {atlas.DURATION:g} s in {time.perf_counter() - began:.0f} s; "
         f"{size.seeds} seeds with the first scheme, {size.others} with the others and at the other "
-        f"budgets, on {', '.join(size.paths)} in turn; errors of each run's second half."
+        f"budgets, on {', '.join(paths)}{turns}; errors of each run's second half."
     )
     print_lines(options, write_report(options.out, size, rows, head, options.plots))
     return 0

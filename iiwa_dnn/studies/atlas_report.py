@@ -163,8 +163,9 @@ def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
     """Judge a claim by pairs of runs with the first scheme at the middle budget.
 
     Returns:
-        The claim, its disturbance, both means and the verdict: ``holds`` or ``does not hold``
-        where the interval of the difference of logarithms says so or a network lost runs; ``tie``.
+        The claim, its disturbance, both networks with their means, and the verdict: ``holds`` or
+        ``does not hold`` where the interval of the difference of logarithms says so or a network
+        lost runs; ``tie``.
     """
     pair = [
         find(rows, network=name, disturbance=claim.disturbance)[0]
@@ -176,7 +177,7 @@ def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
     else:
         sign = compare(*(np.log10(np.maximum(row["residual"], SOLVED)) for row in pair))
     verdict = {-1: "holds", 0: "tie", 1: "does not hold"}[sign]
-    means = [_shown(row) for row in pair]
+    means = [f"{row['network']}: {_shown(row)}" for row in pair]
     return [claim.text, claim.disturbance, *means, verdict]
 
 
@@ -302,7 +303,7 @@ def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list
         ),
         Table(
             "verdicts",
-            "Claims of papers, by the residual of pairs of runs",
+            "Claims of the papers that cards.md names, by the residual of pairs of runs",
             ["claim", "disturbance", "network of the claim", "network beside it", "verdict"],
             [judge(rows, claim) for claim in claims],
         ),

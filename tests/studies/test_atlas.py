@@ -345,7 +345,9 @@ def test_the_command_writes_a_report_and_goes_on_where_it_was(
     rows = json.loads((tmp_path / "a" / "atlas.json").read_text(encoding="utf-8"))
     assert len(rows) == len(FEW) * (2 * len(kinds) + 2) + len(atlas.PERIODS)
     assert all((f"| {name} | " in report) == (name in FEW) for name in atlas.NETWORKS)
-    assert "| A claim | none |" in report
+    assert "| A claim | none | zeroing, Euler: " in report
+    assert " ours " not in report
+    assert ", on heart, circle in turn; errors" in report, "of three paths, as many as seeds"
     assert "A place is formed by pairs of runs with the same seed" in report
     assert (tmp_path / "a" / "atlas.png").stat().st_size > 10_000
     with (tmp_path / "a" / "league.csv").open(encoding="utf-8") as file:
