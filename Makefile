@@ -36,7 +36,7 @@ $(PACKAGES): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRA
 	@echo 'setup: 2.3 GB on disk with all extras, 1.0 GB with EXTRAS=view; the first time takes some minutes'
 	@$(VENV_PYTHON) -m pip install -q --no-compile --disable-pip-version-check -c constraints.txt -e '.[$(EXTRAS)]' & \
 		pip=$$!; seconds=0; while kill -0 $$pip 2>/dev/null; do \
-		printf '\rsetup: %s s, %s MB in $(VENV)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
+		printf '\rsetup: %s s, %s MB in $(VENV) (pip downloads all before it installs)' $$seconds "$$(du -sm $(VENV) 2>/dev/null | cut -f1)"; \
 		sleep 3; seconds=$$((seconds + 3)); done; echo; wait $$pip
 	@touch $@
 
