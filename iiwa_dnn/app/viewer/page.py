@@ -29,8 +29,12 @@ TICK = 1.0 / 30.0
 """Time between two pictures [s]."""
 
 _MODES = ("replay", "live")
-# On a phone viser's controls would cover 60 % of the height.
-_STYLE = '<style>[style*="max-height: 60%"] { max-height: 40% !important }</style>'
+# On a phone viser's controls would cover 60 % of the height, and leave a useless strip beside them.
+_STYLE = """<style>
+[style*="max-height: 60%"] { max-height: 40% !important }
+[style*="max-height: 60%"], [style*="max-height: 60%"] [style*="width: 20em"] {
+    width: 100% !important }
+</style>"""
 
 
 class Session:

@@ -345,13 +345,14 @@ def test_on_a_phone_the_arm_stands_above_the_controls(browser, page, session):
     browser.get(page.address)
     wait_for(lambda: buttons(browser, "Play"), "the page's controls")
 
-    top = browser.execute_script(
+    left, top, width = browser.execute_script(
         "let part = [...document.querySelectorAll('button')].find("
         "button => button.innerText.trim() === 'Play');"
         "while (getComputedStyle(part).position !== 'fixed') part = part.parentElement;"
-        "return part.getBoundingClientRect().top"
+        "let box = part.getBoundingClientRect(); return [box.left, box.top, box.width]"
     )
     assert top > 0.59 * 844  # the scene has more than half
+    assert (left, width) == (0, 390)  # and no strip beside the controls
 
     def seen() -> bool:
         rows, columns = np.nonzero(arm(picture(browser)[: int(top)]))
