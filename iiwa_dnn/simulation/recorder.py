@@ -50,7 +50,6 @@ class Recorder:
         self._controller = controller
         self._settings = settings
         self._steps = steps
-        self._tol = controller.solver.tol
         further = program.target_frames[1:]
         self._frame_ids = [program.robot.frame_id(name) for name in further]
         self._kinematics = Kinematics(program.robot, program.target_frames)
@@ -97,9 +96,10 @@ class Recorder:
         self._add_samples(
             self._done, self.layout.view(first, "placement"), self.layout.view(first, "targets")
         )
+        tol = self._controller.solver.tol
         for name, values in (
-            ("bound_multiplier", self.layout.bound_multipliers(first, self._tol)),
-            ("row_multiplier", self.layout.row_multipliers(first, self._tol)),
+            ("bound_multiplier", self.layout.bound_multipliers(first, tol)),
+            ("row_multiplier", self.layout.row_multipliers(first, tol)),
         ):
             if values.any():
                 self._array(name, m=values.shape[1])[steps] = values
@@ -186,7 +186,8 @@ class Recorder:
 
     def _add_kinds(self, k: int, command: Command) -> None:
         """Note of what kind the active bounds are in step k."""
-        multipliers = self.layout.bound_multipliers(command.row, self._tol)
+        tol = self._controller.solver.tol
+        multipliers = self.layout.bound_multipliers(command.row, tol)
         if multipliers.any():
             kinds = self._names.codes(command.qp, multipliers, command.past)
             self._array("bound_kind")[k] = kinds
