@@ -53,3 +53,8 @@ def describe(limit: Mapping[str, Any]) -> str:
         return f"row {limit['row']} of {limit['part']}{about}"
     end = " limit" if limit["limit"] in KINDS else ""
     return f"joint {limit['joint']} {limit['side']} {limit['limit']}{end}"
+
+
+def unwatched(links: Iterable[str]) -> str:
+    """State which links nothing keeps clear, and why."""
+    return f"nothing keeps these links clear, they have no <collision> geometry: {', '.join(links)}"

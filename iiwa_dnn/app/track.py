@@ -16,6 +16,7 @@ from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, PlantName, TrackOptions
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.references import (
@@ -44,7 +45,7 @@ from iiwa_dnn.schemes import (
     Scheme,
     TipSpeedLimit,
 )
-from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.collisions import avoidance_of, unwatched_by
 from iiwa_dnn.simulation import FrankaPlant, FriPlant, Plant, RealPlant, Simulation
 from iiwa_dnn.studies import paper
 
@@ -192,9 +193,9 @@ def simulation(
         scheme = Scheme(scheme.costs, [*tasks, *further], scheme.limits)
     arguments = {name: getattr(options, name) for name in _ARGUMENTS}
     with warnings.catch_warnings():
-        # The summary says that the start is outside, and a line above that the path is elsewhere.
+        # The summary says that the start is outside, other lines speak of the path and of links.
         warnings.simplefilter("ignore", UserWarning)
-        return Simulation(
+        made = Simulation(
             robot,
             scheme,
             {robot.tip: reference, **others} if others else reference,
@@ -204,6 +205,8 @@ def simulation(
             far_start=True,
             **arguments,
         )
+    print_if_unwatched(scheme, robot)
+    return made
 
 
 def scheme_of(options: TrackOptions) -> Scheme:
@@ -258,6 +261,12 @@ def print_if_elsewhere(reference: Reference, start: Configuration, scheme: Schem
         f"tip{turned}: the arm goes there first; {advice}",
         file=sys.stderr,
     )
+
+
+def print_if_unwatched(scheme: Scheme, robot: Robot) -> None:
+    """Print which links a scheme that avoids collisions does not watch."""
+    if links := unwatched_by(scheme, robot):
+        print(unwatched(links), file=sys.stderr)
 
 
 def refuse_set(options: TrackOptions, name: str, problem: str) -> None:

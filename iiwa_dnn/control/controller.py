@@ -24,6 +24,7 @@ from iiwa_dnn.control.paths import (
     warn_if_lagging,
     warn_if_outside,
     warn_if_unstable,
+    warn_if_unwatched,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, Q
@@ -522,6 +523,7 @@ class Controller:
         state.past[Q] = start.q
         if not state.begun:
             warn_if_unstable(self.program, self.dt, stacklevel=5)
+            warn_if_unwatched(self.scheme, self.robot, stacklevel=5)
         state.begun = True
 
     def warn_if_far(

@@ -9,10 +9,12 @@ from pinocchio import log3
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
-from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
+from iiwa_dnn.schemes.collisions import unwatched_by
 from iiwa_dnn.schemes.motion_limits import largest_gain
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
@@ -88,6 +90,12 @@ def warn_if_lagging(program: StepProgram, mode: str, stacklevel: int) -> None:
             "settled, not on its way: only bounds of the joints are kept at every step"
         )
         warnings.warn(message, stacklevel=stacklevel + 1)
+
+
+def warn_if_unwatched(scheme: object, robot: Robot, stacklevel: int) -> None:
+    """Warn where a scheme avoids collisions, but links have no collision geometry."""
+    if links := unwatched_by(scheme, robot):
+        warnings.warn(unwatched(links), stacklevel=stacklevel + 1)
 
 
 def warn_if_far(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
-from iiwa_dnn.naming import describe
+from iiwa_dnn.naming import describe, unwatched
 from iiwa_dnn.results.failures import INFEASIBLE, failures
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
@@ -20,6 +20,8 @@ Table = Sequence[tuple[str, str, str]]
 
 # Names of the settings in the report; one that is not here keeps its own.
 _SETTINGS = {
+    "joints": "joints, in the order of their numbers",
+    "locked": "locked joints, at [rad]",
     "q_lower": "lower joint limits [rad]",
     "q_upper": "upper joint limits [rad]",
     "dq_max": "velocity limits [rad/s]",
@@ -195,6 +197,7 @@ def write_report(
         _checked(metrics["crosscheck"]),
         *_incidents(metrics.get("incidents")),
         *(f"Nearest pair: {pair}." for pair in _nearest_pair(metrics)),
+        *_unwatched(settings),
         *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
@@ -280,6 +283,12 @@ def _fill(text: str, *values: Mapping[str, Any]) -> str:
 def _nearest_pair(metrics: Mapping[str, Any]) -> list[str]:
     """Name the nearest pair of bodies of a run that avoids collisions."""
     return [_fill(_NEAREST, metrics["collisions"])] if "collisions" in metrics else []
+
+
+def _unwatched(settings: Mapping[str, Any]) -> list[str]:
+    """Name the links of a run that nothing kept clear of obstacles."""
+    links = settings.get("collisions", {}).get("unwatched")  # older records lack it
+    return [f"Beware: {unwatched(links)}."] if links else []
 
 
 def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:

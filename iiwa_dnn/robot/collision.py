@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -23,6 +24,7 @@ import pinocchio as pin
 from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
+from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.obstacles import Box
@@ -144,6 +146,74 @@ def collision_model(robot: Robot) -> CollisionModel:
     for capsule in model.capsules:
         robot.frame_id(capsule.link)
     return model
+
+
+@lru_cache(maxsize=32)
+def unwatched_links(robot: Robot) -> tuple[str, ...]:
+    """Name the moving links that have a body but no collision geometry: no row watches them.
+
+    A link has a body if it is drawn and not held by a capsule of the same joint. If the file draws
+    no link at all, a link with a mass has a body, unless its joint carries a capsule.
+
+    Raises:
+        InvalidInputError, FileError, NotFoundError: As of `collision_model`.
+    """
+    capsules = collision_model(robot).capsules
+    watched = {capsule.link for capsule in capsules}
+    root = ET.fromstring(robot.urdf or "<robot/>")
+    drawn = root.find("link/visual") is not None
+    bare = {}
+    for link in root.findall("link"):
+        name = link.get("name", "")
+        if name not in watched and _joint(robot, name):
+            bare[name] = link
+        else:
+            _drop_visuals(link)  # meshes that need not be read
+    if drawn:
+        return _not_held(robot, capsules, bare, urdf.text_of(root))
+    joints = {_joint(robot, name) for name in watched}
+    masses = {name: link.find("inertial/mass[@value]") for name, link in bare.items()}
+    return tuple(
+        name
+        for name, mass in masses.items()
+        if mass is not None and float(mass.attrib["value"]) and _joint(robot, name) not in joints
+    )
+
+
+def _drop_visuals(link: ET.Element) -> None:
+    for visual in link.findall("visual"):
+        link.remove(visual)
+
+
+def _not_held(
+    robot: Robot, capsules: Iterable[LinkCapsule], links: Mapping[str, ET.Element], text: str
+) -> tuple[str, ...]:
+    """Select the links that are drawn, in a URDF's text, outside of the capsules of their joint."""
+    try:
+        shapes = read_shapes(robot, pin.GeometryType.VISUAL, text)
+    except ValueError:  # a mesh that cannot be read is a body
+        return tuple(name for name, link in links.items() if link.find("visual") is not None)
+    frames = robot.model.frames
+    outside = [
+        frames[shape.parentFrame].name
+        for shape in shapes
+        if not any(_holds(frames[robot.frame_id(each.link)], each, shape) for each in capsules)
+    ]
+    return tuple(dict.fromkeys(outside))
+
+
+def _holds(frame: pin.Frame, capsule: LinkCapsule, shape: pin.GeometryObject) -> bool:
+    """Test whether a shape lies in a capsule of a link's frame, both fixed to the same joint."""
+    if frame.parentJoint != shape.parentJoint:
+        return False
+    shape.geometry.computeLocalAABB()
+    pose = frame.placement.actInv(shape.placement)
+    a = np.array(capsule.a)
+    axis = np.array(capsule.b) - a
+    points = _corners(shape.geometry) @ pose.rotation.T + pose.translation - a
+    along = np.clip(points @ axis / max(float(axis @ axis), 1e-12), 0.0, 1.0)
+    away = np.linalg.norm(points - along[:, np.newaxis] * axis, axis=1)
+    return bool((away <= capsule.radius + 1e-6).all())
 
 
 def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel:

@@ -30,6 +30,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
 from iiwa_dnn.schemes.distances import difference, dot, point_of
 from iiwa_dnn.schemes.parts import Limit
@@ -271,8 +272,13 @@ def avoidance_of(scheme: object) -> CollisionAvoidance | None:
     return next((part for part in limits if isinstance(part, CollisionAvoidance)), None)
 
 
+def unwatched_by(scheme: object, robot: Robot) -> tuple[str, ...]:
+    """Name the links that a scheme which avoids collisions does not watch (`unwatched_links`)."""
+    return () if avoidance_of(scheme) is None else unwatched_links(robot)
+
+
 def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
-    """Return a record's settings ``collisions``: the least distance, obstacles and pairs.
+    """Return a record's settings ``collisions``: least distance, obstacles, pairs, unwatched links.
 
     If the scheme does not avoid collisions, there are none.
     """
@@ -280,8 +286,13 @@ def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
     if part is None:
         return {}
     obstacles = [obstacle.settings() for obstacle in part.obstacles]
-    pairs = part.scene(robot).pairs
-    return {"collisions": {"distance": part.distance, "obstacles": obstacles, "pairs": pairs}}
+    stated = {
+        "distance": part.distance,
+        "obstacles": obstacles,
+        "pairs": part.scene(robot).pairs,
+        "unwatched": unwatched_links(robot),
+    }
+    return {"collisions": stated}
 
 
 def collision_arrays(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.collision import LinkCapsule, collision_model
+from iiwa_dnn.robot.collision import LinkCapsule, collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle
 from iiwa_dnn.schemes.distances import (
@@ -190,7 +191,10 @@ def make_scene(
         name = f"{type(obstacle).__name__} {number + 1}"
         rows += _pairs_of_obstacle(robot, links, shapes, obstacle, starts[number], name)
     if not rows:
-        raise InvalidInputError("obstacles", "there is no pair that could meet", obstacles)
+        bare = unwatched_links(robot)
+        reason = f"; {unwatched(bare)}" if bare else ""
+        problem = f"there is no pair that could meet{reason}"
+        raise InvalidInputError("obstacles", problem, obstacles)
     constants = _constants(robot, damper, shapes, rows, obstacles)
     begin = constants.size - 3 * starts[-1]
     moving = [

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
 
+import iiwa_dnn
 from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
@@ -38,6 +40,26 @@ def test_a_run_keeps_away_and_its_report_says_so(
     assert main([*again, "--out", str(tmp_path / "again")]) == 0
     repeated = Record.load(tmp_path / "again" / "record.npz")
     assert (repeated.q == record.q).all()
+
+
+def test_links_without_collision_geometry_are_told_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = Path(str(iiwa_dnn.load_robot("iiwa7").path)).read_text(encoding="utf-8")
+    root = ET.fromstring(text)
+    for name in ("iiwa7_link_5", "iiwa7_link_6"):
+        link = root.find(f"link[@name='{name}']")
+        assert link is not None
+        for shape in link.findall("collision"):
+            link.remove(shape)
+    (tmp_path / "arm.urdf").write_text(ET.tostring(root, encoding="unicode"), encoding="utf-8")
+    (tmp_path / "obstacles.toml").write_text(FILE, encoding="utf-8")
+    words = ["track", "--robot", str(tmp_path / "arm.urdf"), "--no-plots", "--dt", "5e-3"]
+    words += ["--obstacles", str(tmp_path / "obstacles.toml"), "--duration", "0.01"]
+    main([*words, "--check", "none", "--out", str(tmp_path / "run")])
+    told = "nothing keeps these links clear, they have no <collision> geometry: iiwa7_link_5, iiwa7"
+    assert capsys.readouterr().err.count(told) == 1
+    assert told in (tmp_path / "run" / "report.md").read_text(encoding="utf-8")
 
 
 def test_a_bad_file_is_refused_in_one_line(

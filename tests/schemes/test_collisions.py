@@ -10,7 +10,7 @@ import pytest
 
 import iiwa_dnn
 from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
-from iiwa_dnn.robot.collision import collision_model
+from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
 from iiwa_dnn.schemes.scene import pair_distances
@@ -239,6 +239,70 @@ def test_capsules_hold_the_shapes_of_the_urdf() -> None:
                 away = np.linalg.norm(x - a - along[:, None] * (b - a), axis=1)
                 held |= away <= capsule.radius + 1e-7
         assert held.all()
+
+
+def arm_of(folder: Path, tool: str = "", **bodies: str) -> iiwa_dnn.Robot:
+    """Load an arm of three joints whose links p1, p2, p3 consist of these elements."""
+    text = "<link name='base'/><link name='flange'/><joint name='f' type='fixed'>"
+    text += "<parent link='p3'/><child link='flange'/></joint>"
+    for i, parent in enumerate(("base", "p1", "p2"), 1):
+        text += (
+            f"<link name='p{i}'>{bodies.get(f'p{i}', '')}</link><joint name='j{i}' type='revolute'>"
+            f"<parent link='{parent}'/><child link='p{i}'/><origin xyz='0.3 0 0'/>"
+            "<axis xyz='0 0 1'/><limit lower='-1' upper='1' velocity='1' effort='1'/></joint>"
+        )
+    path = folder / "arm.urdf"
+    path.write_text(f"<robot name='arm'>{text}{tool}</robot>", encoding="utf-8")
+    return iiwa_dnn.load_robot(path, tip="flange")
+
+
+ROD = """<origin xyz="0.1 0 0" rpy="0 1.5708 0"/>
+<geometry><cylinder radius="{}" length="0.2"/></geometry>"""
+DRAWN = f"<visual>{ROD.format(0.03)}</visual>"
+COVER = f"<collision>{ROD.format(0.04)}</collision>"
+MASS = """<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>
+</inertial>"""
+MARK = """<link name="mark"><visual><origin xyz="{} 0 0"/><geometry><box size="0.01 0.01 0.01"/>
+</geometry></visual></link>
+<joint name="m" type="fixed"><parent link="p3"/><child link="mark"/></joint>"""
+
+
+@pytest.mark.parametrize(
+    ("bodies", "tool", "unwatched"),
+    [
+        ({"p1": DRAWN + COVER, "p2": DRAWN + COVER, "p3": DRAWN + COVER}, "", ()),
+        ({"p1": DRAWN, "p2": DRAWN + COVER, "p3": DRAWN + MASS}, "", ("p1", "p3")),
+        ({"p2": MASS, "p3": DRAWN + COVER}, "", ()),  # in a file that draws
+        ({"p1": MASS, "p2": MASS + COVER}, "", ("p1",)),
+        ({"p3": COVER}, MARK.format(0.1), ()),  # within the rod of its joint
+        ({"p3": COVER}, MARK.format(0.5), ("mark",)),
+        ({"p1": "<visual><geometry><mesh filename='none.stl'/></geometry></visual>", "p2": COVER},
+         "", ("p1",)),
+    ],
+)  # fmt: skip
+def test_links_without_collision_geometry_are_named(
+    bodies: dict[str, str], tool: str, unwatched: tuple[str, ...], tmp_path: Path
+) -> None:
+    assert unwatched_links(arm_of(tmp_path, tool, **bodies)) == unwatched
+
+
+@pytest.mark.parametrize("name", ["fr3", "iiwa7", "iiwa7_dual"])
+def test_arms_of_the_package_are_watched_whole(name: str) -> None:
+    assert unwatched_links(iiwa_dnn.load_robot(name)) == ()
+
+
+def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path) -> None:
+    robot = arm_of(tmp_path, p1=DRAWN, p2=DRAWN + COVER, p3=DRAWN)
+    avoidance = iiwa_dnn.CollisionAvoidance([BALL])
+    still = iiwa_dnn.Still().anchored(iiwa_dnn.Configuration(robot, np.zeros(3)))
+    paper = iiwa_dnn.DoubleIndicator(orientation="none", extra_limits=(avoidance,))
+    with pytest.warns(UserWarning, match="no <collision> geometry: p1, p3$") as caught:
+        record = iiwa_dnn.simulate(robot, paper, still, np.zeros(3), dt=0.01, duration=0.02)
+    assert len(caught) == 1
+    assert record.settings["collisions"]["unwatched"] == ["p1", "p3"]
+    bare = arm_of(tmp_path, p1=DRAWN, p2=DRAWN)
+    with pytest.raises(iiwa_dnn.InvalidInputError, match=r"could meet; .* geometry: p1, p2$"):
+        avoidance.scene(bare)
 
 
 @pytest.mark.parametrize(
