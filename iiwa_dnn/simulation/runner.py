@@ -203,6 +203,8 @@ class Simulation:
             **collision_settings(controller.scheme, robot),
             "versions": {name: version(name) for name in (*_PACKAGES, *self._plant.packages)},
             "robot": robot.name,
+            "joints": robot.joint_names,
+            "locked": dict(zip(robot.locked, robot.q_locked, strict=True)) or None,
             "tip": program.target_frames[0],
             "frames": list(program.target_frames[1:]),
             "q_lower": robot.q_lower,

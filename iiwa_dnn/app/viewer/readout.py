@@ -1,6 +1,7 @@
 """Words and bars on the page, as HTML."""
 
 import html
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -34,16 +35,21 @@ class Readout:
         """Show named values, and the joint positions q (n,) [rad] of a robot."""
         self._age = 0.0
         self._facts.content = facts(values)
-        self._bars.content = joint_bars(q, robot.q_lower, robot.q_upper)
+        self._bars.content = joint_bars(q, robot.q_lower, robot.q_upper, robot.joint_names)
 
 
-def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
+def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray, names: Sequence[str]) -> str:
     """Draw joint positions q (n,) [rad] as marks on bars from limit to limit, infinite for none.
 
-    A mark near a limit, or beyond it, is red; returns HTML, one row a joint.
+    A mark near a limit, or beyond it, is red; returns HTML, one row a joint. Its label is q and its
+    number, and its name too, unless all names (n,) end in the numbers.
     """
     rows = []
-    for i, (angle, low, high) in enumerate(zip(q, lower, upper, strict=True), 1):
+    numbered = all(re.search(rf"\D{i}$", name) for i, name in enumerate(names, 1))
+    width = 18 if numbered else 90
+    bars = zip(names, q, lower, upper, strict=True)
+    for i, (name, angle, low, high) in enumerate(bars, 1):
+        label = f"q{i}" if numbered else f"q{i} {html.escape(name)}"
         fraction = 0.5
         ends = ("-", "-")
         if np.isfinite(low) and np.isfinite(high):
@@ -52,7 +58,8 @@ def joint_bars(q: FloatArray, lower: FloatArray, upper: FloatArray) -> str:
         left = 100.0 * float(np.clip(fraction, 0.0, 1.0))
         color = "#d6001c" if abs(2.0 * fraction - 1.0) > _NEAR else "#1c7ed6"
         rows.append(
-            f'<div style="{_ROW}"><span style="width:18px">q{i}</span>'
+            f'<div style="{_ROW}"><span style="width:{width}px;'
+            f'overflow-wrap:anywhere">{label}</span>'
             f'<span style="width:40px;text-align:right;color:#888">{ends[0]}</span>'
             '<span style="position:relative;flex:1;height:8px;background:#e5e7ec;'
             'border-radius:4px">'
