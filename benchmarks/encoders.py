@@ -86,8 +86,8 @@ def main() -> None:
         for path, (reference, duration) in references.items()
         for case, (noise, model) in CASES.items()
     ]
-    head = ["path", "case", "largest error m", "mean error m", "steps not ok", "not limited"]
-    print(markdown_table([*head, "delay s", "jerk rad/s³"], rows))
+    head = ["path", "case", "largest error m", "mean error m", "steps not ok"]
+    print(markdown_table([*head, "neither", "delay s", "jerk rad/s³"], rows))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """The reasons why a run is not a success, in plain words: from its record or its metrics."""
 
+import math
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -27,6 +28,12 @@ INFEASIBLE = "no joint velocity inside the limits fulfils the task"
 """Beginning of a reason: a program of the continuous mode was shown to have no solution."""
 
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
+
+_NOISY = {
+    "jerk": (math.sqrt(6.0), 2, "dddq_max", "rad/s^3"),
+    "acceleration": (math.sqrt(2.0), 1, "ddq_max", "rad/s^2"),
+}
+"""Of a limit: factor of gain times noise over a power of the period, the power, setting, unit."""
 
 _show = partial(number, form=".3g", unknown="not a number")
 
@@ -115,7 +122,7 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
             f"{steps} without a solution ({counts}){'' if fell_back else at}; "
             f"{often}in the way: {_blocking(metrics)}{_far_start(record)}"
         )
-    return [*reasons, *_slowed(metrics)]
+    return [*reasons, *_slowed(metrics), *_noise(metrics)]
 
 
 def _slowed(metrics: Mapping[str, Any]) -> list[str]:
@@ -127,7 +134,8 @@ def _slowed(metrics: Mapping[str, Any]) -> list[str]:
     took = number(metrics["duration_s"])
     needed = _needed(metrics)
     off = _off_path(incidents)
-    return [f"slowed: path time {path_time} s after {took} s{needed}{off}"]
+    remedy = _remedy(incidents)
+    return [f"slowed: path time {path_time} s after {took} s{needed}{off}{remedy}"]
 
 
 def _needed(metrics: Mapping[str, Any]) -> str:
@@ -153,6 +161,61 @@ def _off_path(incidents: Mapping[str, Any]) -> str:
     row = max(incidents["blocking_rows"], key=lambda row: row["steps"])
     never = ", which no longer time mends" if off > FAR else ""
     return f"; {describe(row)} kept the tip up to {_show(off)} m off the path{never}"
+
+
+def _remedy(incidents: Mapping[str, Any]) -> str:
+    """State what helps if a row of collision avoidance was in the way of most slowed steps."""
+    rows = incidents.get("blocking_rows", ())  # older metrics lack it
+    steps = [row["steps"] for row in rows if row.get("part") == "CollisionAvoidance"]
+    if 2 * max(steps, default=0) <= incidents["slow_steps"]:
+        return ""
+    return (
+        "; move the obstacle or the path, keep less distance, "
+        "or take the policy relax, which is in time and leaves the path"
+    )
+
+
+def _noise(metrics: Mapping[str, Any]) -> list[str]:
+    """State how much jerk or acceleration the feedback of measurement noise asks for.
+
+    Nothing if that is at most a tenth of the limit, or another kind of limit was more often in the
+    way. The standard deviations are those of docs/noise.md.
+    """
+    settings = metrics["settings"]
+    gain = _gain(settings)
+    blocks = metrics["incidents"]["blocking"]
+    unfiltered = settings.get("noise_at") == "measurement" and settings.get("estimator") is None
+    if not (unfiltered and gain and blocks):
+        return []
+    kind = max(blocks, key=lambda limit: limit["steps"])["limit"]
+    if kind not in _NOISY:
+        return []
+    factor, order, setting, unit = _NOISY[kind]
+    asked = factor * gain * settings["noise"] / settings["dt"] ** order
+    limits_set = [limit for limit in settings.get(setting, ()) if limit is not None]
+    least = min(limits_set, default=math.inf)
+    if asked <= 0.1 * least:
+        return []
+    return [
+        f"the measurement noise of {settings['noise']:g} rad asks for a {kind} of {_show(asked)} "
+        f"{unit} (standard deviation), the limit is {least:g}: lower the gain, take a longer "
+        "period, or filter the measurement (docs/noise.md)"
+    ]
+
+
+def _gain(settings: Mapping[str, Any]) -> float:
+    """Return the largest feedback gain of a run's tasks [1/s], 0 if its scheme does not say it."""
+    scheme = settings.get("scheme")
+    if not isinstance(scheme, Mapping):
+        return 0.0
+    rate = 1.0 / float(settings["dt"])
+    gains = [0.0]
+    for task in scheme.get("tasks", [scheme]):
+        gain = task.get("gain", task.get("position_gain", 0.0))
+        if task.get("tracking") == "next":
+            gain = min(task.get("next_gain") or rate, rate)
+        gains.append(float(gain))
+    return max(gains)
 
 
 def _blocking(metrics: Mapping[str, Any]) -> str:
@@ -211,7 +274,7 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
         answers = "answer" if missing == 1 else "answers"
         reasons.append(
             f"{missing:,} reference {answers} missing or not accurate enough to judge by "
-            f"({check['solver']})"
+            f"({check['solver']}); the check 'proof' needs no other solver"
         )
     if check["steps_checked"] < steps:
         reasons.append(f"only {check['steps_checked']:,} of {_count(steps)} were checked")

@@ -275,6 +275,18 @@ def test_limits_on_acceleration_and_jerk(tmp_path: Path) -> None:
     assert np.abs(np.diff(arrays["q"], 3, axis=0)).max() < 300.0 * 1e-9
 
 
+@pytest.mark.parametrize("noise", ["1e-4", "1e-6"])
+def test_noise_that_a_jerk_limit_does_not_let_through_is_named(
+    noise: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--noise", noise, "--noise-at", "measurement", "--jerk-limit", "100", "--no-plots"]
+    words += ["--dt", "2e-3", "--duration", "0.1", "--check", "none", "--out", str(tmp_path)]
+    assert call(words) == int(noise == "1e-4")
+    # sqrt(6) 10.2 1/s 1e-4 rad / (2e-3 s)^2
+    said = "the measurement noise of 0.0001 rad asks for a jerk of 625 rad/s^3"
+    assert (said in capsys.readouterr().out) == (noise == "1e-4")
+
+
 def test_datasheet_limits(tmp_path: Path) -> None:
     _, metrics = run(tmp_path, "--joint-limit", "datasheet", "--check", "none")
     degrees = np.rad2deg(metrics["settings"]["q_upper"])
@@ -297,6 +309,9 @@ def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
     position, _ = dh_pose(np.insert(record["q"], 2, 0.0, axis=1))
     np.testing.assert_allclose(record["position"], position, rtol=0, atol=1e-12)
     assert metrics["max_position_error_m"] < 1e-5
+    report = (tmp_path / "report.md").read_text(encoding="utf-8")
+    assert "| locked joints, at [rad] | iiwa7_joint_3 = 0 |" in report
+    assert " | iiwa7_joint_1 iiwa7_joint_2 iiwa7_joint_4 iiwa7_joint_5" in report
 
 
 def test_a_second_arm_draws_too_and_report_and_figures_tell_its_errors(

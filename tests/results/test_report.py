@@ -243,6 +243,20 @@ def test_active_and_blocking_rows_are_said(tmp_path):
     assert "in the way: row 2 of CollisionAvoidance" in report
 
 
+@pytest.mark.parametrize(
+    ("part", "slowed"), [("CollisionAvoidance", 4), ("CollisionAvoidance", 3), ("TipSpeedLimit", 4)]
+)
+def test_a_remedy_is_named_where_an_obstacle_slows_most_steps(part, slowed):
+    record = make_record(
+        blocking_rows=np.where(np.arange(10) < slowed, 1, 0)[:, np.newaxis],
+        action=np.where(np.arange(10) < 6, 2, 0),
+        fraction=np.where(np.arange(10) < 6, 0.5, 1.0),
+        settings={"rows": [{"part": part, "row": 1}]},
+    )
+    (reason,) = [text for text in failures(record) if text.startswith("slowed: ")]
+    assert ("or take the policy relax" in reason) == (part == "CollisionAvoidance" and slowed > 3)
+
+
 def test_network_and_integrators_are_among_the_settings(tmp_path):
     named = {
         "network": {"name": "ProjectionNetwork", "rho": 9e-5},
