@@ -29,6 +29,18 @@ def test_badly_scaled_programs_settle(kind: str) -> None:
         assert iiwa_dnn.solve_problem(problem, tol=1e-6).is_optimal(1.1e-6), seed
 
 
+def test_a_second_start_ends_where_the_programs_own_tolerance_is_reached() -> None:
+    """One below rounding in its coordinates let the state wander away from the answer again."""
+    for seed in range(10):
+        qp = programs.badly_scaled(np.random.default_rng([8, seed]), "cost times 1e6")
+        n, m, p = qp.sizes
+        state = np.zeros(3 * n + m + p)
+        point = np.empty(2 * n + m + p)
+        systems, _, *residuals = settle_equilibrated(qp, state, point, 1e-6, 1000)
+        assert max(residuals) <= 1e-6
+        assert systems < 300
+
+
 # The cost is 1e8 and more: gaps of 1e-8 and 1e-6 are one rounding.
 @pytest.mark.parametrize(("P", "G", "h"), [(1e8, -1.0, -1.0), (1.0, -1e-5, -1.0)])
 def test_one_variable_and_one_row_of_another_scale(P: float, G: float, h: float) -> None:

@@ -14,23 +14,39 @@ from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle_program
 from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import point_of_state
+from iiwa_dnn.qp.residuals import point_of_state, within
 
 STRICTER = 1e-2
-"""Tolerance in these coordinates over that in the program's own: residuals grow on the way back."""
+"""Least tolerance in these coordinates over that in the program's own: residuals grow on the way
+back."""
 
 
 def settle_equilibrated(
     qp: QP, state: Vector, point: Vector, tol: float, max_systems: int
 ) -> Settled:
-    """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s."""
+    """Settle `state` (3n + m + p,) from a cold start; arguments as `Integrator.settle`'s.
+
+    The tolerance in these coordinates becomes stricter until the program's own is reached: one that
+    is lost in rounding from the beginning would let the state wander away from its answer again.
+    """
     scaled, units, cost = equilibrate(qp)
-    state[:] = 0.0
-    strict = STRICTER * tol * min(1.0, cost)
-    step = ImplicitEuler.long_step
-    systems, time, *_ = settle_program(scaled, state, point, strict, max_systems, step)
-    state *= units
-    return systems, time, *point_of_state(qp.data, *qp.sizes, state, point)
+    inner = np.zeros(state.size)
+    least = STRICTER * tol * min(1.0, cost)
+    strict = tol
+    systems = 0
+    time = 0.0
+    while True:
+        left = max_systems - systems
+        taken, passed, *_ = settle_program(
+            scaled, inner, point, strict, left, ImplicitEuler.long_step
+        )
+        systems += taken
+        time += passed
+        state[:] = inner * units
+        residuals = point_of_state(qp.data, *qp.sizes, state, point)
+        if within(*residuals, tol) or strict <= least or systems >= max_systems:
+            return systems, time, *residuals
+        strict *= 0.1
 
 
 def equilibrate(qp: QP) -> tuple[QP, Vector, float]:
