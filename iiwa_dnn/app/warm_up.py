@@ -1,9 +1,8 @@
 """``warm-up``: every compiled function that a run needs, compiled once and kept on disk."""
 
 import time
-from dataclasses import replace
 from itertools import product
-from typing import get_args
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -49,7 +48,9 @@ from iiwa_dnn.schemes import (
 )
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
-from iiwa_dnn.studies.runs import HeartRun
+from iiwa_dnn.studies.runs import HeartRun, measure
+
+_FOLLOWERS: tuple[Literal["computed", "implicit"], ...] = ("computed", "implicit")
 
 PATHS = (
     Circle(),
@@ -88,8 +89,8 @@ def run(options: WarmUpOptions) -> int:
         bar.update()
         _warm_up_parts(robot)
         bar.update()
-        for substeps in ("computed", "implicit"):
-            replace(HeartRun(duration=1e-3), substeps=substeps).run()
+        for substeps in _FOLLOWERS:
+            measure(HeartRun(duration=1e-3, substeps=substeps).settings())
         bar.update()
         qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=np.ones(1))
         prove(qp, solve_problem(qp, sharpen=True))
