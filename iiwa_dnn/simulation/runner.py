@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, fields
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -51,6 +52,8 @@ _REHEARSED = 5
 _INTERRUPTS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
+
+_version = cache(version)  # reading the versions of all takes as long as a hundred steps
 
 Progress = Callable[[int], object]
 
@@ -201,7 +204,7 @@ class Simulation:
             **self._options.disturbance.settings(),
             "check": self._check.settings(),
             **collision_settings(controller.scheme, robot),
-            "versions": {name: version(name) for name in (*_PACKAGES, *self._plant.packages)},
+            "versions": {name: _version(name) for name in (*_PACKAGES, *self._plant.packages)},
             "robot": robot.name,
             "joints": robot.joint_names,
             "locked": dict(zip(robot.locked, robot.q_locked, strict=True)) or None,

@@ -106,6 +106,7 @@ def test_after_the_warm_up_runs_compile_nothing(
         (("--noise", "0.01", "--filter-window", "10", "--orientation", "none"), 0),
         (("--mode", "continuous", "--orientation", "block"), 0),
         (("--motion", "rk4", "--kinetic", "inertia", "--reference", "circle"), 0),
+        (("--reference", "cone", "--check", "proof"), 0),
         (("--scale", "0.1", "--speed", "0.01"), 1),  # steps without a solution
         (("--acceleration-limit", "10", "--obstacles", str(tmp_path / "ball.toml")), 0),
     )

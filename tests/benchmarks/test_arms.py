@@ -11,15 +11,17 @@ from pink.tasks import JointVelocityTask
 import iiwa_dnn
 from benchmarks import arms
 from benchmarks.arms import OWN, PEERS, compare, measure_scene
+from helpers_bench import loops_in_this_process
 from scripts.arm_scenes import scene
 
 DT = 5e-3
 
 
 @pytest.mark.parametrize("name", ["pink arm_ur5", "mink dual_iiwa"])
-def test_the_motion_is_pinks(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(arms, "PEERS", PEERS[:1])
-    rows, _ = measure_scene(name, 300, DT, {})
+def test_the_motion_is_pinks(name: str) -> None:
+    with loops_in_this_process() as patch:
+        patch.setattr(arms, "PEERS", PEERS[:1])
+        rows, _ = measure_scene(name, 300, DT, {})
     found = {row["name"]: row for row in rows}
     all_along, arrived, joints = compare(found[OWN], found[PEERS[0]])
     # On the way, at their velocity limits, the two weigh a missing velocity in other coordinates.

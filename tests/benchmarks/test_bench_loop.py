@@ -13,13 +13,15 @@ from benchmarks import control, process
 from benchmarks.cli import bench_loop
 from benchmarks.control import LOOPS, measure_own_part, measure_runs, measure_steps
 from benchmarks.loop_report import markdown
+from helpers_bench import loops_in_this_process
 from iiwa_dnn import IiwaDnnError
 
 
 @pytest.fixture(scope="module")
 def measured() -> tuple[list[dict[str, Any]], list[str]]:
     """A hundred steps of everyone that is installed."""
-    return measure_steps(100, 1e-3)
+    with loops_in_this_process():
+        return measure_steps(100, 1e-3)
 
 
 def test_everyone_follows_the_heart(measured: tuple[list[dict[str, Any]], list[str]]) -> None:

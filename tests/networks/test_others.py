@@ -199,6 +199,7 @@ def test_singular_cost_settles_but_not_with_the_dual_network() -> None:
     assert caught.value.argument == "P"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("network", OTHERS, ids=repr)
 def test_random_programs_are_solved_or_not_claimed(network: Network) -> None:
     found, solver = 0, DNNSolver(network)

@@ -70,6 +70,7 @@ def test_settle_time_is_the_integral_of_one_over_phi_or_above(activation: Activa
             assert activation.settle_time(1e9) <= activation.time
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("activation", SETTLING, ids=repr)
 def test_settles_below_its_bound_from_1000_random_starts(activation: Activation) -> None:
     rng = np.random.default_rng(0)
@@ -193,6 +194,7 @@ def test_formulas_are_consistent_stable_and_of_their_order(formula) -> None:
     assert radius(1.01 * formula.limit) > 1.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("formula", "exact"), [*((f, True) for f in FORMULAS), (TAYLOR3, False), (TAYLOR4, False)]
 )

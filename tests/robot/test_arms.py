@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -76,8 +77,10 @@ def test_locked_and_tip_can_be_chosen_besides() -> None:
     assert robot.locked == ("panda_finger_joint1", "panda_finger_joint2", "panda_joint3")
 
 
-@pytest.mark.parametrize("orientation", ["so3", "none"])
-@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize(
+    ("name", "orientation"),
+    [*product(ARMS, ["so3"]), *product(["ur5", "panda", "tiago_mobile"], ["none"])],
+)
 def test_the_heart_with_redundancy_zero_one_three_and_four(name: str, orientation: str) -> None:
     robot = load_robot(name)
     q0 = robot.start_posture()

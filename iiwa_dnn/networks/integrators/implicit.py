@@ -105,8 +105,8 @@ class ImplicitEuler(Integrator):
         """
         count = max(1, math.ceil(duration / self.step))
         length = duration / count
+        check_size("state", state, network.state_size(qp))
         if is_projection(network) and not network.primal_projection:
-            check_size("state", state, network.state_size(qp))
             systems = advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
         else:
             systems = pseudo_transient.advance(network.flow(qp), state, length, count, 1e-12)

@@ -31,7 +31,9 @@ def page():
     robot = papers_robot()
     record = heart_without_physics(robot)
     page = Page(robot, record.q[0], record, port=0)
-    page.server.scene.configure_default_lights(cast_shadow=False)  # slow without a graphics card
+    # Slow without a graphics card: at each loading, ten seconds to prepare the reflections alone.
+    page.server.scene.configure_default_lights(cast_shadow=False)
+    page.server.scene.configure_environment_map(hdri=None)
     stop = threading.Event()
     loop = threading.Thread(target=page.run, args=(stop.is_set,))
     loop.start()
