@@ -55,7 +55,7 @@ view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the a
 	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
 test: $(STAMP)  ## run the tests
-	$(VENV_PYTHON) -m pytest -p no:nbmake -n auto --dist worksteal $(ARGS)
+	$(VENV_PYTHON) -m pytest -n auto --dist worksteal $(ARGS)
 
 # One process: two would compile everything twice. A long test tries values, not other code.
 bounds: $(PACKAGES)  ## enter all compiled code with every index checked
