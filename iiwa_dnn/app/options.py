@@ -162,7 +162,7 @@ class PaperOptions(SweepOptions):
     quick: bool = False  # run 1 s and 5 seeds only, to see that all works
     seeds: _Int = None  # number of noises in Table II (100)
     duration: _Float = None  # length of each run [s] (10)
-    weight: _Float = None  # run the column of Table I with this weight xi alone
+    weight: _Float = None  # run the column of Table I of this weight xi, in [0, 1], alone
     dask: _Name = None  # address of a Dask scheduler, or local to start one here
     plots: bool = True  # draw the figures
 
