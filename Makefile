@@ -41,7 +41,7 @@ $(PACKAGES): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRA
 	@touch $@
 
 $(STAMP): $(PACKAGES)
-	@echo 'setup: compiling the numerical code, once; a minute or two'
+	@echo 'setup: compiling the numerical code, once; two or three minutes'
 	$(VENV_PYTHON) -m iiwa_dnn warm-up
 	@touch $@
 

@@ -56,7 +56,9 @@ def load_problem(path: Path) -> QP:
             arrays = {name: archive[name] for name in archive.files}
     except AttributeError as error:
         raise FileError(path, "not an .npz archive") from error
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except ValueError as error:  # neither an archive nor an array; numpy speaks of pickles
+        raise FileError(path, "cannot be read as .npz: not an archive of plain arrays") from error
+    except (OSError, EOFError, zipfile.BadZipFile) as error:
         raise FileError(path, f"cannot be read as .npz: {one_line(error)}") from error
     for name in arrays:
         if name not in ARRAYS:
@@ -73,7 +75,7 @@ def _lines(qp: QP, solution: qpsolvers.Solution, options: SolveOptions) -> list[
     n, m, p = qp.sizes
     extras = solution.extras
     lines = [
-        f"program    {n} variables, {m} inequalities, {p} equalities",
+        f"program    variables {n}, inequalities {m}, equalities {p}",
         f"status     {extras['status']} after {extras['iterations']:,} linear systems",
         f"residuals  {_residuals(solution)}, tolerance {options.tol:.3g}",
     ]

@@ -9,10 +9,8 @@ import numpy as np
 from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import WarmUpOptions
 from iiwa_dnn.control.controller import Mode
-from iiwa_dnn.networks import ZeroingNetwork
 from iiwa_dnn.networks.batch import solve_batch
 from iiwa_dnn.networks.problems import solve_problem
-from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP
 from iiwa_dnn.qp.compiling import WATCH
 from iiwa_dnn.qp.proof import prove
@@ -27,25 +25,8 @@ from iiwa_dnn.references import (
     Tilting,
     Waypoints,
 )
-from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import (
-    AccelerationLimits,
-    AxisTask,
-    CenterOfMassTask,
-    CollisionAvoidance,
-    DoubleIndicator,
-    ElbowAngleTask,
-    JointCouplingTask,
-    JointLimits,
-    KineticEnergy,
-    PoseTask,
-    PositionTask,
-    PostureTask,
-    RelativePoseTask,
-    RemoteCenterTask,
-    Scheme,
-    TipSpeedLimit,
-)
+from iiwa_dnn.robot import Configuration, load_robot
+from iiwa_dnn.schemes import AccelerationLimits, CollisionAvoidance, DoubleIndicator
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies.runs import HeartRun, measure
@@ -72,7 +53,7 @@ def run(options: WarmUpOptions) -> int:
     q0 = robot.start_posture()
     reference = Heart().anchored(Configuration(robot, q0))
     kinds = list(product(get_args(Orientation), get_args(Mode)))
-    with progress_bar(len(kinds) + 4, "program", options.quiet) as bar:
+    with progress_bar(len(kinds) + 3, "program", options.quiet) as bar:
         for orientation, mode in kinds:
             scheme = DoubleIndicator(orientation=orientation)
             simulate(
@@ -87,37 +68,13 @@ def run(options: WarmUpOptions) -> int:
             scheme = DoubleIndicator(extra_limits=limits)
             simulate(slow, scheme, reference, q0, dt=1e-2, duration=0.1)
         bar.update()
-        _warm_up_parts(robot)
-        bar.update()
         for substeps in _FOLLOWERS:
             measure(HeartRun(duration=1e-3, substeps=substeps).settings())
         bar.update()
         qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=np.ones(1))
         prove(qp, solve_problem(qp, sharpen=True))
         solve_batch(qp.P, qp.q, A=qp.A, b=qp.b)
-        DNNSolver(ZeroingNetwork()).advance(qp, 1e-3)
         bar.update()
     if not options.quiet:
         print(f"compiled in {time.perf_counter() - began:.0f} s")
     return 0
-
-
-def _warm_up_parts(robot: Robot) -> None:
-    """Lay out a program of every part that the runs do without, and one with priorities."""
-    conf = Configuration(robot, robot.start_posture())
-    first, second = robot.frame_names[1:3]
-    joints = dict.fromkeys(robot.joint_names, 1.0)
-    tasks = [
-        PoseTask(),
-        RelativePoseTask(first, second),
-        RemoteCenterTask((0.0, 0.0, 1.0)),
-        PostureTask(joints),
-        JointCouplingTask(joints),
-        CenterOfMassTask(),
-        ElbowAngleTask(),
-    ]
-    limits = [JointLimits(), TipSpeedLimit(1.0)]
-    reference = Still().anchored(conf)
-    Scheme([KineticEnergy()], [task.anchored(conf) for task in tasks], limits).program(robot)
-    levels = [PositionTask(priority=1), AxisTask(priority=2), PostureTask(joints, priority=3)]
-    simulate(robot, Scheme([KineticEnergy()], levels), reference, conf.q, duration=1e-3)

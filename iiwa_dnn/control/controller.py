@@ -415,6 +415,7 @@ class Controller:
         """
         state = self._state
         posture = checks.finite_array("q", q, (self.robot.dof,))
+        checks.finite("t", t)
         start = Configuration(self.robot, posture)
         begun = state.begun
         self.anchor(start)

@@ -227,7 +227,8 @@ class CrossCheck:
             return "refused"
         info = solution.extras.get("info")
         status = getattr(info, "status", "solved" if solution.found else "not solved")
-        return str(getattr(status, "name", status)).lower().replace("_", " ")
+        words = str(getattr(status, "name", status)).lower().replace("_", " ")
+        return words.removeprefix(f"{name} ")
 
     def _solve(self, name: str, problem: qpsolvers.Problem) -> qpsolvers.Solution | None:
         """Ask one reference; returns None where it refuses the problem."""

@@ -301,7 +301,8 @@ def _too_near(collisions: Mapping[str, Any] | None) -> list[str]:
     if collisions is None or collisions["missing_m"] <= LIMIT_SLACK:
         return []
     text = "{second} and {first} came as near as {least_distance_m:.6g} m at t = {time_s:.6g} s"
-    return [f"{text}, allowed {{allowed_m:.6g}} m".format_map(collisions)]
+    start = "; begin farther away: another start posture" if collisions["time_s"] == 0.0 else ""
+    return [f"{text}, allowed {{allowed_m:.6g}} m{start}".format_map(collisions)]
 
 
 def _torques(metrics: Mapping[str, Any], record: Record | None) -> list[str]:

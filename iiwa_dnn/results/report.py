@@ -241,7 +241,8 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     for pair in _nearest_pair(metrics):
         lines["nearest pair"] = pair
     lines["wall time"] = lines.pop("wall time")
-    lines["verdict"] = "\n".join(reasons) or _success(metrics)
+    verdict = reasons or [_success(metrics)]
+    lines["verdict"] = "\n".join([*verdict, *_unwatched(metrics["settings"])])
     width = max(map(len, lines)) + 2
     aligned = (
         f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()

@@ -231,6 +231,10 @@ def build_model(path: Path, root: ET.Element) -> pin.Model:
         raise FileError(path, "no joint of the robot moves")
     if not all(np.isfinite(frame.placement.homogeneous).all() for frame in model.frames):
         raise FileError(path, "an <origin> is not finite")
+    for joint in root.findall("joint"):
+        moves = joint.get("type") in ("revolute", "prismatic")
+        if moves and not _vector(joint.find("axis"), "xyz", "1 0 0").any():
+            raise FileError(path, f"joint {joint.get('name')!r}: its <axis> is zero")
     return model
 
 

@@ -21,7 +21,7 @@ from iiwa_dnn.control.controller import Controller, Mode
 from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.control.paths import References, by_frame
 from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.errors import InvalidInputError, NoSolutionError
+from iiwa_dnn.errors import InvalidInputError, NoSolutionError, suggestion
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.compiling import WATCH
@@ -93,6 +93,10 @@ class RunOptions:
         A `VelocityDisturbance` as `disturbance` is that of the velocity alone.
         """
         names = [each.name for each in fields(cls)]
+        known = [*names, *(each.name for each in fields(Disturbance))]
+        for name in options:
+            if name not in known:
+                raise TypeError(f"a run has no argument {name!r}{suggestion(name, known)}")
         own = {name: options[name] for name in names if name in options}
         others = {name: options[name] for name in options if name not in own}
         disturbance = own.pop("disturbance", None)

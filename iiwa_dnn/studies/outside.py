@@ -35,7 +35,8 @@ def find_part(kind: str, name: str, known: Mapping[str, T]) -> T:
         raise NotFoundError(kind, name, known)
     module = _import(kind, place)
     if not hasattr(module, attribute):
-        raise NotFoundError(f"{kind} in {place}", attribute, vars(module))
+        own = [each for each in vars(module) if not each.startswith("_")]
+        raise NotFoundError(f"{kind} in {place}", attribute, own)
     found: T = getattr(module, attribute)
     return found
 

@@ -58,8 +58,23 @@ def test_links_without_collision_geometry_are_told_once(
     words += ["--obstacles", str(tmp_path / "obstacles.toml"), "--duration", "0.01"]
     main([*words, "--check", "none", "--out", str(tmp_path / "run")])
     told = "nothing keeps these links clear, they have no <collision> geometry: iiwa7_link_5, iiwa7"
-    assert capsys.readouterr().err.count(told) == 1
+    out, err = capsys.readouterr()
+    assert err.count(told) == 1
+    assert f"Beware: {told}" in out.partition("\nverdict ")[2]
     assert told in (tmp_path / "run" / "report.md").read_text(encoding="utf-8")
+
+
+def test_a_start_that_is_too_near_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = iiwa_dnn.load_robot("iiwa7")
+    elbow = iiwa_dnn.Configuration(robot, robot.start_posture()).frame("iiwa7_link_4").position
+    ball = f'[[obstacle]]\nshape = "sphere"\ncenter = {elbow.tolist()}\nradius = 0.05\n'
+    (tmp_path / "near.toml").write_text(ball, encoding="utf-8")
+    words = ["track", "--dt", "5e-3", "--duration", "0.01", "--check", "none", "--no-plots"]
+    words += ["--obstacles", str(tmp_path / "near.toml"), "--out", str(tmp_path / "run")]
+    assert main(words) == 1
+    assert "begin farther away: another start posture" in capsys.readouterr().out
 
 
 def test_a_bad_file_is_refused_in_one_line(

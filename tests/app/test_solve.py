@@ -90,7 +90,7 @@ def test_both_solvers_say_what_they_make_of_a_program_without_a_solution(
     crossed = {"P": np.eye(1), "q": [0.0], "G": [[1.0], [-1.0]], "h": [-1.0, -1.0]}
     assert run("solve", [saved(tmp_path, **crossed), "--check", "both"]) == 1
     lines = dict(line.split(None, 1) for line in capsys.readouterr().out.splitlines())
-    assert lines["proxqp"] == "proxqp primal infeasible"
+    assert lines["proxqp"] == "primal infeasible"
     assert lines["osqp"] == "primal infeasible"
 
 

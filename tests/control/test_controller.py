@@ -154,6 +154,11 @@ def test_a_bad_period_is_named(dt: float) -> None:
         controller_of(SCHEME, mode="continuous", dt=dt)
 
 
+def test_a_time_that_is_no_number_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"^t\b"):
+        controller_of(SCHEME).step(PAPER_Q0, np.nan)
+
+
 @pytest.mark.parametrize("jitter", [0.0, 1e-13, 3e-4])
 def test_targets_sampled_ahead_are_those_of_the_time_asked_for(jitter: float) -> None:
     robot = load_robot("iiwa7")

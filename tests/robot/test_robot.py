@@ -157,6 +157,13 @@ def test_continuous_joints_have_no_position_limits(written, limit: str, velocity
     np.testing.assert_allclose(turned[0], [np.cos(100.0), 0.0, np.sin(100.0)], atol=1e-12)
 
 
+def test_an_axis_that_is_zero_is_named(written) -> None:
+    text = one_joint(LIMIT, "revolute")
+    assert 'xyz="0 1 0"' in text
+    with pytest.raises(FileError, match=r"joint '\w+': its <axis> is zero"):
+        load_robot(written(text.replace('xyz="0 1 0"', 'xyz="0 0 0"')))
+
+
 def test_limits_that_are_not_given(written) -> None:
     robot = load_robot(written(one_joint('<limit effort="1" velocity="0"/>')))
     assert [robot.q_lower, robot.q_upper, robot.dq_max] == [-np.inf, np.inf, np.inf]

@@ -606,5 +606,5 @@ def test_a_home_of_the_wrong_length_is_named() -> None:
 
 
 def test_an_argument_that_does_not_exist_is_refused() -> None:
-    with pytest.raises(TypeError, match="wieght"):
-        run(wieght=0.2)
+    with pytest.raises(TypeError, match="'nois'; did you mean: noise"):
+        run(nois=0.2)
