@@ -48,7 +48,7 @@ ROTATION_LENGTH = 0.5
 """Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m].
 
 About an arm's forearm. With a fifth of it, more arms rest at joints' limits with the tip in place
-and the hand turned away; with twice as much, more stay away from the place."""
+and the hand turned away; with twice as much, no more arrive."""
 
 
 class GainTask(Task):
