@@ -11,7 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 EXTRAS ?= robots,sim,view,dev
 
 .DEFAULT_GOAL := help
-.PHONY: help force packages setup heart physics view test bounds realtime notebooks docs coverage lint format types clean
+.PHONY: help force packages setup heart physics view test bounds notebooks docs coverage lint format types clean
 
 help:  ## list what can be made
 	@echo 'usage: make TARGET [PYTHON=python3.12] [EXTRAS=view] [ARGS="..."]'
@@ -59,12 +59,8 @@ test: $(STAMP)  ## run the tests
 
 # One process: two would compile everything twice. A long test tries values, not other code.
 bounds: $(PACKAGES)  ## enter all compiled code with every index checked
-	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -q -m "not long and not realtime" \
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(VENV_PYTHON) -m pytest -q -m "not long" \
 		tests/control tests/networks tests/qp tests/references tests/schemes tests/test_kernels.py
-
-# Of these only a short test is in `make test`: with other work on the cores commands are lost.
-realtime: $(STAMP)  ## drive a Franka arm's server, of the package index, at 1 kHz
-	$(VENV_PYTHON) -m pytest -m realtime tests/simulation $(ARGS)
 
 notebooks: $(STAMP)  ## run the notebooks; what they print is not kept
 	$(VENV_PYTHON) -m pytest --nbmake --nbmake-timeout=60 notebooks $(ARGS)
