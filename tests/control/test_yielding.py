@@ -33,6 +33,7 @@ from iiwa_dnn import (
     simulate,
 )
 from iiwa_dnn.control.policies import Action, Policy
+from iiwa_dnn.control.relaxed import note_blocking
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
 from iiwa_dnn.simulation.noise import VelocityDisturbance
 from judge_limits import Breach, breaches
@@ -246,3 +247,11 @@ def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
         assert command.ok
         velocity = start.jacobian[:3] @ command.dq
         np.testing.assert_allclose(velocity, [10.2e-5, 0.0, 0.0], atol=1e-8)
+
+
+def test_rounding_beside_a_row_in_the_way_blocks_nothing() -> None:
+    rows = [1.0, 0.0]
+    bounds = [1e-12, -1e-12, 0.0]
+    blocking = np.full(4, 9.0)
+    note_blocking(np.array([0.0, 0.0, 0.0, *rows, *bounds]), 2, 2, 1, blocking)
+    assert blocking.tolist() == [0.0, 0.0, 1.0, 0.0]
