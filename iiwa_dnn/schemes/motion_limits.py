@@ -350,10 +350,18 @@ def _jerk_bounds(
         # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
         # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
         rest = REST * unit * dt
-        eased = max(min(upper, max(EASE * (above - rest) / dt, lb)), lower)
-        lower = min(max(lower, min(-EASE * (below - rest) / dt, ub)), eased)
+        eased = max(min(upper, max(_easing(above - rest, dt), lb)), lower)
+        lower = min(max(lower, min(-_easing(below - rest, dt), ub)), eased)
         upper = eased
     return lower, upper
+
+
+@compiled
+def _easing(room: float, dt: float) -> float:
+    """Compute the velocity [rad/s] of the way over `room` [rad]; what is rounding is not gone."""
+    if abs(room) <= ROUNDING:
+        return 0.0
+    return EASE * room / dt
 
 
 @compiled

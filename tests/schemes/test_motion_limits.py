@@ -249,6 +249,21 @@ def test_a_joint_pressed_against_its_limit_comes_to_rest(
     assert np.abs(commands[-50:]).max() < 1e-12
 
 
+def test_rounding_beside_a_limit_does_not_keep_a_braking_joint_from_rest() -> None:
+    dt, upper, jerk = 1e-3, 2.5, 1200.0
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        q = upper - 10.0 ** rng.uniform(-8.0, -4.0)
+        last = before = rng.uniform(-1e-4, 1e-4)
+        for _ in range(3000):
+            lb, ub = joint_bounds(last, before, upper - q, q + upper, (2.0, 7.5, jerk, 7.5), dt)
+            last, before = braking(last, lb, ub, jerk, dt), last
+            q += dt * last
+            if last == 0.0 == before:
+                break
+        assert last == 0.0  # 1e-15 rad/s moves nothing, and is no rest
+
+
 @pytest.mark.parametrize("jerk", [INF, 200.0])
 def test_braking_ends_at_rest_in_few_steps(jerk: float) -> None:
     dt, A = 1e-3, 8.0
