@@ -54,8 +54,9 @@ physics: $(STAMP)  ## draw the heart in physics, with pictures and a video; in r
 view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the arm live
 	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
+# As many processes as cores: threads of theirs would only wait for each other.
 test: $(STAMP)  ## run the tests
-	$(VENV_PYTHON) -m pytest -n auto --dist worksteal $(ARGS)
+	OPENBLAS_NUM_THREADS=1 $(VENV_PYTHON) -m pytest -n auto --dist worksteal $(ARGS)
 
 # One process: two would compile everything twice. A long test tries values, not other code.
 bounds: $(PACKAGES)  ## enter all compiled code with every index checked
