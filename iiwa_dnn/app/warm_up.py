@@ -1,5 +1,6 @@
 """``warm-up``: every compiled function that a run needs, compiled once and kept on disk."""
 
+import gc
 import time
 from itertools import product
 from typing import Literal, get_args
@@ -48,6 +49,7 @@ PATHS = (
 def run(options: WarmUpOptions) -> int:
     """Take a few steps of every kind of run, solve a program and a batch; return 0."""
     began = time.perf_counter()
+    gc.set_threshold(100_000)  # what numba makes mostly stays; looking through it takes a twentieth
     WATCH.quiet = True
     robot = load_robot("iiwa7")
     q0 = robot.start_posture()
