@@ -12,7 +12,7 @@ from iiwa_dnn.control.policies import Action, Resolution
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
-from iiwa_dnn.qp.layout import Sizes, compiled, offsets
+from iiwa_dnn.qp.layout import Sizes, inlined, offsets
 from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -64,7 +64,7 @@ ROW_VIEWS = types.BaseTuple.from_types((_V, _V, _V, _V, MATRIX, _V, _V, _V, MATR
 """numba's type of `RowViews`, for a `Signature`."""
 
 
-@compiled
+@inlined
 def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     """Make the views of a row, (width,); the columns are those of `RowLayout`."""
     at_point = (n + m + p) * (n + 1) + 2 * n

@@ -43,6 +43,11 @@ def compiled(function: Function) -> Function:
     return cast(Function, njit(**_OPTIONS)(function))
 
 
+def inlined(function: Function) -> Function:
+    """Compile a function as `compiled`, as a part of each that calls it."""
+    return cast(Function, njit(**_OPTIONS, forceinline=True)(function))
+
+
 def released(function: Function) -> Function:
     """Compile a function as `compiled`; Python's other threads go on while it is called."""
     return cast(Function, njit(**_OPTIONS, nogil=True)(function))
@@ -100,7 +105,7 @@ QP_VIEWS = types.BaseTuple.from_types(
 """numba's type of `QPViews`, for a `Signature`."""
 
 
-@compiled
+@inlined
 def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
     """Make the views of a program's flat array, `QP.data` (size,), which has to outlive them."""
     data = borrowed(data)
@@ -116,6 +121,21 @@ def qp_views(data: Vector, n: int, m: int, p: int) -> QPViews:
         data[at_b:at_lb],
         data[at_lb : at_lb + n],
         data[at_lb + n : at_lb + 2 * n],
+    )
+
+
+@inlined
+def borrowed_views(qp: QPViews) -> QPViews:
+    """Return the views of a program without counting who uses them."""
+    return QPViews(
+        borrowed(qp.P),
+        borrowed(qp.q),
+        borrowed(qp.G),
+        borrowed(qp.h),
+        borrowed(qp.A),
+        borrowed(qp.b),
+        borrowed(qp.lb),
+        borrowed(qp.ub),
     )
 
 

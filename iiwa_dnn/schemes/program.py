@@ -18,7 +18,7 @@ from iiwa_dnn.checks import read_only
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.qp.compiling import Signature, borrowed
-from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.layout import QPViews, compiled, inlined, qp_views
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.acceleration import (
@@ -454,7 +454,7 @@ _enter_task = TASK.enter
 _enter_limit = LIMIT.enter
 
 
-@compiled
+@inlined
 def borrowed_arrays(arrays: ProgramArrays) -> ProgramArrays:
     """Return the arrays of a program without counting who uses them."""
     return ProgramArrays(
@@ -468,7 +468,7 @@ def borrowed_arrays(arrays: ProgramArrays) -> ProgramArrays:
     )
 
 
-@compiled
+@inlined
 def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
     """Make the views of one instant, from past (3, dof) and targets (k, 18) of `write_program`."""
     return StepViews(
@@ -503,7 +503,7 @@ def write_program(
     assemble(step_views(arrays, past, targets, t), arrays, qp)
 
 
-@compiled
+@inlined
 def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
     """Write the rows of all parts with a kernel into a program; arguments as `write_program`."""
     table = arrays.table

@@ -55,8 +55,10 @@ from iiwa_dnn.qp.layout import (
     QPViews,
     Triple,
     Vector,
+    borrowed_views,
     check_size,
     compiled,
+    inlined,
     qp_views,
     released,
 )
@@ -171,7 +173,7 @@ def _same(values: Vector, others: Vector) -> bool:
     return k == values.size
 
 
-@compiled
+@inlined
 def _linear_rate(
     qp: QPViews,
     s: Vector,
@@ -199,10 +201,10 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         [rho], and the residuals of `point`.
     """
     work = np.empty(4 * s.size + condensed_size(qp))  # several take as long as some rows
-    return _settle(qp, constants, s, point, work)
+    return _settle(borrowed_views(qp), borrowed(constants), borrowed(s), borrowed(point), work)
 
 
-@compiled
+@inlined
 def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vector) -> Settled:
     """Settle as `settle` says, in `work` (4 size + condensed_size,), which the caller owns."""
     tol = constants[TOLERANCE]

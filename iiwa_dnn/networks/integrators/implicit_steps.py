@@ -43,7 +43,7 @@ from iiwa_dnn.qp.dense import (
     row_dot,
     rows_dot,
 )
-from iiwa_dnn.qp.layout import ONE, Matrix, QPViews, Vector, compiled, larger
+from iiwa_dnn.qp.layout import ONE, Matrix, QPViews, Vector, compiled, inlined, larger
 
 LOOSE = 0.3
 EXACT = 1e-3
@@ -70,7 +70,7 @@ class Condensed(NamedTuple):
     values: Vector
 
 
-@compiled
+@inlined
 def condensed_size(qp: QPViews) -> int:
     """Count the numbers of a `Condensed`."""
     n = qp.q.size
@@ -78,7 +78,7 @@ def condensed_size(qp: QPViews) -> int:
     return 2 * n * n + 2 * m + 2 * n + qp.b.size + m + 2 * n
 
 
-@compiled
+@inlined
 def condensed(qp: QPViews, work: Vector) -> Condensed:
     """Lay the arrays of a program out in `work` (condensed_size,), with A^T A in `gram`."""
     n = qp.q.size
@@ -103,7 +103,7 @@ def condensed(qp: QPViews, work: Vector) -> Condensed:
     return matrix
 
 
-@compiled
+@inlined
 def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
     """Write the condensed matrix of the active set for a step [rho] into `matrix.K`.
 
@@ -123,7 +123,7 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
         matrix.K[i, i] += 1.0 / step + step * bounds
 
 
-@compiled
+@inlined
 def linear_step(
     qp: QPViews,
     s: Vector,
@@ -169,7 +169,7 @@ def linear_step(
     return True
 
 
-@compiled
+@inlined
 def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
     """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
     n = qp.q.size
@@ -183,7 +183,7 @@ def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
         values[first + n + i] = -x[i]
 
 
-@compiled
+@inlined
 def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
     """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
     n = qp.q.size
