@@ -180,7 +180,7 @@ def _bounds(rng: np.random.Generator, x: Vector, active: int) -> tuple[Vector, V
     ub = x + 1e-3 + rng.exponential(size=n)
     z_box = np.zeros(n)
     for i in rng.permutation(n)[:active]:
-        z_box[i] = rng.exponential() * rng.choice([-1.0, 1.0])
+        z_box[i] = rng.exponential() * (2.0 * rng.integers(2) - 1.0)
         if z_box[i] > 0.0:
             ub[i] = x[i]
         else:

@@ -1,6 +1,7 @@
 """Many programs at once: the same answers as one by one, and faults that name the program."""
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 
 import numpy as np
 import pytest
@@ -56,10 +57,14 @@ def test_a_program_without_a_solution_is_not_found_and_spoils_no_other() -> None
     assert (batch.iterations <= 1000).all()
 
 
-def spoil(name: str, value: np.ndarray) -> dict[str, np.ndarray]:
+@cache
+def sound(count: int) -> dict[str, np.ndarray]:
     rng = np.random.default_rng(2)
-    qps = [known_qp(rng, 3, 1, 1, inequalities=2)[0] for _ in range(300)]
-    return {**stacked(qps), name: value}
+    return stacked([known_qp(rng, 3, 1, 1, inequalities=2)[0] for _ in range(count)])
+
+
+def spoil(name: str, value: np.ndarray, count: int = 300) -> dict[str, np.ndarray]:
+    return {**{field: array.copy() for field, array in sound(count).items()}, name: value}
 
 
 @pytest.mark.parametrize("name", FIELDS)
@@ -88,16 +93,16 @@ def test_a_bad_value_is_named_and_spoils_no_other_program(name: str) -> None:
         ("P", [[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "symmetric"),
         ("P", np.diag([1.0, 1.0, -1e-3]), "semidefinite"),
         ("P", np.ones((4, 4)), "shape"),
-        ("q", np.zeros((300, 0)), "empty"),
+        ("q", np.zeros((20, 0)), "empty"),
         ("q", "text", "numbers"),
         ("G", None, "missing"),
         ("b", None, "missing"),
-        ("h", np.zeros((299, 2)), "299 programs"),
-        ("G", np.zeros((300, 2, 4)), "shape"),
+        ("h", np.zeros((19, 2)), "19 programs"),
+        ("G", np.zeros((20, 2, 4)), "shape"),
         ("G", np.zeros(3), "shape"),
-        ("h", np.zeros((300, 3)), "shape"),
-        ("A", np.zeros((300, 1, 2)), "shape"),
-        ("b", np.zeros((300, 2)), "shape"),
+        ("h", np.zeros((20, 3)), "shape"),
+        ("A", np.zeros((20, 1, 2)), "shape"),
+        ("b", np.zeros((20, 2)), "shape"),
         ("lb", np.full(3, 1e3), "exceeds"),
         ("lb", np.full(3, np.inf), "NaN or inf"),
         ("ub", np.full(3, -np.inf), "NaN or -inf"),
@@ -108,7 +113,7 @@ def test_a_bad_value_is_named_and_spoils_no_other_program(name: str) -> None:
 )
 def test_bad_input_names_the_argument(name: str, value: object, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message) as caught:
-        solve_batch(**spoil(name, value))
+        solve_batch(**spoil(name, value, 20))
     assert caught.value.argument == name
 
 

@@ -1,7 +1,8 @@
 """Degenerate, badly scaled and large programs, each judged by qpsolvers' residuals."""
 
+import multiprocessing
+import os
 import signal
-import subprocess
 import sys
 
 import numpy as np
@@ -93,54 +94,43 @@ def test_rounding_of_single_precision_in_the_cost_is_no_error(kind: str) -> None
         iiwa_dnn.solve_problem(qpsolvers.Problem(P - 2.0 * np.eye(10), problem.q))
 
 
-PRELUDE = """
-import os, signal, sys, numpy as np, iiwa_dnn
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
-rng = np.random.default_rng(0)
-"""
+FORK = multiprocessing.get_context("fork")
 
 
-def run(code: str) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        [sys.executable, "-c", PRELUDE + code], stdout=subprocess.PIPE, text=True
-    )
-
-
-@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="fork")
 def test_a_forked_child_may_use_the_batch_solver_too() -> None:
-    child = run(
-        """
-P, q = np.eye(3), rng.standard_normal((1000, 3))
-iiwa_dnn.solve_batch(P, q)
-child = os.fork()
-if child == 0:
-    os._exit(0 if iiwa_dnn.solve_batch(P, q).found.all() else 3)
-sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
-"""
-    )
-    assert child.wait(timeout=60.0) == 0
+    P, q = np.eye(3), np.random.default_rng(0).standard_normal((1000, 3))
+
+    def solve() -> None:
+        assert iiwa_dnn.solve_batch(P, q).found.all()
+
+    solve()
+    child = FORK.Process(target=solve, daemon=True)
+    child.start()
+    child.join(60.0)
+    assert child.exitcode == 0
 
 
-@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="signals")
 def test_an_interrupt_ends_a_long_settle() -> None:
     # A tolerance below rounding: the whole budget is used up, for minutes.
-    child = run(
-        """
-n = 300
-G, h, q = rng.standard_normal((2 * n, n)), np.ones(2 * n), rng.standard_normal(n)
-qp = iiwa_dnn.QP(np.eye(n), q, G, h)
-solver = iiwa_dnn.DNNSolver(tol=1e-9)
-solver.solve(qp)  # compiled
-solver = iiwa_dnn.DNNSolver(tol=1e-30, settler=iiwa_dnn.ImplicitEuler(max_steps=100_000))
-print("begun", flush=True)
-solver.solve(qp)
-"""
-    )
-    assert child.stdout is not None
-    assert child.stdout.readline() == "begun\n"
-    with pytest.raises(subprocess.TimeoutExpired):
-        child.wait(timeout=1.0)
-    child.send_signal(signal.SIGINT)
-    assert child.wait(timeout=20.0) in (1, 130, -signal.SIGINT)
+    n, rng, begun = 300, np.random.default_rng(0), FORK.Event()
+    qp = QP(np.eye(n), rng.standard_normal(n), rng.standard_normal((2 * n, n)), np.ones(2 * n))
+
+    def settle() -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job ignores it
+        solver = DNNSolver(tol=1e-30, settler=iiwa_dnn.ImplicitEuler(max_steps=100_000))
+        begun.set()
+        with pytest.raises(KeyboardInterrupt):
+            solver.solve(qp)
+
+    DNNSolver().solve(QP(np.eye(2), np.ones(2)))  # compiled
+    child = FORK.Process(target=settle, daemon=True)
+    child.start()
+    assert begun.wait(20.0)
+    child.join(0.5)
+    assert child.is_alive()
+    assert child.pid is not None
+    os.kill(child.pid, signal.SIGINT)
+    child.join(20.0)
+    assert child.exitcode == 0

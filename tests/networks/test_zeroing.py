@@ -77,13 +77,13 @@ def test_settles_below_its_bound_from_1000_random_starts(activation: Activation)
     starts = 10.0 ** rng.uniform(-2, 3, (1000, 1)) * rng.standard_normal((1000, 4))
     errors = np.array([error_of(LINEAR, start) for start in starts])
     rates = ZeroingNetwork(activation=activation).flow(LINEAR).rates
-    moved = np.array([MATRIX @ rates(start) for start in starts])
-    wanted = activation(errors)
+    moved = np.array([MATRIX @ rates(start) for start in starts[:100]])
+    wanted = activation(errors[:100])
     assert (np.abs(moved + wanted) <= 1e-8 * np.abs(wanted).max(axis=1, keepdims=True)).all()
-    # So each entry is on its own: midpoint steps that take 3 % of it away, until it is 1e-7.
+    # So each entry is on its own: midpoint steps that take 6 % of it away, until it is 1e-7.
     e, time = np.abs(errors), np.zeros_like(errors)
     while (left := e > 1e-7).any():
-        step = np.where(left, 0.03 * e / activation(e), 0.0)
+        step = np.where(left, 0.06 * e / activation(e), 0.0)
         e, time = e - step * activation(e - 0.5 * step * activation(e)), time + step
     bounds = [activation.settle_time(largest) for largest in np.abs(errors).max(axis=1)]
     assert (time.max(axis=1) <= 1.001 * np.array(bounds)).all()
@@ -200,7 +200,7 @@ def test_formulas_are_consistent_stable_and_of_their_order(formula) -> None:
 )
 def test_the_residual_is_of_the_declared_order(formula, exact: bool) -> None:
     program, periods, largest = MovingProgram(), [], []
-    for count in (250, 500, 1000):
+    for count in (250, 400, 640):
         tau = 2.0 / count
         network = ZeroingNetwork(rho=tau / (0.4 * formula.limit))
         solver, worst = TrackingSolver(network, formula), 0.0
