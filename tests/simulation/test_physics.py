@@ -40,7 +40,7 @@ def nominal(robot) -> Record:
 
 @pytest.fixture(scope="module")
 def disturbed(robot) -> Record:
-    return heart_in_physics(robot, disturbances=Disturbances.typical(), seed=1)
+    return heart_in_physics(robot, disturbances=Disturbances.typical(), duration=5.0, seed=1)
 
 
 def limits_are_kept(record: Record) -> bool:
@@ -88,16 +88,16 @@ def test_all_disturbances_but_the_push(disturbed):
 
 @pytest.mark.parametrize("force", [(0.0, 10.0, 0.0), (10.0, 0.0, -10.0)])
 def test_back_within_a_second_after_the_push(robot, disturbed, force):
-    push = Push(force, start=1.0, duration=0.2)
+    push = Push(force, start=0.4, duration=0.2)
     disturbances = Disturbances.typical(push)
-    record = heart_in_physics(robot, disturbances=disturbances, duration=2.6, seed=1)
+    record = heart_in_physics(robot, disturbances=disturbances, duration=2.0, seed=1)
     error, t = distance(record), record.t
     assert error[t >= push.start + push.duration + 1.0].max() < 1e-3
     # Pushed, and not only disturbed.
     shift = np.linalg.norm(record.position - disturbed.position[: t.size], axis=1)
     assert shift[t < push.start].max() == 0.0
     assert shift.max() > 1e-4
-    moved = record.position[1200] - disturbed.position[1200]
+    moved = record.position[600] - disturbed.position[600]
     assert moved @ np.array(force) > 0.0
     assert limits_are_kept(record)
 
@@ -112,14 +112,13 @@ def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
         ]
         return int(np.argmin(misfits))
 
-    prompt = heart_in_physics(robot, duration=0.4)
-    late = heart_in_physics(robot, duration=0.4, disturbances=Disturbances(delay=7))
+    prompt = heart_in_physics(robot, duration=0.2)
+    late = heart_in_physics(robot, duration=0.2, disturbances=Disturbances(delay=7))
     assert lag(late) == lag(prompt) + 7
 
 
-@pytest.mark.parametrize("seed", [0, 3])
-def test_the_bound_holds_for_other_seeds(robot, seed):
-    record = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=seed, duration=2.5)
+def test_the_bound_holds_for_another_seed(robot):
+    record = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=3, duration=2.5)
     assert distance(record).max() <= 2e-3
     assert limits_are_kept(record)
 
@@ -172,7 +171,7 @@ def test_policies_decide_in_physics_too(robot, policy):
 
 def test_noise_filter_and_estimator_act_in_physics_too(robot):
     # Measured through a filter that knows the encoders' noise, the command is calmer.
-    noisy = {"disturbances": Disturbances(encoder_noise=1e-4), "duration": 0.5, "seed": 2}
+    noisy = {"disturbances": Disturbances(encoder_noise=1e-4), "duration": 0.25, "seed": 2}
     plain = heart_in_physics(robot, **noisy)
     filtered = heart_in_physics(
         robot, estimator=NoiseModel(velocity=1e-3, measurement=1e-4), **noisy

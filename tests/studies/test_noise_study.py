@@ -14,24 +14,28 @@ from iiwa_dnn.simulation import VelocityDisturbance
 from iiwa_dnn.studies import noise_study, paper
 
 
-def values(kind: str, means: str, seed: int = 0, duration: float = 1.3) -> dict[str, float]:
-    cell = {"disturbance": kind, "countermeasure": means, "seed": seed, "duration": duration}
+def values(kind: str, means: str, duration: float) -> dict[str, float]:
+    cell = {"disturbance": kind, "countermeasure": means, "seed": 0, "duration": duration}
     return noise_study.measure(cell).values
 
 
-def test_the_chosen_gain_cuts_the_papers_noise_at_little_roughness() -> None:
+def test_the_chosen_gain_cuts_the_papers_noise_at_little_roughness(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(noise_study, "SETTLED_AFTER", 0.3)  # three times 1 / gain
     kind = "white, the paper's"
-    plain = values(kind, "none")
-    helped = values(kind, "gain")
+    plain = values(kind, "none", duration=0.6)
+    helped = values(kind, "gain", duration=0.6)
     assert helped["mse_m2"] < 0.1 * plain["mse_m2"]
     # Beside the noise's own roughness: sigma sqrt(4 / pi) / dt.
     assert helped["command_roughness"] < 0.02 * 0.01 * np.sqrt(4.0 / np.pi) / 1e-4
 
 
 def test_a_constant_bias_is_gone_after_two_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(paper, "DT", 2e-4)
-    assert values("constant", "none")["last_error_m"] > 1e-3
-    for means in ("gain and integral", "Kalman with bias"):
+    monkeypatch.setattr(paper, "DT", 1e-3)
+    assert values("constant", "none", duration=1.3)["last_error_m"] > 1e-3
+    for means, dt in (("gain and integral", 1e-3), ("Kalman with bias", 2.5e-4)):
+        monkeypatch.setattr(paper, "DT", dt)
         assert values("constant", means, duration=2.0)["last_error_m"] < 1e-6
 
 
@@ -43,7 +47,7 @@ def test_the_integral_leaves_of_a_constant_what_its_equation_says() -> None:
     record = run(
         scheme,
         still,
-        dt=1e-4,
+        dt=1e-3,
         duration=t,
         integral_gain=gain**2 / 4.0,
         disturbance=VelocityDisturbance(bias=bias),
@@ -59,11 +63,12 @@ def test_the_script_writes_a_report_and_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(paper, "DT", 1e-3)
+    monkeypatch.setattr(noise_study, "SETTLED_AFTER", 0.1)
     few = {"COUNTERMEASURES": ("none", "gain"), "DISTURBANCES": ("constant", "white, the paper's")}
     for table, names in few.items():
         whole = getattr(noise_study, table)
         monkeypatch.setattr(noise_study, table, {name: whole[name] for name in names})
-    arguments = ["--seeds", "2", "--duration", "1.1", "--workers", "1", "--out", str(tmp_path)]
+    arguments = ["--seeds", "2", "--duration", "0.2", "--workers", "1", "--out", str(tmp_path)]
     assert main(["noise", *arguments]) == 0
     first = capsys.readouterr().out
     assert first.count("| gain |") == len(noise_study.DISTURBANCES)

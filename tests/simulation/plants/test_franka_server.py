@@ -152,7 +152,7 @@ def prepare() -> Iterator[Prepare]:
         path = iiwa_dnn.Heart() if reference is None else reference
         extra = (*LIMITS, *limits)
         scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=extra)
-        arguments = {"dt": 1e-3, "duration": 0.7, "check": iiwa_dnn.CrossCheck(()), **options}
+        arguments = {"dt": 1e-3, "duration": 0.5, "check": iiwa_dnn.CrossCheck(()), **options}
         anchored = path.anchored(start) if not isinstance(path, iiwa_dnn.MovingTarget) else path
         return iiwa_dnn.Simulation(robot, scheme, anchored, start.q, plant=plant, **arguments)
 
@@ -224,7 +224,7 @@ def test_an_obstacle_in_the_way_is_not_touched(server: Any, prepare: Prepare) ->
     ball = iiwa_dnn.Sphere(start.position + [0.0, 0.25, 0.0], 0.08)
     avoidance = iiwa_dnn.CollisionAvoidance([ball], distance=0.03)
     line = iiwa_dnn.Line((0.0, 0.25, 0.0), period=3.0)
-    record = completed(prepare(line, limits=[avoidance], duration=2.0))
+    record = completed(prepare(line, limits=[avoidance], duration=1.2))
     assert record.distance is not None
     assert 0.02 < record.distance.min() < 0.06  # it came near, by the encoders
 
@@ -234,10 +234,10 @@ def test_a_hand_that_jumps(server: Any, prepare: Prepare) -> None:
 
     start = iiwa_dnn.Configuration(ROBOT, iiwa_dnn.FrankaPlant(HOST).posture)
     hand = iiwa_dnn.MovingTarget(start, speed=0.4, rate=1.0)
-    for k in range(5):
+    for k in range(3):
         shift = rng.uniform(-0.15, 0.15, 3)
-        threading.Timer(0.4 * k + 0.5, hand.set, [start.position + shift]).start()
-    record = completed(prepare(hand, duration=2.5))
+        threading.Timer(0.3 * k + 0.3, hand.set, [start.position + shift]).start()
+    record = completed(prepare(hand, duration=1.4))
     assert np.ptp(record.position, axis=0).max() > 0.02
 
 

@@ -53,7 +53,7 @@ def test_it_holds_still_with_the_arms_weight(robot):
 
 def test_it_reaches_what_the_commands_add_up_to(robot):
     torques, arm = loop(robot)
-    time = PERIOD * np.arange(2000)
+    time = PERIOD * np.arange(1000)
     commands = 0.3 * np.sin(np.pi * time)[:, None] * np.array([1, -0.5, 1, 0.5, -1, 0.5, 2.0])
     for command in commands:
         torques.command(command)
@@ -86,14 +86,14 @@ def test_torques_stay_within_the_limits_and_it_does_not_wind_up(robot):
     torques, _ = loop(robot)
     limit = torque_limits(robot)
     largest = np.zeros(7)
-    for _ in range(3000):  # held fast, while it is told to go on and on
+    for _ in range(1000):  # held fast, while it is told to go on and on
         torques.command(np.full(7, 1.5))
         for _ in range(4):
             largest = np.maximum(largest, np.abs(torques.torque(START)))
     assert (largest <= limit).all()
     assert largest[1] == limit[1]
     arm = Arm(robot, START)
-    for _ in range(2000):  # let go: it comes to rest within the leash
+    for _ in range(1000):  # let go: it comes to rest within the leash
         torques.command(np.zeros(7))
         for _ in range(4):
             arm.step(torques.torque(arm.q))
