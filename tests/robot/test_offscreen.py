@@ -64,7 +64,7 @@ def test_each_library_that_is_there_draws(library, tmp_path):
     if not offscreen.opens(library):
         pytest.skip(f"no {library}: on Debian, apt-get install libosmesa6 libegl1 libgl1")
     record = tmp_path / "record.npz"
-    heart_without_physics(papers_robot(), 500).save(record)
+    heart_without_physics(papers_robot(), 50).save(record)
     result = run_python(
         "from iiwa_dnn import Record, load_robot\n"
         "from iiwa_dnn.results.pictures import ArmRenderer\n"

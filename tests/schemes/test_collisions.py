@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ import pytest
 
 import iiwa_dnn
 from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
-from iiwa_dnn.robot.collision import collision_model, unwatched_links
+from iiwa_dnn.robot import collision
+from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
 from iiwa_dnn.schemes.scene import pair_distances
@@ -135,7 +137,8 @@ def test_random_motion_never_comes_too_near(name: str, seed: int, moving: bool) 
 
 def test_the_elbow_gives_way_and_the_heart_stays() -> None:
     avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
-    free = iiwa_dnn.simulate(ROBOT, scheme(), heart(), START, dt=5e-3)
+    unchecked = iiwa_dnn.CrossCheck(())
+    free = iiwa_dnn.simulate(ROBOT, scheme(), heart(), START, dt=5e-3, check=unchecked)
     record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=5e-3)
     metrics = iiwa_dnn.compute_metrics(record)
     assert iiwa_dnn.failures(record) == []
@@ -153,7 +156,10 @@ def test_the_elbow_gives_way_and_the_heart_stays() -> None:
 
 def test_rows_begin_and_end_without_chatter() -> None:
     avoidance = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
-    record = iiwa_dnn.simulate(ROBOT, scheme(avoidance), heart(), START, dt=1e-3, duration=4.0)
+    record = iiwa_dnn.simulate(
+        ROBOT, scheme(avoidance), heart(), START, dt=1e-3, duration=4.0,
+        check=iiwa_dnn.CrossCheck(()),
+    )  # fmt: skip
     active = (record.row_multiplier > 0).any(axis=1).astype(int)
     assert active.any()
     assert np.abs(np.diff(active)).sum() <= 4  # on and off, not again and again
@@ -256,6 +262,12 @@ def arm_of(folder: Path, tool: str = "", **bodies: str) -> iiwa_dnn.Robot:
     return iiwa_dnn.load_robot(path, tip="flange")
 
 
+@pytest.fixture
+def few_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Look for pairs that may meet in few postures: these tests are about the links."""
+    monkeypatch.setattr(collision, "make_collision_model", partial(make_collision_model, samples=9))
+
+
 ROD = """<origin xyz="0.1 0 0" rpy="0 1.5708 0"/>
 <geometry><cylinder radius="{}" length="0.2"/></geometry>"""
 DRAWN = f"<visual>{ROD.format(0.03)}</visual>"
@@ -281,17 +293,21 @@ MARK = """<link name="mark"><visual><origin xyz="{} 0 0"/><geometry><box size="0
     ],
 )  # fmt: skip
 def test_links_without_collision_geometry_are_named(
-    bodies: dict[str, str], tool: str, unwatched: tuple[str, ...], tmp_path: Path
+    bodies: dict[str, str],
+    tool: str,
+    unwatched: tuple[str, ...],
+    tmp_path: Path,
+    few_samples: None,
 ) -> None:
     assert unwatched_links(arm_of(tmp_path, tool, **bodies)) == unwatched
 
 
 @pytest.mark.parametrize("name", ["fr3", "iiwa7", "iiwa7_dual"])
-def test_arms_of_the_package_are_watched_whole(name: str) -> None:
+def test_arms_of_the_package_are_watched_whole(name: str, few_samples: None) -> None:
     assert unwatched_links(iiwa_dnn.load_robot(name)) == ()
 
 
-def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path) -> None:
+def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path, few_samples: None) -> None:
     robot = arm_of(tmp_path, p1=DRAWN, p2=DRAWN + COVER, p3=DRAWN)
     avoidance = iiwa_dnn.CollisionAvoidance([BALL])
     still = iiwa_dnn.Still().anchored(iiwa_dnn.Configuration(robot, np.zeros(3)))

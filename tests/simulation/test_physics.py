@@ -35,7 +35,7 @@ def robot():
 
 @pytest.fixture(scope="module")
 def nominal(robot) -> Record:
-    return heart_in_physics(robot, ("proxqp",))
+    return heart_in_physics(robot)
 
 
 @pytest.fixture(scope="module")
@@ -59,8 +59,6 @@ def test_nominal_heart(nominal):
     assert distance(nominal)[nominal.t >= 0.5].max() <= 1e-4
     assert limits_are_kept(nominal)
     metrics = compute_metrics(nominal)
-    assert metrics["crosscheck"]["steps_checked"] == 10_000
-    assert metrics["crosscheck"]["max_solution_gap"] <= 1e-6
     assert metrics["physics"]["max_torque_share"] < 1.0
     assert failures(nominal) == []
 
@@ -118,9 +116,14 @@ def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
 
 
 def test_the_bound_holds_for_another_seed(robot):
-    record = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=3, duration=2.5)
+    record = heart_in_physics(
+        robot, ("proxqp",), disturbances=Disturbances.typical(), seed=3, duration=2.5
+    )
     assert distance(record).max() <= 2e-3
     assert limits_are_kept(record)
+    found = compute_metrics(record)["crosscheck"]
+    assert found["steps_checked"] == 2500
+    assert found["max_solution_gap"] <= 1e-6
 
 
 def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):

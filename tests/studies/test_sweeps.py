@@ -113,12 +113,12 @@ def test_a_kept_record_is_found_again(tmp_path: Path, log: Path) -> None:
     np.testing.assert_array_equal(sweep.record(kept).q, first)
 
 
-@pytest.mark.parametrize("how", [{}, {"dask": "local"}])
+@pytest.mark.parametrize("how", [{"workers": 2}, {"workers": 1, "dask": "local"}])
 def test_every_cell_is_computed_once_by_processes_of_one_thread(
     tmp_path: Path, log: Path, how: dict[str, Any]
 ) -> None:
     sweep = Sweep(draw, tmp_path / "draws")
-    assert sweep.run(cells(log, 5), workers=2, **how) == expected(5)
+    assert sweep.run(cells(log, 5), **how) == expected(5)
     assert sorted(computed(log)) == [0, 1, 2, 3, 4]
     assert {line.split()[1] for line in log.read_text(encoding="utf-8").splitlines()} == {"1"}
 
