@@ -225,7 +225,7 @@ def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(make: Any, limits: Any)
 
 def test_a_slowed_moving_target_does_not_jump() -> None:
     record = simulate(
-        paper_robot(), DoubleIndicator(), teleoperated(), PAPER_Q0, dt=1e-3, duration=4.0,
+        paper_robot(), DoubleIndicator(), teleoperated(), PAPER_Q0, dt=1e-3, duration=2.0,
         check=CrossCheck(()),
     )  # fmt: skip
     assert record.fraction is not None

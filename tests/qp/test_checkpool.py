@@ -58,6 +58,14 @@ def test_workers_change_nothing_and_keep_the_order() -> None:
     np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
 
 
+def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
+    programs, sizes, x = jobs(1)[0]
+    pool = CheckPool(CHECK, 20, workers=1)
+    pool.submit(programs, sizes, x[:, :3])  # answers of a wrong shape
+    with pytest.raises(ValueError, match="shapes"):
+        pool.finish()
+
+
 @pytest.mark.long
 def test_blocks_of_a_worker_that_dies_are_judged_all_the_same() -> None:
     blocks = jobs(6)
@@ -99,14 +107,6 @@ def test_without_processes_to_be_had_the_caller_judges_alone(
     blocks = jobs(2)
     pool = CheckPool(CHECK, 40, workers=1)
     assert_same(judged(pool, blocks), judged(CheckPool(CHECK, 40, workers=0), blocks))
-
-
-def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
-    programs, sizes, x = jobs(1)[0]
-    pool = CheckPool(CHECK, 20, workers=1)
-    pool.submit(programs, sizes, x[:, :3])  # answers of a wrong shape
-    with pytest.raises(ValueError, match="shapes"):
-        pool.finish()
 
 
 def test_nobody_is_asked_where_there_is_no_reference() -> None:

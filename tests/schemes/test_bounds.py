@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
@@ -18,7 +18,7 @@ joints = arrays(np.float64, 7, elements=st.floats(-1e3, 1e3))
 limits = arrays(np.float64, 7, elements=st.one_of(st.floats(0.01, 1e3), st.just(np.inf)))
 
 
-@pytest.mark.long
+@settings(max_examples=50)
 @given(q=joints, lower=limits, upper=limits, speed=limits, gain=st.floats(1e-3, 1e4))
 def test_lower_never_exceeds_upper(
     q: Array, lower: Array, upper: Array, speed: Array, gain: float

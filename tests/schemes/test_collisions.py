@@ -127,7 +127,7 @@ def test_no_acceleration_is_above_its_bound() -> None:
 
 @pytest.mark.parametrize(("name", "seed", "moving"), [("iiwa7", 2, True), ("panda", 1, False)])
 def test_random_motion_never_comes_too_near(name: str, seed: int, moving: bool) -> None:
-    found = wander(name, 1500, seed, moving, sampled=3)
+    found = wander(name, 1000, seed, moving, sampled=3)
     assert found["least_m"] >= 0.02 - SLACK
     assert found["least_between_m"] >= 0.02 - SLACK
     assert found["difference_m"] < 2e-6  # coal's own tolerance is 1e-6

@@ -34,7 +34,7 @@ SCHEMES = {
 
 
 def run(scheme: Scheme) -> Record:
-    record = simulate(ROBOT, scheme, heart(), START.q, dt=5e-3, duration=10.0)
+    record = simulate(ROBOT, scheme, heart(), START.q, dt=1e-2, duration=10.0)
     assert failures(record) == []
     return record
 

@@ -308,7 +308,7 @@ def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> 
     limit = Clearance(point, nearest - 0.004)
     base = composed()
     scheme = Scheme(base.costs, base.tasks, [*base.limits, limit])
-    free = run(base, reference=heart(period=4.0), duration=4.0, dt=2e-3)
+    free = run(base, reference=heart(period=4.0), duration=4.0, dt=1e-2)
     assert elbow_distance(free.q, point).min() < limit.distance - 1e-3
     record = run(scheme, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=CrossCheck())
     assert failures(record) == []

@@ -226,7 +226,9 @@ def test_the_same_call_saves_the_same_bytes(
     case: str, solvers: tuple[str, ...], tmp_path: Path
 ) -> None:
     for name in ("one", "two"):
-        run(**{"check": CrossCheck(solvers)} | OPTIONS[case]).save(tmp_path / name)
+        run(**{"check": CrossCheck(solvers), "duration": 0.02} | OPTIONS[case]).save(
+            tmp_path / name
+        )
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
 
 
@@ -511,7 +513,7 @@ def test_a_stage_without_a_solution_is_recorded() -> None:
 
 def test_an_estimator_is_told_of_the_velocity_that_the_joints_get() -> None:
     # Told of the command before average and clip it was 5.4e-2 m off, without it 5.9e-4 m.
-    window = {"noise": 0.01, "filter_window": 50, "duration": 2.0, "seed": 1}
+    window = {"noise": 0.01, "filter_window": 50, "duration": 1.0, "seed": 1}
     errors = [
         position_error(run(estimator=estimator, **window)).max()
         for estimator in (None, NoiseModel(velocity=0.01, measurement=1e-5))

@@ -75,7 +75,7 @@ def test_a_task_that_yields_does_not_pull_the_linkage_apart(
     controller = Controller(robot, scheme, policy=policy)
     q = start.q
     apart = []
-    for k in range(1500):
+    for k in range(1000):
         side = 0.5 if k % 500 < 250 else -0.3
         target = Target(start.position + [0.1, side, side], start.rotation)
         command = controller.step(q, 1e-3 * k, target)

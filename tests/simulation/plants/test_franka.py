@@ -92,9 +92,9 @@ def test_hostile_targets_and_lost_cycles_break_no_limit(arm: Arm, policy: str) -
 
 @pytest.mark.filterwarnings("ignore:the reference begins")
 def test_without_room_lost_cycles_break_limits(arm: Arm) -> None:
-    arm.lost = dict.fromkeys(range(50, 1500, 50), 5)
+    arm.lost = dict.fromkeys(range(50, 1000, 50), 5)
     plant = iiwa_dnn.FrankaPlant("127.0.0.1", lost_cycles=0)
-    drive(plant, Jumping(3), duration=1.5)
+    drive(plant, Jumping(3), duration=1.0)
     assert any("velocity" in line for line in arm.broken)
 
 

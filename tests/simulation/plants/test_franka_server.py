@@ -162,7 +162,7 @@ def prepare() -> Iterator[Prepare]:
 
 
 class Jumps(iiwa_dnn.Reference):
-    """A position that jumps by 0.5 m every 0.2 s, at a height [m]; it acts at its 500th call."""
+    """A position that jumps by 0.5 m every 0.2 s, at a height [m]; it acts at its 250th call."""
 
     name = "jumps"
     period = np.inf
@@ -175,7 +175,7 @@ class Jumps(iiwa_dnn.Reference):
 
     def motion(self, t: float) -> Any:
         self.calls += 1
-        if self.act is not None and self.calls == 500:  # more than a rehearsal has
+        if self.act is not None and self.calls == 250:  # more than a rehearsal has
             self.act()
         side = 0.3 if int(t / 0.2) % 2 else -0.2
         return Motion(np.array([0.0, side, self.height]), np.zeros(3))
