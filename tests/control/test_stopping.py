@@ -146,7 +146,7 @@ def test_an_arm_pressed_against_an_obstacle_stays_clear_and_comes_back(
     tip = Configuration(ROBOT, ROBOT.start_posture()).position
     wall = HalfSpace([-1, 0, 0], float(-tip[0] - 0.35))
     obstacle = wall if kind == "wall" else Sphere(tip + [0.4, 0.05, 0.0], 0.15)
-    path, least, left = pressed(limits, obstacle, 2400, 4e-3)
+    path, least, left = pressed(limits, obstacle, 1800, 4e-3)
     assert least >= 0.02 - 1e-9
     assert least < 0.03  # it was near
     assert left < 1e-3

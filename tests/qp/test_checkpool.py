@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from concurrent.futures import wait
 from concurrent.futures.process import BrokenProcessPool
 
 import loky
@@ -36,14 +37,6 @@ def judged(pool: CheckPool, blocks: list[Job]) -> Agreement:
     return pool.finish()
 
 
-def kill_workers() -> None:
-    """End every process of the executor that the pool shares, without warning."""
-    executor = loky.get_reusable_executor(max_workers=1, timeout=60)
-    executor.submit(os.getpid).result()
-    for pid in list(executor._processes):
-        os.kill(pid, signal.SIGKILL)
-
-
 def assert_same(one: Agreement, other: Agreement) -> None:
     for left, right in zip(one, other, strict=True):
         np.testing.assert_array_equal(left, right)
@@ -67,19 +60,6 @@ def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
 
 
 @pytest.mark.long
-def test_blocks_of_a_worker_that_dies_are_judged_all_the_same() -> None:
-    blocks = jobs(6)
-    alone = judged(CheckPool(CHECK, 120, workers=0), blocks)
-    pool = CheckPool(CHECK, 120, workers=1)
-    for block in blocks[:3]:
-        pool.submit(*block)
-    kill_workers()
-    for block in blocks[3:]:
-        pool.submit(*block)
-    assert_same(pool.finish(), alone)
-
-
-@pytest.mark.long
 def test_a_worker_that_dies_in_the_middle_of_a_block() -> None:
     class Dying(CrossCheck):
         """Kills the process that it runs in, unless that is the test's own."""
@@ -91,10 +71,15 @@ def test_a_worker_that_dies_in_the_middle_of_a_block() -> None:
                 os.kill(os.getpid(), signal.SIGKILL)
             return super().check_block(*job)
 
-    blocks = jobs(4)
-    pool = CheckPool(Dying(CHECK.solvers), 80, workers=1)
-    assert_same(judged(pool, blocks), judged(CheckPool(CHECK, 80, workers=0), blocks))
+    blocks = jobs(6)
+    pool = CheckPool(Dying(CHECK.solvers), 120, workers=1)
+    for block in blocks[:3]:
+        pool.submit(*block)
+    wait([future for future, _ in pool._waiting.values()], timeout=60.0)
+    for block in blocks[3:]:
+        pool.submit(*block)
     assert pool.workers == 0  # noticed
+    assert_same(pool.finish(), judged(CheckPool(CHECK, 120, workers=0), blocks))
 
 
 def test_without_processes_to_be_had_the_caller_judges_alone(

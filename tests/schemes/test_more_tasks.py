@@ -85,7 +85,7 @@ def test_hard_and_soft_tasks_bring_the_error_to_rest(name: str) -> None:
         scheme = Scheme([KineticEnergy(weight=1e-6)], [chosen], [JointLimits()])
         solver, q = DNNSolver(), START.q + np.array([0.03, -0.02, 0.03, 0.02, -0.03, 0.02, 0.01])
         first = np.abs(rows(task, q, target)[1]).max()
-        for _ in range(150):
+        for _ in range(100):
             solution = solver.solve(scheme.build_qp(Configuration(ROBOT, q), target))
             assert solution.found
             q = q + 0.01 * solution.x

@@ -84,8 +84,8 @@ def test_all_disturbances_but_the_push(disturbed):
     assert disturbed.settings["physics"]["disturbances"]["delay"] == 1
 
 
-@pytest.mark.parametrize("force", [(0.0, 10.0, 0.0), (10.0, 0.0, -10.0)])
-def test_back_within_a_second_after_the_push(robot, disturbed, force):
+def test_back_within_a_second_after_the_push(robot, disturbed):
+    force = (10.0, 10.0, -10.0)
     push = Push(force, start=0.4, duration=0.2)
     disturbances = Disturbances.typical(push)
     record = heart_in_physics(robot, disturbances=disturbances, duration=2.0, seed=1)
