@@ -39,7 +39,7 @@ def urdf(robot: Robot) -> yourdfpy.URDF:
 
 @pytest.fixture(scope="module")
 def poses(robot: Robot) -> Array:
-    return np.random.default_rng(7).uniform(robot.q_lower, robot.q_upper, (1000, 7))
+    return np.random.default_rng(7).uniform(robot.q_lower, robot.q_upper, (300, 7))
 
 
 def largest_gap(
