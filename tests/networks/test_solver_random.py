@@ -32,7 +32,8 @@ def kkt_violation(qp: QP, x: np.ndarray, y: np.ndarray, z: np.ndarray, box: np.n
 @pytest.mark.long
 def test_two_thousand_random_programs() -> None:
     solver = DNNSolver()
-    for seed in range(2_000):
+    # Of 10,000 seeds, 2918 alone needs a second start.
+    for seed in [*range(2_000), 2918]:
         qp, x = programs.strictly_convex(np.random.default_rng([1, seed]))
         solver.reset()
         solution = solver.solve(qp)
