@@ -63,15 +63,14 @@ def end(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, st
     ("name", "options", "number"),
     [
         ("track", LONG, signal.SIGTERM),
-        ("track", [*LONG[:-1], "--check", "none", "--out"], signal.SIGINT),
-        ("physics", ["--no-pictures", "--no-video", *LONG], signal.SIGTERM),
+        ("physics", ["--no-pictures", "--no-video", "--check", "none", *LONG], signal.SIGINT),
         (
             "paper",
             ["--quick", "--duration", "0.3", "--workers", "2", "--quiet", "--out"],
             signal.SIGINT,
         ),
     ],
-    ids=["checked by workers", "unchecked", "physics", "sweep"],
+    ids=["checked by workers", "physics, unchecked", "sweep"],
 )
 def test_a_run_that_is_ended_leaves_no_half_files(
     name: str, options: list[str], number: signal.Signals, tmp_path: Path
