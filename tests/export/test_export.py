@@ -41,11 +41,11 @@ def loaded(folder: Path, compiler: str = "gcc") -> ExportedController:
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """Folders of the exported `SETTINGS` by name, each written at its first use."""
+    """Folders of the exported controllers of `MADE` by name, each written at its first use."""
 
     @cache
     def export(name: str) -> Path:
-        controller, q0 = SETTINGS[name]()
+        controller, q0 = MADE[name]()
         return c99(controller, tmp_path_factory.mktemp("export"), q0, verify=False)
 
     return export
@@ -62,7 +62,7 @@ def exported(heart: Path, library: ctypes.CDLL) -> ExportedController:
     return ExportedController(library, (heart / "controller.h").read_text(encoding="utf-8"))
 
 
-REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move")
+REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move, a floor")
 """Controllers whose limits become active."""
 
 STEPS = {
@@ -76,18 +76,54 @@ STEPS = {
 """Steps until what a controller is there for has come and gone; 500 for all others."""
 
 
-SHOWN_BY_OTHERS = ("heart", "acceleration", "panda", "xarm7")
-"""Controllers without code of their own.
+def in_blocks() -> tuple[Controller, np.ndarray]:
+    """The inertia matrix in the cost, the rows in block form, a path through poses."""
+    path = SETTINGS["poses"]()[0].reference
+    return drawing(DoubleIndicator(kinetic="inertia", orientation="block"), path)
+
+
+def softly_along_axis() -> tuple[Controller, np.ndarray]:
+    """Soft tasks of elbow, posture and center of mass beside an axis and a coupling."""
+    along = SETTINGS["axis and coupling"]()[0].scheme
+    soft = [task for task in SETTINGS["soft tasks"]()[0].scheme.tasks if task.weight is not None]
+    return drawing(iiwa_dnn.Scheme(along.costs, [*along.tasks, *soft], along.limits))
+
+
+def among_moving_above_a_floor() -> tuple[Controller, np.ndarray]:
+    """Obstacles that move, a floor, and the arm itself."""
+    scheme = SETTINGS["obstacles that move"]()[0].scheme
+    (avoidance,) = (part for part in scheme.limits if type(part) is iiwa_dnn.CollisionAvoidance)
+    limits = [part for part in scheme.limits if part is not avoidance]
+    floor = iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3)
+    both = iiwa_dnn.CollisionAvoidance([*avoidance.obstacles, floor])
+    return drawing(iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*limits, both]))
+
+
+COMBINED = {
+    "inertia, block form, poses": in_blocks,
+    "soft tasks, axis and coupling": softly_along_axis,
+    "obstacles that move, a floor": among_moving_above_a_floor,
+}
+"""Controllers each of which has the code of several `SETTINGS`."""
+
+SHOWN_BY_OTHERS = (
+    *("inertia", "block form", "poses", "soft tasks", "axis and coupling"),
+    *("obstacles that move", "collisions with itself, a box, a floor"),
+    *("heart", "acceleration", "panda", "xarm7"),
+)
+"""Controllers whose code is another's too: of those in `COMBINED`, and of four more.
 
 The heart is "velocity limits active" at other limits and has the folder's own test; limits of
 acceleration alone are in "braking among balls", the line is in "acceleration and jerk"; an arm that
 is another has other kinematics, which tests/export/test_kinematics.py compares with Pinocchio's.
 """
 
+MADE = {**{k: v for k, v in SETTINGS.items() if k not in SHOWN_BY_OTHERS}, **COMBINED}
 
-@pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHOWN_BY_OTHERS])
+
+@pytest.mark.parametrize("name", MADE)
 def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str], Path]) -> None:
-    controller, q0 = SETTINGS[name]()
+    controller, q0 = MADE[name]()
     folder = folders(name)
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "controller.c", folder / "controller_bound.c")
     exported = loaded(folder, QUICKEST)
@@ -412,7 +448,7 @@ FUSED = ("-O1", "-fexpensive-optimizations", "-mfma", "-ffp-contract=fast")
 def test_the_bound_of_a_command_is_pythons(
     name: str, flags: tuple[str, ...], folders: Callable[[str], Path]
 ) -> None:
-    controller, q0 = SETTINGS[name]()
+    controller, q0 = MADE[name]()
     exported = load(folders(name), flags, "gcc")
     assert exported.bound() == np.inf  # no command yet
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
