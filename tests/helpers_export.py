@@ -32,8 +32,8 @@ def needs(*programs: str) -> Any:
 
 
 def compile_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the package compile what it exports without optimization, where no flags are given."""
-    monkeypatch.setattr(sys.modules["iiwa_dnn.export.load"], "FLAGS", QUICK)
+    """Let the package compile what it exports without optimization, and run its test once."""
+    monkeypatch.setattr(sys.modules["iiwa_dnn.export.load"], "FLAGS", (*QUICK, "-DROUNDS=1"))
     monkeypatch.setattr(load, "__defaults__", (QUICK, None))
 
 

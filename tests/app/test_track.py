@@ -61,7 +61,7 @@ def run(folder: Path, *arguments: str) -> tuple[dict[str, np.ndarray], dict[str,
 def test_a_run_writes_record_metrics_report_and_figures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    draw_only(monkeypatch, "path", "convergence")
+    draw_only(monkeypatch, "path", "joint_angles")
     folder = tmp_path / "new" / "runs"
     assert call([*SHORT, "--out", str(folder)]) == 0
     captured = capsys.readouterr()
@@ -72,7 +72,7 @@ def test_a_run_writes_record_metrics_report_and_figures(
     assert {"record.npz", "metrics.json", "report.md"} <= files
     figures = {path.stem for path in folder.glob("*.png")}
     assert figures == {path.stem for path in folder.glob("*.pdf")}
-    assert figures == {"path", "convergence"}
+    assert figures == {"path", "joint_angles"}
     assert all((folder / name).stat().st_size > 0 for name in files)
     report = (folder / "report.md").read_text()
     assert all(f"({figure}.png)" in report for figure in figures)

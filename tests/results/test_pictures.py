@@ -78,6 +78,7 @@ def test_the_figure_of_five_moments(robot, record, tmp_path, monkeypatch):
     # As many pixels as the file has: more would be thrown away.
     small = partial(pictures.moments_figure, pixels=280)
     monkeypatch.setattr(pictures, "moments_figure", small)
+    monkeypatch.setattr(pictures, "ArmRenderer", partial(ArmRenderer, smooth=False))
     written = pictures.save_moments(robot, record, tmp_path)
     assert [path.name for path in written] == ["moments.png", "moments.pdf"]
     assert pictures.moments(record) == pytest.approx([2.0, 4.0, 6.0, 8.0, 10.0])
@@ -137,12 +138,21 @@ def cut(record, steps: int):
     return dataclasses.replace(record, **shorter)
 
 
+@pytest.fixture
+def small_video(monkeypatch):
+    """Make videos small whose pictures nobody looks at."""
+    for name, pixels in {"WIDTH": 240, "HEIGHT": 136, "SIDE": 104}.items():
+        monkeypatch.setattr(pictures, name, pixels)
+
+
+@pytest.mark.usefixtures("small_video")
 def test_a_video_that_cannot_be_written(robot, record, tmp_path):
     with pytest.raises(FileError, match="cannot be written"):
         pictures.save_video(robot, cut(record, 2), tmp_path / "missing" / "video.mp4")
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.usefixtures("small_video")
 def test_an_interrupted_video_leaves_the_old_one(robot, record, tmp_path):
     path = tmp_path / "video.mp4"
     path.write_bytes(b"old")
