@@ -646,6 +646,7 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
     done = subprocess.run(
         [sys.executable, str(SCRIPT), *arguments, "--out", "here"],
         cwd=tmp_path,
+        env=os.environ | {"TERM": "xterm-256color"},
         capture_output=True,
         text=True,
         check=False,
@@ -654,6 +655,7 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
     # No terminal, no progress bar; and any warning would be on standard error.
     assert (done.returncode, done.stderr) == (0, "")
     assert "verdict" in done.stdout
+    assert "\x1b" not in done.stdout  # piped, so without colour
     call([*arguments, "--quiet", "--out", str(tmp_path / "there")])
     # The same seed gives the same record, bit for bit, in another process too.
     here, there = (tmp_path / name / "record.npz" for name in ("here", "there"))
