@@ -99,7 +99,14 @@ def among_moving_above_a_floor() -> tuple[Controller, np.ndarray]:
     return drawing(iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*limits, both]))
 
 
+def along_a_cone() -> tuple[Controller, np.ndarray]:
+    """The UR5, of six joints, on its way to the next target of a path that turns."""
+    scheme = DoubleIndicator(tracking="next")
+    return drawing(scheme, iiwa_dnn.Cone(), iiwa_dnn.load_robot("ur5"))
+
+
 COMBINED = {
+    "ur5, next target, cone": along_a_cone,
     "inertia, block form, poses": in_blocks,
     "soft tasks, axis and coupling": softly_along_axis,
     "obstacles that move, a floor": among_moving_above_a_floor,
@@ -109,6 +116,7 @@ COMBINED = {
 SHOWN_BY_OTHERS = (
     *("inertia", "block form", "poses", "soft tasks", "axis and coupling"),
     *("obstacles that move", "collisions with itself, a box, a floor"),
+    *("ur5", "next target, cone"),
     *("heart", "acceleration", "panda", "xarm7"),
 )
 """Controllers whose code is another's too: of those in `COMBINED`, and of four more.
