@@ -32,13 +32,14 @@ class Stream(NamedTuple):
     warm: bool
 
 
-def heart(count: int, dt: float, scale: float | None = None) -> Programs:
+def heart(count: int, dt: float, scale: float | None = None, first: int = 0) -> Programs:
     """The programs of consecutive control steps of the paper's heart, from its start.
 
     Args:
         count: Number of steps.
         dt: Control period [s].
         scale: Of the heart; None takes the default run's.
+        first: Step of the first program.
     """
     robot = load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
     start = Configuration(robot, paper.START)
@@ -49,7 +50,7 @@ def heart(count: int, dt: float, scale: float | None = None) -> Programs:
     )
     return [
         scheme.build_qp(Configuration(robot, q), reference.at(float(t)))
-        for q, t in zip(record.q[:count], record.t[:count], strict=True)
+        for q, t in zip(record.q[first:count], record.t[first:count], strict=True)
     ]
 
 
@@ -118,7 +119,7 @@ def all_streams(steps: int, cold: int) -> list[Stream]:
             "heart, at a limit",
             f"the heart at scale 0.008, {steps} of the {whole} steps of its 10 s: joint 1 lies "
             "against its limit of 2.5 rad for over a third of them",
-            heart(whole, 10.0 / whole, 0.008)[-steps:],
+            heart(whole, 10.0 / whole, 0.008, whole - steps),
             True,
         ),
         Stream(

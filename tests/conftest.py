@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import ast
 import gc
+import math
 import os
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -59,7 +59,7 @@ def _forget_stale_kernels() -> None:
             newest[source] = latest
     for index, made in compiled.items():
         source = index.parents[1] / f"{index.name.split('.')[0]}.py"
-        if made < newest.get(source, np.inf):
+        if made < newest.get(source, math.inf):
             index.unlink()
 
 

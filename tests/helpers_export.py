@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,8 +14,12 @@ import numpy as np
 import pytest
 
 from iiwa_dnn.checks import Array
+from iiwa_dnn.export import load
 from iiwa_dnn.export.translator import Translator
 from iiwa_dnn.export.values import DOUBLE, Array as Pointer, Value
+
+QUICK = ("-std=c99", "-O0")
+"""Flags with which compiling takes a third of the time."""
 
 WARNINGS = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror")
 HEAD = "#include <math.h>\n#include <stdbool.h>\n\n"
@@ -24,6 +29,12 @@ def needs(*programs: str) -> Any:
     """Mark of a test that calls programs, which `.ci/run` installs."""
     missing = [name for name in programs if shutil.which(name) is None]
     return pytest.mark.skipif(bool(missing), reason=f"no {', '.join(missing)}")
+
+
+def compile_quickly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the package compile what it exports without optimization, and run its test once."""
+    monkeypatch.setattr(sys.modules["iiwa_dnn.export.load"], "FLAGS", (*QUICK, "-DROUNDS=1"))
+    monkeypatch.setattr(load, "__defaults__", (QUICK, None))
 
 
 def run(*words: str | Path, cwd: Path | None = None) -> str:

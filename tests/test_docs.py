@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 import iiwa_dnn
+from helpers_export import compile_quickly
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
@@ -78,6 +79,7 @@ def test_the_code_in_the_documents_runs(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
+    compile_quickly(monkeypatch)
     count = run_blocks(path.read_text(encoding="utf-8"), path.name)
     if path.name in WITH_CODE:
         assert count > 0

@@ -24,20 +24,24 @@ def run(*command: str | Path) -> None:
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def wheel_from(source: Path, folder: Path) -> list[str]:
-    """Names of the files in the wheel that pip builds from a folder or an sdist, offline."""
-    run(
-        "pip", "wheel", "--no-deps", "--no-index", "--no-build-isolation", "--no-cache-dir",
-        "--wheel-dir", folder, source,
-    )  # fmt: skip
+def files_of_wheel(folder: Path) -> list[str]:
+    """Names of the files in the wheel in a folder."""
     (wheel,) = folder.glob("*.whl")
     with ZipFile(wheel) as archive:
         return sorted(archive.namelist())
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    return wheel_from(ROOT, tmp_path_factory.mktemp("wheel"))
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the sdist and the wheel of the checkout."""
+    folder = tmp_path_factory.mktemp("built")
+    run("hatchling", "build", "-t", "sdist", "-t", "wheel", "-d", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Path) -> list[str]:
+    return files_of_wheel(built)
 
 
 def test_wheel_carries_the_robots_and_the_type_marker(wheel: list[str]) -> None:
@@ -55,10 +59,15 @@ def test_wheel_carries_the_whole_package_and_nothing_else(wheel: list[str]) -> N
     assert f"{metadata}licenses/LICENSE" in wheel
 
 
-def test_sdist_builds_the_same_wheel(wheel: list[str], tmp_path: Path) -> None:
-    run("hatchling", "build", "-t", "sdist", "-d", tmp_path)
-    (sdist,) = tmp_path.glob("*.tar.gz")
-    assert wheel_from(sdist, tmp_path) == wheel
+def test_pip_builds_the_same_wheel_from_the_sdist(
+    built: Path, wheel: list[str], tmp_path: Path
+) -> None:
+    (sdist,) = built.glob("*.tar.gz")
+    run(
+        "pip", "wheel", "--no-deps", "--no-index", "--no-build-isolation", "--no-cache-dir",
+        "--wheel-dir", tmp_path, sdist,
+    )  # fmt: skip
+    assert files_of_wheel(tmp_path) == wheel
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,6 @@ _DRAWN = (0.86, 0.0, 0.1, 1.0)
 
 _PIECES = 400  # straight ones that a path is drawn with
 _ENCODING: dict[str, Any] = {
-    "fps": FRAME_RATE,
     "codec": "libx264",
     "quality": None,
     "macro_block_size": 2,
@@ -115,7 +114,8 @@ def save_video(
     path = Path(path)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "video.mp4"
-        writer = encoder.write_frames(str(file), (WIDTH, HEIGHT), **_ENCODING)
+        size = (WIDTH, HEIGHT)
+        writer = encoder.write_frames(str(file), size, fps=FRAME_RATE, **_ENCODING)
         try:
             writer.send(None)
             for frame in frames(robot, record):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers_export import needs
+from helpers_export import compile_quickly, needs
 from iiwa_dnn.app.folders import save_settings
 from iiwa_dnn.app.main import main
 from iiwa_dnn.app.options import TrackOptions
@@ -15,7 +15,10 @@ from iiwa_dnn.export import load
 pytestmark = needs("gcc")
 
 
-def test_the_settings_of_a_run_become_c(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_settings_of_a_run_become_c(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compile_quickly(monkeypatch)
     run = tmp_path / "run"
     run.mkdir()
     settings = save_settings(TrackOptions(reference="circle", dt=2e-3, plots=False), run)
@@ -25,7 +28,7 @@ def test_the_settings_of_a_run_become_c(tmp_path: Path, capsys: pytest.CaptureFi
     captured = capsys.readouterr()
     assert f"written to {folder}: " in captured.out
     assert "--joint-limit datasheet" in captured.err
-    exported = load(folder, ("-std=c99", "-O0"))
+    exported = load(folder)
     assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)
     assert "circle" in (folder / "README.md").read_text(encoding="utf-8")
     # A folder that holds another controller is not overwritten unasked.

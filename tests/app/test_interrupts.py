@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from iiwa_dnn.app.interrupts import ended_by_signals
+from iiwa_dnn.app.main import main
 from iiwa_dnn.results.record import Record
 
 ENDS = {signal.SIGINT: (130, "interrupted\n"), signal.SIGTERM: (143, "terminated\n")}
@@ -63,15 +65,13 @@ def end(process: subprocess.Popen[str], number: signal.Signals) -> tuple[int, st
     ("name", "options", "number"),
     [
         ("track", LONG, signal.SIGTERM),
-        ("track", [*LONG[:-1], "--check", "none", "--out"], signal.SIGINT),
-        ("physics", ["--no-pictures", "--no-video", *LONG], signal.SIGTERM),
         (
             "paper",
             ["--quick", "--duration", "0.3", "--workers", "2", "--quiet", "--out"],
             signal.SIGINT,
         ),
     ],
-    ids=["checked by workers", "unchecked", "physics", "sweep"],
+    ids=["checked by workers", "sweep"],
 )
 def test_a_run_that_is_ended_leaves_no_half_files(
     name: str, options: list[str], number: signal.Signals, tmp_path: Path
@@ -87,11 +87,44 @@ def test_a_run_that_is_ended_leaves_no_half_files(
         assert path.name == "cells" or json.loads(path.read_text())["values"]
 
 
+def end_here(folder: Path, pattern: str, number: signal.Signals, *words: str) -> object:
+    """Exit code of a command in this process, sent a signal once a file or folder is there."""
+    returned = threading.Event()
+
+    def send() -> None:
+        for _ in range(6000):
+            if any(folder.glob(pattern)) or returned.wait(0.01):
+                break
+        if not returned.wait(0.1):
+            os.kill(os.getpid(), number)
+
+    sender = threading.Thread(target=send)
+    sender.start()
+    try:
+        with pytest.raises(SystemExit) as caught:
+            main(words)
+    finally:
+        returned.set()
+        sender.join()
+    return caught.value.code
+
+
+@pytest.mark.filterwarnings("default")  # put back what the script switches off
+def test_an_unchecked_run_in_physics_leaves_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
+    words = ["physics", "--no-pictures", "--no-video", "--check", "none", *LONG]
+    code = end_here(tmp_path, "run", signal.SIGINT, *words, str(tmp_path / "run"))
+    assert (code, capsys.readouterr()) == (130, ("", "interrupted\n"))
+    assert not any((tmp_path / "run").iterdir())
+
+
+@pytest.mark.filterwarnings("default")
 def test_what_was_written_before_is_whole(tmp_path: Path) -> None:
-    arguments = ["--dt", "1e-3", "--duration", "0.05", "--check", "none", "--quiet", "--out", "."]
-    process = start("track", tmp_path, *arguments)
-    wait_for(tmp_path, process, "metrics.json")
-    assert end(process, signal.SIGTERM)[0] == 143  # while it draws
+    words = ["track", "--dt", "1e-3", "--duration", "0.05", "--check", "none", "--quiet", "--out"]
+    code = end_here(tmp_path, "metrics.json", signal.SIGTERM, *words, str(tmp_path))
+    assert code == 143  # while it draws
     assert Record.load(tmp_path / "record.npz").steps == 50
     assert json.loads((tmp_path / "metrics.json").read_text())["steps"] == 50
     assert not (tmp_path / "report.md").exists()

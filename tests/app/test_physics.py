@@ -40,7 +40,7 @@ def run(capsys, *arguments: str) -> tuple[int, str, str]:
 @needs_opengl
 def test_everything_is_written(capsys, tmp_path, monkeypatch):
     # What the pictures show is a matter of tests/results/test_pictures.py.
-    draw_only(monkeypatch, "overview", "torques")
+    draw_only(monkeypatch, "torques")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
     monkeypatch.setattr(pictures, "FRAME_RATE", 10)
     for name, pixels in {"WIDTH": 480, "HEIGHT": 270, "SIDE": 210}.items():
@@ -56,7 +56,6 @@ def test_everything_is_written(capsys, tmp_path, monkeypatch):
         "moments.pdf",
         "torques.png",
         "torques.pdf",
-        "overview.png",
         "video.mp4",
     ):
         assert (tmp_path / name).stat().st_size > 1000, name

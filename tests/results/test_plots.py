@@ -52,7 +52,7 @@ def test_png_is_not_blank_and_of_its_printed_size(drawn, name):
     assert pixels.shape[1] == (1400 if name == "overview" else 700)
     ink = (pixels < 0.95).any(axis=2).mean()
     assert 0.02 < ink < 0.6
-    colours = (255 * pixels).astype(int) @ [65536, 256, 1]
+    colours = (255 * pixels[::4]).astype(int) @ [65536, 256, 1]
     assert len(np.unique(colours)) > 50
     # Neither does ink touch the edge, where it would be cut off.
     edge = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
@@ -75,7 +75,8 @@ def test_same_bytes_elsewhere_whatever_the_users_style_and_without_pyplot(heart,
     code = (
         "import sys, iiwa_dnn.results.plots as plots, iiwa_dnn.results.report\n"
         "assert 'matplotlib' not in sys.modules\n"
-        "plots.FIGURES = {name: plots.FIGURES[name] for name in ('overview', 'convergence')}\n"
+        "names = ('joint_velocities', 'convergence')  # bands, markers, maths; log scales\n"
+        "plots.FIGURES = {name: plots.FIGURES[name] for name in names}\n"
         "record = iiwa_dnn.results.record.Record.load('record.npz')\n"
         "plots.save_figures(record, 'out')\n"
         "assert 'matplotlib.pyplot' not in sys.modules\n"
@@ -84,6 +85,8 @@ def test_same_bytes_elsewhere_whatever_the_users_style_and_without_pyplot(heart,
     # The current folder is where Matplotlib looks for a matplotlibrc first.
     paths = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")])
     environment = os.environ | {"PYTHONPATH": paths, "PYTHONHASHSEED": "7"}
+    for name in ("MPLBACKEND", "DISPLAY"):  # a person's shell may have neither
+        environment.pop(name, None)
     command = [sys.executable, "-c", code]
     subprocess.run(command, check=True, cwd=tmp_path, env=environment)
     written = list((tmp_path / "out").iterdir())
@@ -113,7 +116,7 @@ def test_axes_say_quantity_and_unit(heart):
 
 
 def test_curves_are_told_apart_without_colour(heart):
-    axes = overview_figure(heart).axes[1]
+    (axes,) = FIGURES["joint_angles"](heart).axes
     joints = [line for line in axes.lines if line.get_label().startswith("$q")]
     assert len(joints) == 7
     luminance = [np.dot(line.get_color()[:3], [0.2126, 0.7152, 0.0722]) for line in joints]
@@ -124,14 +127,14 @@ def test_curves_are_told_apart_without_colour(heart):
 def test_a_spike_of_one_sample_is_drawn(heart):
     position = np.array(heart.position)
     position[12_345, 0] += 2e-3
-    axes = overview_figure(dataclasses.replace(heart, position=position)).axes[3]
+    (axes,) = FIGURES["position_error"](dataclasses.replace(heart, position=position)).axes
     assert axes.get_ylabel() == "Position error [mm]"
     assert axes.dataLim.y1 == pytest.approx(2.0, rel=1e-3)
 
 
 def test_limits_are_drawn_where_they_are_near(heart):
     def limits(record):
-        lines = overview_figure(record).axes[1].lines
+        lines = FIGURES["joint_angles"](record).axes[0].lines
         return [line.get_ydata()[0] for line in lines if len(line.get_xdata()) == 2]
 
     far = heart.settings | {"q_lower": [-9.0] * 7, "q_upper": [9.0] * 7}
@@ -191,7 +194,10 @@ def odd_records():
 )
 @pytest.mark.filterwarnings("error::UserWarning", "error::RuntimeWarning")
 def test_odd_records_are_drawn_too(record, name, tmp_path):
-    FIGURES[name](record).savefig(tmp_path / "x.png")
+    figure = FIGURES[name](record)
+    figure.get_layout_engine().execute(figure)
+    figure.set_layout_engine(None)  # with one, it would be drawn twice
+    figure.savefig(tmp_path / "x.png")
     assert (tmp_path / "x.png").stat().st_size > 10_000  # axes and labels, not a blank page
 
 
@@ -277,7 +283,7 @@ def slowed():
 
 
 def test_the_paths_time_is_drawn_of_slowed_runs_alone(slowed, monkeypatch, tmp_path):
-    draw_only(monkeypatch, "path", "path_time")
+    draw_only(monkeypatch, "path_time")
     assert tmp_path / "path_time.png" in save_figures(slowed, tmp_path)
     assert tmp_path / "path_time.png" not in save_figures(make_record(), tmp_path)
 

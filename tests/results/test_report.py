@@ -26,7 +26,7 @@ def record():
 def run(record, tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
     with pytest.MonkeyPatch.context() as monkeypatch:
-        draw_only(monkeypatch, "path", "convergence")
+        draw_only(monkeypatch, "path", "position_error")
         return folder, save_run(record, folder)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import runpy
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -38,19 +37,6 @@ def example(
         return said.out
 
     return run
-
-
-def process(folder: Path, name: str, *words: str) -> str:
-    """Run an example as a person does; returns what it prints."""
-    done = subprocess.run(
-        [sys.executable, SCRIPTS / name, *words],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 def number(pattern: str, text: str) -> float:
@@ -125,8 +111,8 @@ def test_a_published_network(example: Example) -> None:
     assert number(r"(\S+) m at the end", text) < number(r"(\S+) m at first", text)
 
 
-def test_a_sweep_over_the_weight(tmp_path: Path) -> None:
-    text = process(tmp_path, "sweep_weight.py", "runs/sweep_weight", "5e-2")
+def test_a_sweep_over_the_weight(example: Example, tmp_path: Path) -> None:
+    text = example("sweep_weight.py", "runs/sweep_weight", "5e-2")
     drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]
     index = [float(value) for value in re.findall(r"kinetic index (\S+) rad", text)]
     assert len(drift) == len(index) == 7

@@ -111,7 +111,7 @@ def test_the_network_takes_the_velocity_nearest_to_the_last_one() -> None:
 
 
 def test_tilt_and_distance_are_kept() -> None:
-    record = study.run("AOA-3PF", 2e-3, 1.8)
+    record = study.run("AOA-3PF", 4e-3, 1.8)
     assert record.settings["status"] == "completed"
     distance, posture = study.over_time(record.q)
     assert study.INNER < distance.min() < study.OUTER
