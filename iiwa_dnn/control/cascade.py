@@ -359,7 +359,6 @@ def _note_answer(qp: QPViews, priorities: Priorities, k: int, point: Vector) -> 
     for i in range(qp.q.size):
         priorities.x[k, i] = point[i]
     for j in range(qp.b.size):
-        priorities.missing[k, j] = 0.0
         if priorities.rows[j] == priorities.numbers[k]:
             priorities.missing[k, j] = qp.b[j] - row_dot(qp.A, j, priorities.x[k])
 

@@ -34,6 +34,7 @@ from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
     sums,
+    swept,
     within_rates,
 )
 from judge_limits import breaches
@@ -304,3 +305,24 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
             break
     assert k < 3999
     assert not command.ok
+
+
+@pytest.mark.parametrize(
+    ("moves", "radii", "second_order"),
+    [
+        # What slides after a turn is turned with it; what slides before it is not.
+        ([1.0, 1.0], [-1.0, 0.5], 0.05 * 0.1),
+        ([1.0, 1.0], [0.5, -1.0], 0.1 * 0.2 + 2.0 * 0.1 * 0.2),
+        ([-1.0, -1.0], [0.5, -1.0], 0.1 * 0.2),
+        ([-1.0, -1.0], [-1.0, 0.5], 0.05 * 0.1 + 2.0 * 0.2 * 0.1),
+    ],
+)
+def test_a_pair_is_swept_by_joints_that_slide_and_turn(
+    moves: list[float], radii: list[float], second_order: float
+) -> None:
+    travel = np.array([0.2, 0.1])
+    found = swept(np.array([moves]), np.array([radii]), 0, travel)
+    turn = travel[radii.index(0.5)]
+    assert found.way == pytest.approx(travel[radii.index(-1.0)] + 0.5 * turn)
+    assert found.second_order == pytest.approx(second_order)
+    assert found.turning == turn

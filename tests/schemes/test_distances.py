@@ -79,6 +79,12 @@ def test_nearly_parallel_segments_have_the_right_distance(tilt: float) -> None:
     assert np.linalg.norm(x - y) == pytest.approx(1.0, abs=1e-12)
 
 
+def test_the_first_corner_may_be_the_nearest() -> None:
+    corners = np.array([[1.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, -1.0, 0.0], [2.0, 0.0, 1.0]])
+    x, y = nearest(np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]), corners)
+    np.testing.assert_allclose([x, y], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-12)
+
+
 def test_a_segment_that_meets_a_hull_has_no_distance() -> None:
     corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
     x, y = nearest(np.array([[0.3, 0.2, -5.0], [0.1, 0.0, 5.0]]), corners)
