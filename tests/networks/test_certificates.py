@@ -198,6 +198,17 @@ def test_a_contradiction_below_rounding_is_none() -> None:
         assert certificates.proves_infeasible(qp, np.array([1.0, 1.0, 0.0])) is proven
 
 
+def test_what_rounding_leaves_of_the_multipliers_counts_at_both_ends() -> None:
+    # x0 = x1 and x1 - (1 - 2^-53) x0 <= -1: x = -2^53 and all below are feasible.
+    multipliers = np.array([1.0, 1.0, 0.0, 0.0])
+    for lowest, proven in ((-1e3, True), (-1e20, False)):
+        qp = QP(
+            np.eye(2), np.zeros(2), [[2.0**-53 - 1.0, 1.0]], [-1.0], [[1.0, -1.0]], [0.0],
+            lb=[lowest, lowest], ub=[0.0, 0.0],
+        )  # fmt: skip
+        assert certificates.proves_infeasible(qp, multipliers) is proven
+
+
 def test_a_direction_is_proven_outright_where_an_exact_one_is_near() -> None:
     for seed in range(20):
         rng = np.random.default_rng([8, seed])
