@@ -216,6 +216,32 @@ def test_a_bound_counts_what_the_answer_lacks() -> None:
     assert 1e-7 * (1.0 - 1e-9) <= inside.bound <= 1e-7 * (1.0 + 1e-7)
 
 
+def test_a_limit_that_the_answer_names_wrongly_is_released() -> None:
+    # x = 1 is free; the multipliers hold it at the row, or at one of the bounds.
+    qp = QP(np.eye(1), [-1.0], G=[[1.0]], h=[2.0], lb=[0.0], ub=[3.0])
+    for z, z_box in ((5.0, 0.0), (0.0, 5.0), (0.0, -5.0)):
+        proof = prove(qp, answer([1.0], [z_box], z=np.array([z])))
+        assert (proof.reason, proof.bound < 1e-14) == ("", True)
+        assert not proof.active.any()
+
+
+@pytest.mark.parametrize("scale", [1e-8, 1e8])
+def test_rows_in_another_unit_than_the_cost_are_no_obstacle(scale: float) -> None:
+    a = np.array([1.0, 2.0, 3.0])
+    A = scale * np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 1.0]])
+    x = np.ones(3)
+    proof = prove(QP(np.outer(a, a), -6.0 * a, A=A, b=A @ x), answer([1.0, 1.0, 1.0]))
+    assert (proof.reason, proof.bound < 1e-10) == ("", True)
+
+
+def test_a_cost_that_lacks_less_than_rounding_to_be_convex_is_not_proven() -> None:
+    assert Fraction(2.7) * Fraction(0.3) < Fraction(0.9) ** 2
+    P = [[2.7, 0.9, 0.0], [0.9, 0.3, 0.0], [0.0, 0.0, 0.0]]
+    qp = QP(P, [-5.0, -5.0, -5.0], ub=np.ones(3))
+    proof = prove(qp, answer([1.0, 1.0, 1.0], [1.4, 3.8, 5.0]))
+    assert (proof.reason, proof.bound) == (NOT_CONVEX, np.inf)
+
+
 def test_answers_that_are_none_are_refused() -> None:
     qp = QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=[1.0])
     for wrong, problem in (
