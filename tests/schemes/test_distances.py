@@ -71,6 +71,23 @@ def test_capsule_and_box_agree_with_coal() -> None:
             assert np.linalg.norm(a - b) <= 0.01 + 1e-3 + 2e-6
 
 
+def test_of_segments_that_rounding_takes_for_parallel_the_ends_are_tried() -> None:
+    # They run towards each other by 1e-8 m a metre: the formula's points are 1e-8 m too far apart.
+    first = np.array([
+        [0.0, 0.0, 0.0],
+        [-1.2995298727420022, 1.8337820743159081, 1.6315190342809855],
+    ])  # fmt: skip
+    second = np.array([
+        [-0.24098741560896667, 0.23722673342345224, 0.87458899883805],
+        [0.423167983506479, -0.6999708535086914, 0.040762687052543045],
+    ])  # fmt: skip
+    from_ends = [nearest(np.array([end, end]), second) for end in first]
+    from_ends += [nearest(first, np.array([end, end])) for end in second]
+    least = min(np.linalg.norm(x - y) for x, y in from_ends)
+    x, y = nearest(first, second)
+    assert np.linalg.norm(x - y) == pytest.approx(least, abs=1e-12)
+
+
 @pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-5, 0.3])
 def test_nearly_parallel_segments_have_the_right_distance(tilt: float) -> None:
     first = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0 + tilt]])
