@@ -251,8 +251,7 @@ class Controller:
             layout.targets(row)[:] = self.targets(t - state.delay, target)
             begin = max(begin, WRITE)
         program = step.program
-        if program.moving:
-            program.move(t)
+        program.move(t)
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(derived, row, joints, t, target is None)
@@ -262,7 +261,7 @@ class Controller:
             clock = (t, state.delay)
             if step.run(
                 row, step.arrays, joints, state.past, state.following, network, clock, begin
-            ) and (not step.yielding.stop or self._is_stoppable(step)):
+            ) and self._is_stoppable(step):
                 return Command(row, layout)
             return self._yield(step, row)
         state.past[Q] = joints
