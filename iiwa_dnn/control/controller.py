@@ -190,7 +190,7 @@ class Controller:
             with self._lock:
                 if dq is not None:
                     self._measure(dq)
-                estimator = None if self.estimator is None else self._next_estimator(self.estimator)
+                estimator = self._next_estimator()
                 if estimator is not None:
                     q = estimator.update(checks.finite_array("q", q, (self.robot.dof,)))
                     t += estimator.model.delay * self.dt
@@ -198,7 +198,7 @@ class Controller:
                 if estimator is not None:
                     estimator.predict(command.dq)
                     state.estimator = estimator
-                if command.action:  # another one than Action.NONE, whose name takes longer
+                if command.action is not Action.NONE:
                     state.delay += self.dt * (1.0 - command.fraction)
                 state.commit()
                 return command
@@ -226,9 +226,11 @@ class Controller:
         self._state.delay += self.dt * (1.0 - fraction)
         self._state.commit()
 
-    def _next_estimator(self, model: NoiseModel) -> JointEstimator:
-        """Return a copy of the estimator, since a step may be broken off."""
-        return copy.copy(self._state.estimator or JointEstimator(model, self.dt))
+    def _next_estimator(self) -> JointEstimator | None:
+        """Return a copy of the estimator, since a step may be broken off; None if there is none."""
+        if self.estimator is None:
+            return None
+        return copy.copy(self._state.estimator or JointEstimator(self.estimator, self.dt))
 
     def _compute(
         self,

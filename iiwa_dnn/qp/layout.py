@@ -44,7 +44,10 @@ def compiled(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Compile a function as `compiled`, as a part of each that calls it."""
+    """Compile a function as `compiled`, into each one that calls it.
+
+    The views of a program are some sixty numbers: handing them on takes as long as a few rows.
+    """
     return cast(Function, njit(**_OPTIONS, forceinline=True)(function))
 
 
