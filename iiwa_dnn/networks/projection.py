@@ -32,14 +32,13 @@ from iiwa_dnn.qp.layout import (
     Sizes,
     Vector,
     compiled,
-    inlined,
     larger,
     qp_views,
 )
 from iiwa_dnn.qp.program import QP
 
 
-@inlined
+@compiled
 def field(qp: QPViews, project: bool, s: Vector, rates: Vector) -> float:
     """Write rho ds/dt at a state, both (size,); with `project`, x goes through its bounds.
 

@@ -8,7 +8,7 @@ which keeps the compiler from using vector instructions.
 import numpy as np
 from numba import njit
 
-from iiwa_dnn.qp.layout import ONE, Matrix, Vector, compiled, inlined, larger
+from iiwa_dnn.qp.layout import ONE, Matrix, Vector, compiled, larger
 
 ROUNDING = 1e-5
 """Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry: a
@@ -32,7 +32,7 @@ def dot(a: Vector, at_a: int, b: Vector, n: int) -> float:
     return value
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=SUMS)
 def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     """Compute the product of row j of a matrix (k, n) and the first n entries of x."""
     row = np.uint64(j)
@@ -42,7 +42,7 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     return value
 
 
-@inlined
+@compiled
 def add_row(out: Vector, factor: float, rows: Matrix, j: int) -> None:
     """Add a multiple of row j of a matrix (k, n) to the first n entries of `out`."""
     row = np.uint64(j)
@@ -50,7 +50,7 @@ def add_row(out: Vector, factor: float, rows: Matrix, j: int) -> None:
         out[k] += factor * rows[row, k]
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS, forceinline=True)
+@njit(cache=True, error_model="numpy", fastmath=SUMS)
 def rows_dot(rows: Matrix, x: Vector, out: Vector, start: int) -> None:
     """Write the product of a matrix (k, n) and the first n entries of x into `out` from `start`."""
     first = np.uint64(start)
@@ -61,7 +61,7 @@ def rows_dot(rows: Matrix, x: Vector, out: Vector, start: int) -> None:
         out[first + j] = value
 
 
-@inlined
+@compiled
 def add_outer(out: Matrix, factor: float, rows: Matrix, j: int) -> None:
     """Add factor v v^T to the lower half of `out` (n, n), v being row j of a matrix (k, n)."""
     row = np.uint64(j)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, compiled, inlined, larger, qp_views
+from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, compiled, larger, qp_views
 
 LONG = 64
 """Variables from which on the rounding of the gap's sum is added to it: in another order, as
@@ -13,7 +13,7 @@ qpsolvers sums, it would be another number."""
 _EPS = float(np.finfo(float).eps)
 
 
-@inlined
+@compiled
 def point_residuals(qp: QPViews, point: Vector) -> Triple:
     """Compute ``(primal, dual, gap)`` of [x | y | z | z_box], as qpsolvers defines them."""
     n = qp.q.size
@@ -81,7 +81,7 @@ def largest_residuals(
                 out[i, j] = larger(larger(primal, dual), gap)
 
 
-@inlined
+@compiled
 def kkt_point(qp: QPViews, s: Vector, point: Vector) -> Triple:
     """Write the point [x | y | z | z_box] of a state [x | y | z | ...] into `point`.
 

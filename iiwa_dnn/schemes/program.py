@@ -503,7 +503,7 @@ def write_program(
     assemble(step_views(arrays, past, targets, t), arrays, qp)
 
 
-@inlined
+@compiled
 def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
     """Write the rows of all parts with a kernel into a program; arguments as `write_program`."""
     table = arrays.table

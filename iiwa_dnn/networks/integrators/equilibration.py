@@ -19,6 +19,9 @@ from iiwa_dnn.qp.residuals import point_of_state, within
 STRICTER = 1e-2
 """Least tolerance in these coordinates over that in the program's own: residuals grow on the way
 back."""
+POLISHING = 50
+"""Linear systems for each stricter tolerance: it begins beside the answer, and takes two or three
+unless rounding keeps it from its end."""
 
 
 def settle_equilibrated(
@@ -35,10 +38,10 @@ def settle_equilibrated(
     strict = tol
     systems = 0
     time = 0.0
+    budget = max_systems
     while True:
-        left = max_systems - systems
         taken, passed, *_ = settle_program(
-            scaled, inner, point, strict, left, ImplicitEuler.long_step
+            scaled, inner, point, strict, budget, ImplicitEuler.long_step
         )
         systems += taken
         time += passed
@@ -47,6 +50,7 @@ def settle_equilibrated(
         if within(*residuals, tol) or strict <= least or systems >= max_systems:
             return systems, time, *residuals
         strict *= 0.1
+        budget = min(POLISHING, max_systems - systems)
 
 
 def equilibrate(qp: QP) -> tuple[QP, Vector, float]:

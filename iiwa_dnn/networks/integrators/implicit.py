@@ -201,15 +201,18 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         [rho], and the residuals of `point`.
     """
     work = np.empty(4 * s.size + condensed_size(qp))  # several take as long as some rows
-    return _settle(borrowed_views(qp), borrowed(constants), borrowed(s), borrowed(point), work)
+    return _settle(qp, constants, s, point, work)
 
 
-@inlined
+@compiled
 def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vector) -> Settled:
     """Settle as `settle` says, in `work` (4 size + condensed_size,), which the caller owns."""
     tol = constants[TOLERANCE]
     max_systems = int(constants[BUDGET])
     long_step = constants[LONG_STEP]
+    qp = borrowed_views(qp)
+    s = borrowed(s)
+    point = borrowed(point)
     work = borrowed(work)
     size = s.size
     now = work[:size]

@@ -70,7 +70,7 @@ class Condensed(NamedTuple):
     values: Vector
 
 
-@inlined
+@compiled
 def condensed_size(qp: QPViews) -> int:
     """Count the numbers of a `Condensed`."""
     n = qp.q.size
@@ -103,7 +103,7 @@ def condensed(qp: QPViews, work: Vector) -> Condensed:
     return matrix
 
 
-@inlined
+@compiled
 def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
     """Write the condensed matrix of the active set for a step [rho] into `matrix.K`.
 
@@ -169,7 +169,7 @@ def linear_step(
     return True
 
 
-@inlined
+@compiled
 def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
     """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
     n = qp.q.size
@@ -183,7 +183,7 @@ def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
         values[first + n + i] = -x[i]
 
 
-@inlined
+@compiled
 def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
     """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
     n = qp.q.size
