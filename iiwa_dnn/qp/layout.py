@@ -46,8 +46,8 @@ def compiled(function: Function) -> Function:
 def inlined(function: Function) -> Function:
     """Compile a function as `compiled`, into each one that calls it.
 
-    For functions that make views, and those that a step calls most often: the views of a program are
-    some sixty numbers, and handing them on takes as long as a few rows. Each caller is longer to compile.
+    For functions that make views, and those that a step calls most often: a program's views are
+    some sixty numbers, which take as long to hand on as a few rows. Callers compile longer.
     """
     return cast(Function, njit(**_OPTIONS, forceinline=True)(function))
 
