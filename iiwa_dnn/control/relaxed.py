@@ -46,7 +46,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.networks.integrators.base import ANSWER, TOLERANCE, enter_answer
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import VECTOR, Signature
+from iiwa_dnn.qp.compiling import VECTOR, Signature, outlived
 from iiwa_dnn.qp.dense import cholesky_factor, extreme_eigenvalues, factor_solve, row_dot
 from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, compiled, qp_views
 from iiwa_dnn.qp.residuals import within
@@ -192,27 +192,11 @@ def largest_factor(qp: QPViews, yielding: Yielding, point: Vector) -> float:
     Returns:
         The factor; NaN where not even 0 is feasible, or the network does not settle.
     """
-    data = np.zeros(data_size(qp.q.size + 1, qp.h.size, qp.b.size))
-    factor: float = _largest_factor(qp, yielding, data, point)
-    return factor
-
-
-@compiled
-def data_size(n: int, m: int, p: int) -> int:
-    """Count the numbers of a program, `QP.data`.
-
-    Views do not keep such an array: the function that makes them gets it as an argument.
-    """
-    return (n + m + p) * (n + 1) + 2 * n
-
-
-@compiled
-def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector) -> float:
-    """Compute `largest_factor` in the room for the scaled program, (size,)."""
     n = qp.q.size
     m = qp.h.size
     p = qp.b.size
     size = n + 1
+    data = np.zeros(data_size(size, m, p))
     scaled = qp_views(data, size, m, p)
     longest = _write_scaled(qp, yielding.weights, scaled)
     state = np.zeros(3 * size + m + p)
@@ -226,8 +210,18 @@ def _largest_factor(qp: QPViews, yielding: Yielding, data: Vector, point: Vector
             return np.nan
         if abs(point[n] - before) <= 0.1 * REACHED:
             break
+    outlived(data)
     factor: float = point[n] / longest
     return min(max(factor, 0.0), 1.0)
+
+
+@compiled
+def data_size(n: int, m: int, p: int) -> int:
+    """Count the numbers of a program, `QP.data`.
+
+    Views do not keep such an array: the function that makes it says when they are `outlived`.
+    """
+    return (n + m + p) * (n + 1) + 2 * n
 
 
 @compiled
@@ -320,19 +314,10 @@ def least_violation(qp: QPViews, yielding: Yielding, q: Vector, point: Vector) -
     Returns:
         Whether there is a solution.
     """
-    data = np.zeros(data_size(qp.q.size, qp.h.size, held_rows(yielding.weights)))
-    found: bool = _least_violation(qp, yielding, q, data, point)
-    return found
-
-
-@compiled
-def _least_violation(
-    qp: QPViews, yielding: Yielding, q: Vector, data: Vector, point: Vector
-) -> bool:
-    """Solve the softened program in the room for it, (size,); as `least_violation`."""
     n = qp.q.size
     m = qp.h.size
     held = held_rows(yielding.weights)
+    data = np.zeros(data_size(n, m, held))
     soft = qp_views(data, n, m, held)
     damping = _write_softened(qp, yielding, q, soft)
     if not _settled_in_retreat(qp, yielding, soft, point):
@@ -343,6 +328,7 @@ def _least_violation(
     if _fulfil(qp, soft, yielding, exact) and _length(exact) <= fastest:
         for i in range(n):
             point[i] = exact[i]
+    outlived(data)
     return True
 
 
@@ -362,8 +348,7 @@ def _fulfil(qp: QPViews, soft: QPViews, yielding: Yielding, x: Vector) -> bool:
         return False
     if inside(soft, x):
         return True
-    data = np.zeros(data_size(x.size, qp.h.size, qp.b.size))
-    return missing <= SHORT * SHORT * asked and _move_within(soft, qp, qp.b.size, x, yielding, data)
+    return missing <= SHORT * SHORT * asked and _move_within(soft, qp, qp.b.size, x, yielding)
 
 
 @compiled
@@ -577,8 +562,7 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> bool:
     """
     if inside(qp, x):
         return True
-    data = np.zeros(data_size(x.size, qp.h.size, 0))
-    if _move_within(qp, qp, 0, x, yielding, data):
+    if _move_within(qp, qp, 0, x, yielding):
         return True
     for i in range(x.size):
         x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
@@ -586,15 +570,14 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding) -> bool:
 
 
 @compiled
-def _move_within(
-    limits: QPViews, task: QPViews, p: int, x: Vector, yielding: Yielding, data: Vector
-) -> bool:
+def _move_within(limits: QPViews, task: QPViews, p: int, x: Vector, yielding: Yielding) -> bool:
     """Move x (n,) to the nearest point within bounds and inequality rows, if they allow any.
 
-    The point is on the first `p` of a task's rows too. The program has its room in `data` (size,).
+    The point is on the first `p` of a task's rows too.
     """
     n = x.size
     m = limits.h.size
+    data = np.zeros(data_size(n, m, p))
     nearest = qp_views(data, n, m, p)
     for i in range(n):
         nearest.P[i, i] = 1.0
@@ -608,8 +591,9 @@ def _move_within(
             nearest.A[j, i] = task.A[j, i]
     point = np.empty(2 * n + m + p)
     state = np.zeros(3 * n + m + p)
-    if not settled(nearest, yielding, state, point, 1.0):
-        return False
-    for i in range(n):
-        x[i] = point[i]
-    return True
+    found = settled(nearest, yielding, state, point, 1.0)
+    outlived(data)
+    if found:
+        for i in range(n):
+            x[i] = point[i]
+    return found

@@ -34,7 +34,7 @@ from iiwa_dnn.export.values import (
     length,
     number,
 )
-from iiwa_dnn.qp.compiling import Signature, borrowed
+from iiwa_dnn.qp.compiling import Signature, borrowed, outlived
 
 if TYPE_CHECKING:
     from iiwa_dnn.export.translator import Translator
@@ -430,5 +430,6 @@ _CALLS: dict[Any, Callable[..., Value]] = {
     len: lambda body, array: length(array.kind.shape[0]),
     np.uint64: lambda body, value: value,
     borrowed: lambda body, value: value,
+    outlived: lambda body, array: Value(array.kind),
 }
 """Functions with a translation of their own."""

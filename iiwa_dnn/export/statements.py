@@ -95,9 +95,12 @@ class Body(Expressions):
         """Translate nothing."""
 
     def do_expr(self, node: ast.Expr) -> None:
-        """Translate a call; a docstring is a comment above the function."""
-        if not isinstance(node.value, ast.Constant):
-            self.lines.add(f"{self.value(node.value).text};")
+        """Translate a call that C has too; a docstring is a comment above the function."""
+        if isinstance(node.value, ast.Constant):
+            return
+        text = self.value(node.value).text
+        if text:
+            self.lines.add(f"{text};")
 
     def do_return(self, node: ast.Return) -> bool:
         """Translate ``return``."""

@@ -152,8 +152,19 @@ def _without_owner(typing: Any, array: Any) -> Any:
     return array(array), code
 
 
+@intrinsic
+def _mention(typing: Any, array: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        return context.get_dummy_value()
+
+    return types.none(array), code
+
+
 def _itself(array: Any) -> Any:
     return array
+
+
+def _nothing(array: Any) -> None: ...
 
 
 borrowed: Any = _itself if _INTERPRETED else _without_owner
@@ -161,3 +172,6 @@ borrowed: Any = _itself if _INTERPRETED else _without_owner
 
 Counting the references to a view takes longer than a row of seven numbers.
 """
+
+outlived: Any = _nothing if _INTERPRETED else _mention
+"""Say that borrowed views of an array end here: numba frees the array after its last mention."""

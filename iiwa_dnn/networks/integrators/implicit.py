@@ -50,7 +50,7 @@ from iiwa_dnn.networks.integrators.pseudo_transient import (
     trial_left,
 )
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
-from iiwa_dnn.qp.compiling import borrowed
+from iiwa_dnn.qp.compiling import borrowed, outlived
 from iiwa_dnn.qp.layout import (
     QPViews,
     Triple,
@@ -200,21 +200,15 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
         [rho], and the residuals of `point`.
     """
-    work = np.empty(4 * s.size + condensed_size(qp))  # several take as long as some rows
-    return _settle(qp, constants, s, point, work)
-
-
-@compiled
-def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vector) -> Settled:
-    """Settle as `settle` says, in `work` (4 size + condensed_size,), which the caller owns."""
     tol = constants[TOLERANCE]
     max_systems = int(constants[BUDGET])
     long_step = constants[LONG_STEP]
     qp = borrowed_views(qp)
     s = borrowed(s)
     point = borrowed(point)
-    work = borrowed(work)
     size = s.size
+    owner = np.empty(4 * size + condensed_size(qp))  # several take as long as some rows
+    work = borrowed(owner)
     now = work[:size]
     new_rates = work[size : 2 * size]
     new = work[2 * size : 3 * size]
@@ -277,6 +271,7 @@ def _settle(qp: QPViews, constants: Vector, s: Vector, point: Vector, work: Vect
             travelling, step = next_step(step, GROWTH, last_rate, rate, tol, travelling)
         mark_active(s, now, matrix.active)
     primal, dual, gap = kkt_point(qp, s, point)
+    outlived(owner)
     return systems, time, primal, dual, gap
 
 
