@@ -124,7 +124,8 @@ def _yield_at_once(
         _clear_blocking(views)
         taken = NONE
     if taken == NOTHING:
-        _stop(views, qp)
+        _stop(views)
+        _note_residuals(views, qp)
         taken = STOP
     return taken
 
@@ -221,9 +222,15 @@ def _judge(views: RowViews, qp: QPViews, fraction: float, status: int) -> None:
     """Note the residuals of a decided answer, how far the clock advances, and a status."""
     views.figures[0] = 0.0
     views.figures[1] = 0.0
-    views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
+    _note_residuals(views, qp)
     views.decision[1] = fraction
     views.decision[2] = status
+
+
+@compiled
+def _note_residuals(views: RowViews, qp: QPViews) -> None:
+    """Note the residuals of the answer that is taken."""
+    views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
 
 
 @compiled
@@ -339,12 +346,14 @@ def _take(views: RowViews, qp: QPViews, x: Vector, fraction: float) -> None:
 
 
 @compiled
-def _stop(views: RowViews, qp: QPViews) -> None:
-    """Take no velocity as the answer; the residuals of what failed stay."""
+def _stop(views: RowViews) -> None:
+    """Take no velocity as the answer; the iterations of what failed stay, and why it failed."""
     for k in range(views.point.size):
         views.point[k] = 0.0
     if views.decision[2] < NOT_SETTLED:
-        _judge(views, qp, 0.0, NOT_SETTLED)
+        views.figures[0] = 0.0
+        views.figures[1] = 0.0
+        views.decision[2] = NOT_SETTLED
     views.decision[1] = 0.0
 
 
@@ -434,9 +443,10 @@ def approach(
 @compiled
 def _halt(views: RowViews, qp: QPViews, instant: Instant, yielding: Yielding) -> int:
     """Take the next command of a motion to rest as the answer; return `STOP`."""
-    _stop(views, qp)
+    _stop(views)
     braked = views.point[: instant.q.size]
     _follow(instant, braked, _braking_command(qp, instant, yielding, braked))
+    _note_residuals(views, qp)
     return STOP
 
 

@@ -550,13 +550,16 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     assert {code: name for name, code in codes.items() if code} == ACTIONS
 
 
-@pytest.mark.parametrize("policy", ["slow", "relax"])
-def test_the_residuals_of_a_decided_answer_are_its_own(policy: policies.Policy) -> None:
-    robot = paper_robot().with_limits(velocity=0.3)
+@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
+@pytest.mark.parametrize("acceleration", [None, 10.0])
+def test_the_residuals_of_a_decided_answer_are_its_own(
+    policy: policies.Policy, acceleration: float | None
+) -> None:
+    robot = paper_robot().with_limits(velocity=0.3, acceleration=acceleration)
     controller = Controller(robot, DoubleIndicator(home=PAPER_Q0), policy=policy)
     for k in range(3):
         command = controller.step(PAPER_Q0, 1e-3 * k, near_target(PAPER_Q0, 3, 0.3))
-        assert command.action in (Action.SLOW, Action.RELAX)
+        assert command.action in (Action.SLOW, Action.RELAX, Action.STOP)
         found = command.solution
         own = command.qp.residuals(found.x, found.y, found.z, found.z_box)
         np.testing.assert_allclose(found.residuals, own, rtol=0, atol=1e-12)
