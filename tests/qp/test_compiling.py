@@ -14,7 +14,7 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot
 from iiwa_dnn import DoubleIndicator, Robot, simulate
 from iiwa_dnn.qp import compiling
-from iiwa_dnn.qp.compiling import VECTOR, Signature, Watch
+from iiwa_dnn.qp.compiling import VECTOR, Signature, Watch, borrowed, outlived
 from iiwa_dnn.qp.layout import QP_VIEWS, QPViews, Vector, compiled, qp_views
 
 
@@ -79,6 +79,29 @@ def test_functions_of_one_signature_take_the_views_of_a_program() -> None:
     x = np.array([1.0, 2.0])
     assert _cost_at(_COST.address(_linear_cost), data, x) == 11.0
     assert _cost_at(_COST.address(_bound_cost), data, x) == 17.0
+
+
+@compiled
+def _sum_of_borrowed(n: int) -> tuple[float, Vector]:
+    """Add up a borrowed view after an array was made that would take its memory, were it free."""
+    owner = np.zeros(n)
+    view = borrowed(owner)
+    for i in range(n):
+        view[i] = 1.0
+    other = np.zeros(n)
+    total = 0.0
+    for i in range(n):
+        other[i] = 2.0
+        total += view[i]
+    outlived(owner)
+    return total, other
+
+
+@pytest.mark.parametrize("n", [8, 100, 1000])
+def test_the_owner_of_a_borrowed_view_lives_until_it_is_said_to_be_outlived(n: int) -> None:
+    total, other = _sum_of_borrowed(n)
+    assert total == n
+    np.testing.assert_array_equal(other, 2.0)
 
 
 @pytest.mark.skipif(config.DISABLE_JIT, reason="nothing has a type then")

@@ -20,8 +20,8 @@ STRICTER = 1e-2
 """Least tolerance in these coordinates over that in the program's own: residuals grow on the way
 back."""
 POLISHING = 50
-"""Linear systems for each stricter tolerance: it begins beside the answer, and takes two or three
-unless rounding keeps it from its end."""
+"""Linear systems for each stricter tolerance: it begins beside the answer, and takes a few unless
+rounding keeps it from its end."""
 
 
 def settle_equilibrated(
