@@ -6,7 +6,7 @@ worker that dies are judged again here.
 
 from __future__ import annotations
 
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
@@ -58,11 +58,14 @@ class CheckPool:
         self._waiting: dict[int, tuple[Future[Agreement], Job]] = {}
         self._count = 0
         self._executor: Any = None
+        # Signals interrupt the main thread alone: of workers that another one starts, none is lost.
+        self._starter = ThreadPoolExecutor(1)
 
     def __enter__(self) -> CheckPool:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
+        self._starter.shutdown()
         # A worker that is just being started would go on, and complain that nobody is there.
         if kind is not None and self._executor is not None:
             self._executor.shutdown(wait=False, kill_workers=True)
@@ -79,18 +82,23 @@ class CheckPool:
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:
-            import loky
-
             try:
-                # Not the standard library's pool: that one runs the caller's script once more in
-                # every worker, so a script without a __main__ guard would start itself again.
-                self._executor = loky.get_reusable_executor(max_workers=self.workers, timeout=60)
-                future = self._executor.submit(self.check.check_block, *job)
+                future = self._starter.submit(self._hand_on, job).result()
                 self._waiting[number] = (future, job)
                 return
             except (BrokenProcessPool, RuntimeError, OSError):
                 self.workers = 0  # no processes to be had: go on alone
         self._judged[number] = self.check.check_block(*job)
+
+    def _hand_on(self, job: Job) -> Future[Agreement]:
+        """Hand a block to a worker; start the workers first where there are none."""
+        import loky
+
+        # Not the standard library's pool: that one runs the caller's script once more in every
+        # worker, so a script without a __main__ guard would start itself again.
+        self._executor = loky.get_reusable_executor(max_workers=self.workers, timeout=60)
+        future: Future[Agreement] = self._executor.submit(self.check.check_block, *job)
+        return future
 
     def finish(self) -> Agreement:
         """Wait for every block and return the verdicts in the order of the programs."""

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from concurrent.futures import wait
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.connection import wait as ended
 
 import loky
 import numpy as np
 import pytest
+from loky.process_executor import ProcessPoolExecutor
 
 from helpers_qp import known_qp
 from iiwa_dnn import DNNSolver
@@ -104,3 +107,24 @@ def test_nobody_is_asked_where_there_is_no_reference() -> None:
 def test_few_programs_start_no_process() -> None:
     assert CheckPool(CHECK, 100).workers == 0
     assert CheckPool(CHECK, 100_000).workers == loky.cpu_count() - 1
+
+
+def test_an_interrupt_while_workers_start_leaves_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that came between their start and that of their manager left them for a minute."""
+    loky.get_reusable_executor().shutdown(kill_workers=True)
+    manage = ProcessPoolExecutor._start_executor_manager_thread
+    workers = []
+
+    def interrupted(executor: ProcessPoolExecutor) -> None:
+        workers.extend(executor._processes.values())
+        time.sleep(1.0)  # until the worker waits for work
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+        manage(executor)
+
+    monkeypatch.setattr(ProcessPoolExecutor, "_start_executor_manager_thread", interrupted)
+    with pytest.raises(KeyboardInterrupt), CheckPool(CHECK, 20, workers=1) as pool:
+        pool.submit(*jobs(1)[0])
+    assert workers
+    for worker in workers:
+        assert ended([worker.sentinel], 20.0)
