@@ -34,7 +34,7 @@ napoleon_numpy_docstring = False
 # The classes say it in their docstrings; the field's own comment would say it twice.
 napoleon_use_ivar = True
 
-html_extra_path = ["browser/heart.html"]
+html_extra_path = ["heart.html"]
 html_theme = "furo"
 html_title = "iiwa_dnn"
 html_show_sphinx = False

@@ -32,6 +32,8 @@ WITH_CODE = (
 
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
+_RAW_LINK = re.compile(r'<a href="([^"#:]+)"')
+_RUN = re.compile(r"^iiwa-dnn ((?:track|physics)\b(?!.*--help|.*--settings)[^#\n]*)", re.MULTILINE)
 _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
 
 
@@ -88,12 +90,26 @@ def test_the_code_in_the_documents_runs(
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_links_and_named_tests_exist(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    for target, _ in _LINK.findall(text):
+    for target in (*(target for target, _ in _LINK.findall(text)), *_RAW_LINK.findall(text)):
         if not target.startswith(("http://", "https://", "mailto:")):
             assert (path.parent / target).exists(), f"{path.name} links to {target}"
     for file, name in _TEST.findall(text):
         assert (ROOT / file).is_file(), f"{path.name} names {file}"
         assert not name or name in defined(ROOT / file), f"{path.name} names {file}::{name}"
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_no_command_of_a_page_is_refused_since_the_one_before_has_its_folder(path: Path) -> None:
+    """A folder belongs to one run: other settings need another ``--out``."""
+    owners = {"runs/heart": ["track"]}  # make heart, the first thing that a reader does
+    for line in _RUN.findall(path.read_text(encoding="utf-8")):
+        words = line.split()
+        out = "runs/heart" if words[0] == "track" else f"runs/{words[0]}"
+        if "--out" in words:
+            at = words.index("--out")
+            out = words[at + 1]
+            del words[at : at + 2]
+        assert owners.setdefault(out, words) == words, f"{path.name}: iiwa-dnn {line}"
 
 
 def test_the_api_page_and_the_table_of_contents_are_complete() -> None:

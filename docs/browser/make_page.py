@@ -22,7 +22,7 @@ import iiwa_dnn
 from iiwa_dnn.files import write_text
 
 HERE = Path(__file__).parent
-PAGE = HERE / "heart.html"
+PAGE = HERE.parent / "heart.html"
 EXPORTED = ("q", "dq", "target", "begin", "step")
 FLAGS = ("--target=wasm32", "-std=c99", "-Os", "-nostdlib", "-nostdlibinc", "-fno-math-errno")
 

@@ -1,7 +1,9 @@
 """A command from its words, and its settings file, to its exit code."""
 
 import io
+import os
 import re
+import signal
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -46,7 +48,12 @@ def run_command(
     try:
         options = parse(kind, prog, sys.argv[1:] if words is None else words)
         with ended_by_signals():
-            return run(options)
+            code = run(options)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:  # ``| head`` has read enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE  # as of a shell
     except IiwaDnnError as error:
         if getattr(options, "verbose", False):
             traceback.print_exc()

@@ -139,7 +139,9 @@ def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
 
     Empty if they do not, or if limits were asked for.
     """
-    sheet = load_robot(options.robot, locked=options.lock)
+    sheet = load_robot(
+        options.robot, tip=options.tip, locked=options.lock, tool=options.tool or None
+    )
     if options.joint_limit is not None or limited(sheet) is sheet:
         return ""
     problem = sheet.outside(q.max(axis=0)) or sheet.outside(q.min(axis=0))
@@ -192,9 +194,8 @@ def simulation(
         further = [replace(task, frame=name) for name in others for task in tasks]
         scheme = Scheme(scheme.costs, [*tasks, *further], scheme.limits)
     arguments = {name: getattr(options, name) for name in _ARGUMENTS}
-    with warnings.catch_warnings():
-        # The summary says that the start is outside, other lines speak of the path and of links.
-        warnings.simplefilter("ignore", UserWarning)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
         made = Simulation(
             robot,
             scheme,
@@ -205,6 +206,10 @@ def simulation(
             far_start=True,
             **arguments,
         )
+    # The summary says that the start is outside, other lines speak of the path and of links.
+    for warning in caught:
+        if "cannot hold a pose" in str(warning.message):
+            print(f"{robot.dof} joints cannot hold a pose: --orientation none", file=sys.stderr)
     print_if_unwatched(scheme, robot)
     return made
 

@@ -23,6 +23,7 @@ from iiwa_dnn.control.paths import (
     warn_if_far,
     warn_if_lagging,
     warn_if_outside,
+    warn_if_too_few,
     warn_if_unstable,
     warn_if_unwatched,
 )
@@ -523,6 +524,7 @@ class Controller:
         self._anchored = self.scheme
         state.past[Q] = start.q
         if not state.begun:
+            warn_if_too_few(self.program, stacklevel=5)
             warn_if_unstable(self.program, self.dt, stacklevel=5)
             warn_if_unwatched(self.scheme, self.robot, stacklevel=5)
         state.begun = True

@@ -60,6 +60,22 @@ def warn_if_outside(start: Configuration, stacklevel: int) -> None:
         warnings.warn(f"the start posture {problem}", stacklevel=stacklevel + 1)
 
 
+def warn_if_too_few(program: StepProgram, stacklevel: int) -> None:
+    """Warn where hard tasks of one level have more independent rows than there are variables."""
+    variables = program.sizes[0]
+    # The paper's four rows of an orientation have rank 3; couplings of joints hold always.
+    tasks = [task for task in program.tasks if task.row_weight > 0.0]
+    counts = [task.row_count(program.robot) for task in tasks]
+    rows = sum(counts) - sum(getattr(task, "form", "") == "block" for task in tasks)
+    if rows > variables and not program.priorities.any():
+        names = ", ".join(type(task).__name__ for task in tasks)
+        turning = any(isinstance(task, _TURNING) for task in tasks)
+        message = f"{variables} joints cannot fulfil the {rows} rows of {names}"
+        if turning:
+            message = f"{variables} joints cannot hold a pose: orientation='none' leaves it free"
+        warnings.warn(message, stacklevel=stacklevel + 1)
+
+
 def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
     """Warn where a gain is too high for the acceleration and jerk limits at a period dt [s]."""
     if program.rate_limits is None or program.accelerates:

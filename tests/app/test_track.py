@@ -705,3 +705,49 @@ def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(
     assert "begins" not in capsys.readouterr().err
     record = Record.load(out / "record.npz")
     np.testing.assert_allclose(record.position[0], desired, rtol=0, atol=2e-6)
+
+
+# What goes wrong for somebody new
+
+
+def test_a_file_with_several_ends_is_drawn_with_and_exported_by_its_tip(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = IIWA7.read_text(encoding="utf-8").replace(
+        "</robot>",
+        '<link name="probe"/><joint name="probe_mount" type="fixed">'
+        '<parent link="iiwa7_link_6"/><child link="probe"/></joint></robot>',
+    )
+    file = tmp_path / "iiwa7.urdf"
+    file.write_text(text, encoding="utf-8")
+    words = ["--robot", str(file), "--out", str(tmp_path / "run")]
+    assert call([*QUICK, *words]) == 2
+    assert "several ends" in capsys.readouterr().err
+    assert call([*QUICK, *words, "--tip", "iiwa7_flange"]) == 0
+    assert "verdict" in capsys.readouterr().out
+    words = ["--robot", str(file), "--tip", "iiwa7_flange", "--out", str(tmp_path / "c")]
+    assert run_command("export", [*words, "--dt", "1e-3"]) == 0
+
+
+def test_a_reader_that_has_read_enough_ends_the_command_quietly(tmp_path: Path) -> None:
+    script = f"import sys; from iiwa_dnn.app.main import main; sys.exit(main({['track', *QUICK]}))"
+    reader, writer = os.pipe()
+    os.close(reader)  # as `head` does after its lines
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=tmp_path, stdout=writer, stderr=subprocess.PIPE
+    )
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+    assert (tmp_path / "runs" / "heart" / "metrics.json").exists()
+
+
+def test_too_few_joints_for_a_pose_are_said_once_before_the_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [*QUICK, "--lock", "iiwa7_joint_3", "iiwa7_joint_5", "--scale", "1e-3"]
+    assert call([*words, "--out", str(tmp_path / "pose")]) == 1
+    said = capsys.readouterr().err
+    assert said.count("5 joints cannot hold a pose") == 1
+    assert "--orientation none" in said
+    assert call([*words, "--orientation", "none", "--out", str(tmp_path / "position")]) == 0
+    assert "cannot" not in capsys.readouterr().err

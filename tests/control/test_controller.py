@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -243,3 +244,26 @@ def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:
     controller = controller_of(scheme, mode="continuous")
     with pytest.warns(UserWarning, match="the rows of CollisionAvoidance hold where"):
         controller.step(PAPER_Q0, 0.0, near_target(np.array(PAPER_Q0), 0, size=2e-3))
+
+
+def test_too_few_joints_for_a_pose_are_warned_of_once() -> None:
+    robot = load_robot("iiwa7", locked=("iiwa7_joint_3", "iiwa7_joint_5"))
+    q0 = robot.start_posture()
+    circle = Circle(0.01).anchored(Configuration(robot, q0))
+    for orientation in ("so3", "block", "none"):
+        scheme = DoubleIndicator(orientation=orientation)
+        controller = Controller(robot, scheme, circle, dt=1e-2)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            controller.step(q0, 0.0)
+            controller.step(q0, 1e-2)
+        said = [str(warning.message) for warning in caught]
+        expected = "5 joints cannot hold a pose: orientation='none' leaves it free"
+        assert said == ([] if orientation == "none" else [expected])
+    # The paper's four rows have rank 3: six joints fulfil all seven rows.
+    six = load_robot("iiwa7", locked=("iiwa7_joint_3",))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Controller(six, DoubleIndicator(orientation="block"), circle, dt=1e-2).anchor(
+            Configuration(six, six.start_posture())
+        )

@@ -19,7 +19,7 @@ FOLDER = Path(__file__).parents[2] / "docs" / "browser"
 @pytest.fixture
 def browser(tmp_path: Path) -> Iterator[Any]:
     with open_browser(tmp_path) as browser:
-        browser.get((FOLDER / "heart.html").as_uri() + "#still")
+        browser.get((FOLDER.parent / "heart.html").as_uri() + "#still")
         yield browser
 
 
