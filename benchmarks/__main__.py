@@ -7,7 +7,6 @@ from benchmarks.arrivals import bench_arrivals
 from benchmarks.cli import bench_loop, bench_solvers, bench_targets
 from benchmarks.collisions import bench_collisions
 from benchmarks.exports import bench_export
-from benchmarks.franka import bench_franka
 from benchmarks.poses import bench_poses
 from benchmarks.proofs import bench_proof
 from benchmarks.sizes import bench_sizes
@@ -20,7 +19,6 @@ COMMANDS = {
     "arms": bench_arms,
     "arrivals": bench_arrivals,
     "export": bench_export,
-    "franka": bench_franka,
     "poses": bench_poses,
     "proof": bench_proof,
     "sizes": bench_sizes,

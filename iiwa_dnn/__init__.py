@@ -88,12 +88,8 @@ from iiwa_dnn.schemes import (
     TipSpeedLimit,
 )
 from iiwa_dnn.simulation import (
-    FrankaPlant,
-    FriPlant,
     MujocoPlant,
     Simulation,
-    Trajectory,
-    retime,
     simulate,
 )
 
@@ -104,7 +100,7 @@ __all__ = [
     "BatchSolution", "Box", "Capsule", "CenterOfMassTask", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork", "ElbowAngleTask",
-    "ExplicitEuler", "FileError", "FrankaPlant", "FriPlant", "GradientNetwork", "HalfSpace",
+    "ExplicitEuler", "FileError", "GradientNetwork", "HalfSpace",
     "Heart", "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits",
     "JointAcceleration", "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy",
     "Limit", "Line", "Lissajous", "Manipulability", "MissingDependencyError", "MovingTarget",
@@ -113,8 +109,8 @@ __all__ = [
     "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
     "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
     "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
-    "TipSpeedLimit", "TrackingSolver", "Trajectory", "Waypoints", "ZeroingNetwork",
-    "available_robots", "compute_metrics", "failures", "load_robot", "prove", "retime",
+    "TipSpeedLimit", "TrackingSolver", "Waypoints", "ZeroingNetwork",
+    "available_robots", "compute_metrics", "failures", "load_robot", "prove",
     "robot_from_dh", "simulate", "solve_batch", "solve_pose", "solve_problem",
 ]  # fmt: skip
 

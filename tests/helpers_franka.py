@@ -4,10 +4,6 @@ It judges by the words of libfranka's documentation alone: finite differences of
 went on with itself, against the limits of include/franka/rate_limiting.h and of the FR3's URDF.
 """
 
-import socket
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from types import SimpleNamespace
 from typing import Any
 
@@ -22,10 +18,6 @@ DECELERATION = np.array([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0])
 
 
 class ControlException(RuntimeError):  # noqa: N818
-    """An error of libfranka; pylibfranka's have no base class of their own."""
-
-
-class NetworkException(RuntimeError):  # noqa: N818
     """An error of libfranka."""
 
 
@@ -49,17 +41,14 @@ class Arm:
     Attributes:
         lost: Number of cycles that are lost from a command on, by its number.
         fails: Number of the command at which the robot aborts; None: it does not.
-        states: Number of states that are sent before a motion; None: one after the other.
     """
 
-    def __init__(self, q: np.ndarray, flange: np.ndarray) -> None:
+    def __init__(self, q: np.ndarray) -> None:
         self.q = q
-        self.flange = flange
         self.dq = np.zeros(7)
         self.ddq = np.zeros(7)
         self.lost: dict[int, int] = {}
         self.fails: int | None = None
-        self.states: int | None = None
         self.finished = False
         self.broken: list[str] = []
         self.count = 0
@@ -67,22 +56,14 @@ class Arm:
 
     def state(self) -> Any:
         single = np.float32  # as on the wire
-        pose = np.eye(4)
-        pose[:3, 3] = self.flange
         return SimpleNamespace(
             q=self.q.astype(single).astype(float).tolist(),
             q_d=self.q.astype(single).astype(float).tolist(),
             dq_d=self.dq.astype(single).astype(float).tolist(),
             ddq_d=self.ddq.astype(single).astype(float).tolist(),
-            O_T_EE=pose.ravel("F").tolist(),
-            F_T_EE=np.eye(4).ravel("F").tolist(),
         )
 
     def read_once(self) -> Any:
-        if self.states is not None:
-            if self.states == 0:
-                raise NetworkException("libfranka: UDP receive: Timeout")
-            self.states -= 1
         return self.state()
 
     def start_joint_velocity_control(self, mode: Any) -> "Arm":
@@ -130,33 +111,8 @@ def ramp(distance: np.ndarray) -> np.ndarray:
 def module(arm: Arm) -> Any:
     """Make the module for one arm."""
     return SimpleNamespace(
-        FrankaException=Exception,
         JointVelocities=JointVelocities,
         Robot=lambda host, realtime: arm,
         RealtimeConfig=SimpleNamespace(kIgnore=1),
         ControllerMode=SimpleNamespace(JointImpedance=0),
     )
-
-
-@contextmanager
-def listening(answer: bytes | None) -> Iterator[int]:
-    """Open a TCP port of 127.0.0.1 that answers the first request of each connection, and yield it.
-
-    An empty answer: the connection is closed. None: nobody looks at it.
-    """
-
-    def serve() -> None:
-        with suppress(OSError):  # of a listener that was shut
-            while True:
-                link, _ = listener.accept()
-                with link:
-                    header = np.frombuffer(link.recv(100), "<u4", 3)
-                    assert header.tolist() == [0, 0, 16]  # kConnect, the first command, its size
-                    link.sendall(answer)
-
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        if answer is not None:
-            threading.Thread(target=serve, daemon=True).start()
-        yield listener.getsockname()[1]
-        with suppress(OSError):
-            listener.shutdown(socket.SHUT_RDWR)

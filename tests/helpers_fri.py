@@ -1,4 +1,4 @@
-"""A second reader and writer of FRI's messages, by the wire rules of protobuf, and a lossy network.
+"""A second reader and writer of FRI's messages, by the wire rules of protobuf.
 
 Wire rules: https://protobuf.dev/programming-guides/encoding. Field numbers: KUKA's client SDK. It
 shares nothing with the package, and does not need the package protobuf.
@@ -6,11 +6,7 @@ shares nothing with the package, and does not need the package protobuf.
 
 from __future__ import annotations
 
-import random
-import socket
 import struct
-import threading
-from select import select
 
 VARINT = 0
 FIXED64 = 1
@@ -110,74 +106,3 @@ def write_command(counter, reflected, q=None, identifier=0x34001):
         doubles = b"".join(varint(1 << 3 | FIXED64) + struct.pack("<d", value) for value in q)
         data += delimited(2, delimited(1, doubles))
     return data
-
-
-def free_port():
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
-        link.bind(("127.0.0.1", 0))
-        return link.getsockname()[1]
-
-
-class Network(threading.Thread):
-    """A UDP proxy between a robot, which sends to `port`, and a client at `client_port`.
-
-    A seeded share of the packets, in both directions, is lost, doubled, kept back until the next
-    one has gone, or garbled.
-    """
-
-    def __init__(self, client_port, share=0.0, kinds=("lose", "double", "delay", "garble"), seed=0):
-        super().__init__(daemon=True)
-        self.share = share
-        self.kinds = kinds
-        self.counts = dict.fromkeys(kinds, 0)
-        self._random = random.Random(seed)
-        self._client = ("127.0.0.1", client_port)
-        self._robot = None
-        self._links = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(2)]
-        for link in self._links:
-            link.bind(("127.0.0.1", 0))
-        self.port = self._links[0].getsockname()[1]
-        self._late: list = [None, None]
-        self._ended = threading.Event()
-
-    def __enter__(self):
-        self.start()
-        return self
-
-    def __exit__(self, *error):
-        self._ended.set()
-        self.join(5.0)
-        for link in self._links:
-            link.close()
-
-    def run(self):
-        while not self._ended.is_set():
-            for link in select(self._links, [], [], 0.05)[0]:
-                data, sender = link.recvfrom(2000)
-                from_robot = link is self._links[0]
-                if from_robot:
-                    self._robot = sender
-                self._pass_on(int(from_robot), data)
-
-    def _pass_on(self, side, data):
-        link = self._links[side]
-        address = (self._robot, self._client)[side]
-        packets = [data]
-        if self.share and self._random.random() < self.share:
-            kind = self._random.choice(self.kinds)
-            self.counts[kind] += 1
-            if kind == "lose":
-                packets = []
-            elif kind == "double":
-                packets = [data, data]
-            elif kind == "delay":
-                self._late[side] = data
-                return
-            else:
-                # Cut between two fields it would be a message, without what the second one holds.
-                packets = [data[:-1]]
-        if self._late[side] is not None:
-            packets.append(self._late[side])
-            self._late[side] = None
-        for packet in packets:
-            link.sendto(packet, address)

@@ -111,7 +111,6 @@ def options(number: int) -> dict[str, Any]:
         "noise_at": entry,
         "filter_window": int(rng.choice([1, 1, 10])),
         "disturbance": VelocityDisturbance(0.1, 0.1, 0.1) if rng.random() < 0.2 else None,
-        "integral_gain": 25.0 if rng.random() < 0.2 else 0.0,
         "estimator": NoiseModel(bias_walk=0.01) if rng.random() < 0.2 else None,
         "policy": POLICIES[int(rng.integers(3))],
         "seed": number,

@@ -35,7 +35,6 @@ from iiwa_dnn import (
     Waypoints,
     simulate,
 )
-from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.studies.paper import MAX_ERROR
 
@@ -370,36 +369,6 @@ def test_a_multiplier_that_is_not_active_limits_the_step_too() -> None:
         assert bool(np.abs(state).max() > start.max()) is grows
     page = (Path(__file__).parents[1] / "docs" / "theory.md").read_text(encoding="utf-8")
     assert r"h < \min(2/\max(\pi_{\max}, 1), \pi_{\min}/s_{\max})" in page
-
-
-def followed(gain: float, frequency: float, error: float = 0.0) -> Array:
-    """Errors of a point on its way to rest under a sinusoid and the integral's feedback."""
-    dt = 1e-3
-    feedback = IntegralFeedback(gain)
-    target = Target(np.zeros(3), np.eye(3))
-    position = np.array([error, 0.0, 0.0])
-    found = []
-    for k in range(3000):
-        feedback.observe(Target(position, np.eye(3)), target, dt)  # type: ignore[arg-type]
-        asked = feedback.apply(target).data[12:15]
-        pushed = np.array([np.sin(frequency * dt * k), 0.0, 0.0])
-        position = position + dt * (asked - DELTA * position + pushed * (frequency > 0.0))
-        found.append(position[0])
-    return np.array(found)
-
-
-def test_the_integral_damps_below_the_root_of_half_its_gain() -> None:
-    """Amplitudes beside those without it, 1 / |i w + delta|; and the overshoot of an error."""
-    gain = 0.25 * DELTA**2
-
-    def share(frequency: float) -> float:
-        largest = np.abs(followed(gain, frequency)[-1000:]).max()  # half a period and more
-        return float(largest * np.hypot(frequency, DELTA))
-
-    edge = np.sqrt(0.5 * gain)
-    assert share(0.9 * edge) < 1.0 < share(1.1 * edge)
-    assert share(np.sqrt(gain)) == pytest.approx(np.sqrt(1.25), rel=0.02)
-    assert followed(gain, 0.0, 1.0).min() == pytest.approx(-np.exp(-2.0), rel=0.02)
 
 
 def test_a_clipped_joint_takes_its_column_out_and_an_active_multiplier_adds_a_row() -> None:

@@ -10,7 +10,7 @@ from iiwa_dnn.app.options import ExportOptions
 from iiwa_dnn.app.track import arm, beyond_data_sheet, refuse_set, simulation
 from iiwa_dnn.export import c99
 
-_OUTSIDE = ("filter_window", "integral_gain", "motion")
+_OUTSIDE = ("filter_window", "motion")
 """Options that change what is around a controller in a run."""
 
 

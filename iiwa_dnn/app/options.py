@@ -20,10 +20,8 @@ from iiwa_dnn.schemes.parts import Tracking
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
-from iiwa_dnn.simulation.plants.fri_messages import PORT
 
 Check = Literal["proxqp", "osqp", "both", "proof", "none"]
-PlantName = Literal["ideal", "franka", "fri"]
 SHELLS = ("bash", "zsh", "tcsh")
 
 # Options whose default, None or (), the help need not show.
@@ -94,7 +92,6 @@ class TrackOptions(RunOptions):
     gain: float = 10.2  # feedback gain of the position and the orientation error [1/s]
     tracking: Tracking = "paper"  # target of a step: at its time (paper) or at its end (next)
     next_gain: _Float = None  # feedback gain of --tracking next [1/s] (none: one over the period)
-    integral_gain: float = 0.0  # feedback gain of the error's integral [1/s^2]
     policy: Policy = "slow"  # action at a step without a solution
     motion: Motion = "euler"  # integrator of the joint velocity
     noise: float = 0.0  # standard deviation of the noise: velocity [rad/s], measurement [rad]
@@ -102,8 +99,6 @@ class TrackOptions(RunOptions):
     filter_window: int = 1  # number of samples in the moving average of the joint velocity
     csv: bool = False  # write every sample of the record as a table too, record.csv
     plots: bool = True  # draw the figures
-    plant: PlantName = "ideal"  # arm that moves: an ideal one, or a robot through its own client
-    host: str = ""  # address of the robot's controller
 
 
 @dataclass(frozen=True)
@@ -217,26 +212,6 @@ class ViewOptions:
 
 
 @dataclass(frozen=True)
-class FriRobotOptions:
-    """Answer a client of KUKA's FRI as the robot does, with a simulated LBR iiwa behind it.
-
-    The session ends with the client, at a command that is refused, or at Ctrl-C.
-    """
-
-    command: ClassVar[str] = "fri-robot"
-    robot: str = "iiwa7"  # robot of 7 joints, by its name or by its file
-    q0: _Floats = ()  # joint positions at the start [rad] (none: the robot's start posture)
-    period: float = 5e-3  # time between two messages [s], whole milliseconds
-    host: str = "127.0.0.1"  # address of the client
-    port: int = PORT  # UDP port of the client
-    own_port: int = 0  # UDP port of the robot; 0 takes a free one
-    ideal: bool = False  # joints that move as they are told, as without the package mujoco
-    realtime: bool = True  # periods of their length; otherwise each ends with the client's answer
-    quiet: _Quiet = False  # print nothing but the reason of a failure
-    verbose: _Verbose = False  # print the connection quality and the traceback of an error too
-
-
-@dataclass(frozen=True)
 class SolveOptions:
     """Solve the quadratic program in an .npz file.
 
@@ -277,7 +252,6 @@ _KINDS: tuple[Any, ...] = (
     PhysicsOptions,
     ExportOptions,
     ViewOptions,
-    FriRobotOptions,
     SolveOptions,
     WarmUpOptions,
     CompletionOptions,

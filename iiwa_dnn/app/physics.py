@@ -7,7 +7,6 @@ from typing import Any
 from iiwa_dnn.app.command_line import progress_bar
 from iiwa_dnn.app.options import PhysicsOptions
 from iiwa_dnn.app.track import arm, draw, simulation
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.pictures import frame_times, import_encoder, save_moments, save_video
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.offscreen import opengl_library
@@ -16,8 +15,6 @@ from iiwa_dnn.simulation import Disturbances, MujocoPlant, Push
 
 def run(options: PhysicsOptions) -> int:
     """Draw the path in MuJoCo, write the run with its pictures, and return the exit code."""
-    if options.plant != "ideal":
-        raise InvalidInputError("--plant", "is for track: physics has an arm of its own")
     robot, q0 = arm(options)
     plant = MujocoPlant(disturbances(options), timestep=options.physics_dt)
     checked = simulation(options, robot, q0, plant)

@@ -1,6 +1,5 @@
 """``track``: an arm draws a path; also the functions that all commands with an arm use."""
 
-import signal
 import sys
 import warnings
 from collections.abc import Callable
@@ -13,7 +12,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import flag_of, print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
-from iiwa_dnn.app.options import Check, PlantName, TrackOptions
+from iiwa_dnn.app.options import Check, TrackOptions
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.naming import unwatched
@@ -46,7 +45,7 @@ from iiwa_dnn.schemes import (
     TipSpeedLimit,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of, unwatched_by
-from iiwa_dnn.simulation import FrankaPlant, FriPlant, Plant, RealPlant, Simulation
+from iiwa_dnn.simulation import Plant, Simulation
 from iiwa_dnn.studies import paper
 
 CHECKS: dict[Check, tuple[str, ...]] = {
@@ -56,12 +55,6 @@ CHECKS: dict[Check, tuple[str, ...]] = {
     "proof": ("proof",),
     "none": (),
 }
-
-PLANTS: dict[PlantName, Callable[[TrackOptions], RealPlant]] = {
-    "franka": lambda o: FrankaPlant(o.host),
-    "fri": lambda o: FriPlant(o.host),
-}
-"""Real arms by name, made from all options."""
 
 # The options of each path, and the function that makes the path from all options.
 _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
@@ -103,7 +96,6 @@ _ARGUMENTS = (
     "noise",
     "noise_at",
     "filter_window",
-    "integral_gain",
     "policy",
     "seed",
 )
@@ -117,7 +109,6 @@ _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "tolerance": (lambda o: o.check == "none", "--check proxqp, osqp, both or proof"),
     "push_at": (lambda o: not o.push, "--push"),
     "push_for": (lambda o: not o.push, "--push"),
-    "host": (lambda o: o.plant not in PLANTS, "--plant franka or fri"),
 }
 
 More = Callable[[Record, Path], list[Path]]
@@ -126,12 +117,7 @@ Last = Callable[[Record, Path], None] | None
 
 def run(options: TrackOptions) -> int:
     """Draw the path, check every step, write the run, and return the exit code."""
-    if options.plant not in PLANTS:
-        return draw(options, simulation(options, *arm(options)))
-    plant = PLANTS[options.plant](options)
-    options = for_real_arm(options, plant)
-    robot, q0 = arm(options)
-    return draw(options, simulation(options, plant.with_room(robot), q0, plant))
+    return draw(options, simulation(options, *arm(options)))
 
 
 def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
@@ -151,26 +137,6 @@ def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
         f"by the data sheet joint positions {problem}; the paper's limits are wider: for a real "
         "arm take --joint-limit datasheet"
     )
-
-
-def for_real_arm(options: TrackOptions, plant: RealPlant) -> TrackOptions:
-    """Return the options with what was left to their defaults as a real arm needs it.
-
-    The start is the measured posture, the control period the robot's, and limits of position,
-    acceleration, jerk and the tip's speed are the robot's, where it has such limits.
-    """
-    robot, _ = arm(options)
-    own: dict[str, Any] = {
-        "q0": tuple(plant.posture.tolist()),
-        "joint_limit": "datasheet",
-        "dt": plant.period,
-        "acceleration_limit": "robot" if np.isfinite(robot.ddq_max).all() else None,
-        "jerk_limit": "robot" if np.isfinite(robot.dddq_max).all() else None,
-        "tip_speed_limit": plant.tip_speed,
-    }
-    default = type(options)
-    left = {name: own[name] for name in own if getattr(options, name) == getattr(default, name)}
-    return replace(options, **left)
 
 
 def simulation(
@@ -303,8 +269,6 @@ def draw(
         save_csv(record, folder / "record.csv")
     if last is not None:
         last(record, folder)
-    if simulation.interrupt is not None:
-        signal.raise_signal(simulation.interrupt)
     reasons = failures(record)
     if not options.quiet:
         if beyond := beyond_data_sheet(options, record.q):

@@ -28,7 +28,7 @@ from iiwa_dnn.control.paths import (
     warn_if_unwatched,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
-from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, Q
+from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
 from iiwa_dnn.control.yielding import guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError, NoSolutionError
@@ -498,18 +498,6 @@ class Controller:
             self._state.halted = np.zeros(n + m)
         elif step.yields or step.program.accelerates:
             self._state.halted = step.layout.view(command.row, "blocking").copy()
-
-    def resume(self, commands: Matrix) -> None:
-        """Go on from commands that a robot has put in the place of those that came too late.
-
-        Args:
-            commands: Last command and the one before it [rad/s], (2, n).
-        """
-        state = self._state
-        state.past[LAST : BEFORE + 1] = checks.finite_array(
-            "commands", commands, (2, self.robot.dof)
-        )
-        state.past[REST] = 0.0  # no braking motion of its own is in hand any more
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

@@ -1,17 +1,6 @@
-r"""Feedback against disturbances: an integral term, and a gain chosen from the noise.
+r"""Feedback gain out of the noise.
 
-**Integral term.** The schemes draw an error e back by :math:`\dot e = -\delta e`; a disturbance d
-of the velocity then leaves :math:`e = d / \delta`. With the integral of the error fed back too,
-
-.. math::  \dot e = -\delta\,e - k \int e\,dt + d,
-
-a constant d leaves nothing, a ramp of slope r leaves :math:`r / k`, and a sinusoid is damped below
-the frequency :math:`\sqrt{k / 2}` and grows above it, by an eighth at :math:`\sqrt k` with
-:math:`k = \delta^2 / 4`. There the poles meet at :math:`-\delta / 2`: what a constant d leaves goes
-the fastest way without changing its sign; an error at the start overshoots by
-:math:`e^{-2} = 0.135` of itself.
-
-**Gain.** In steps of dt, with white noise of standard deviation :math:`\sigma` on the velocity
+In steps of dt, with white noise of standard deviation :math:`\sigma` on the velocity
 and :math:`\sigma_m` on the measured position, the error
 :math:`e^+ = (1 - \delta\,dt)\,e + dt\,(\sigma n - \delta \sigma_m m)` has the variance
 
@@ -22,21 +11,13 @@ least at the positive root of :math:`\sigma_m^2 \delta^2 + \sigma^2 dt\,\delta =
 rough as the error it feeds back: from one step to the next it changes by :math:`\delta\,dt` times
 the noise, which is what limits the gain in practice.
 
-Sources: L. Jin, Y. Zhang, S. Li, "Integration-enhanced Zhang neural network for real-time-varying
-matrix inversion in the presence of various kinds of noises", IEEE Transactions on Neural Networks
-and Learning Systems 27 (2016), which calls it noise-tolerant; the gain is that of a stationary
-first-order Kalman filter.
+The gain is that of a stationary first-order Kalman filter.
 """
 
 import math
 
-import numpy as np
-import pinocchio as pin
-
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references import Target
-from iiwa_dnn.robot.configuration import Configuration
 
 ROUGHNESS = 0.02
 """Roughness of a command that `noise_gain` accepts: its change from step to step as a share of the
@@ -70,41 +51,3 @@ def noise_gain(
     # The root in the form that does not cancel, and holds for b = 0.
     best = 2.0 * a / (a * dt + math.sqrt((a * dt) ** 2 + 4.0 * a * b))
     return min(best, roughness / dt)
-
-
-class IntegralFeedback:
-    """The integral term: turns a target into one that moves to make up for the past errors.
-
-    Attributes:
-        gain: k [1/s^2].
-    """
-
-    def __init__(self, gain: float) -> None:
-        """Start from no past.
-
-        Raises:
-            InvalidInputError: `gain` is not a positive number.
-        """
-        self.gain = checks.positive("integral_gain", gain)
-        self._integral = np.zeros(6)
-
-    def reset(self) -> None:
-        """Forget the past."""
-        self._integral[:] = 0.0
-
-    def observe(self, conf: Configuration, target: Target, dt: float) -> None:
-        """Add this step's error to the integral; once a step, and not while the arm cannot follow.
-
-        Args:
-            conf: Where the robot is.
-            target: Where it should be.
-            dt: Control period [s].
-        """
-        self._integral[:3] += dt * (target.position - conf.position)
-        self._integral[3:] += dt * np.asarray(pin.log3(target.rotation @ conf.rotation.T))
-
-    def apply(self, target: Target) -> Target:
-        """The target with the integral added to its velocities."""
-        data = target.data.copy()
-        data[12:] += self.gain * self._integral
-        return Target.from_data(data)

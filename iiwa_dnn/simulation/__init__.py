@@ -11,12 +11,8 @@ from iiwa_dnn.simulation.noise import (
     gaussian_noise as gaussian_noise,
 )
 from iiwa_dnn.simulation.plants import (
-    FrankaPlant as FrankaPlant,
-    FriPlant as FriPlant,
     IdealPlant as IdealPlant,
     MujocoPlant as MujocoPlant,
     Plant as Plant,
-    RealPlant as RealPlant,
 )
-from iiwa_dnn.simulation.retiming import Trajectory as Trajectory, retime as retime
 from iiwa_dnn.simulation.runner import Simulation as Simulation, simulate as simulate

@@ -8,12 +8,9 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.qp import Vector
-from iiwa_dnn.references import Target
-from iiwa_dnn.robot import Configuration
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated
 from iiwa_dnn.simulation.plants.base import Plant
@@ -36,7 +33,6 @@ class Outcome(NamedTuple):
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
         levels: Levels of priority at each stage.
         ends: Whether the run ends before this step: a policy or the plant stopped it.
-        t: Time after the step by the plant's clock [s]; None for a plant without one.
     """
 
     commands: Sequence[Command]
@@ -49,20 +45,13 @@ class Outcome(NamedTuple):
     torque: Vector | None = None
     levels: Sequence[Levels] = ()
     ends: bool = False
-    t: float | None = None
 
 
 Observer = Callable[[int, Outcome], object]
 
-_LONGEST_BRAKING = 10.0
-"""Time after which a motion to rest is given up [s]."""
-
 
 class Loop:
     """A controller and the plant that it moves, one control period after the other.
-
-    A real plant has its own clock: a step is computed for the time that it shows. If commands came
-    too late, the controller goes on from what the robot has done in their place.
 
     Step k: the joints are read, the controller answers at that reading and time k dt (and at the
     stages between), noise and filter act on the velocity, and the plant follows the result for dt.
@@ -82,7 +71,6 @@ class Loop:
         plant: Plant,
         motion: Motion = "euler",
         chain: SignalChain | None = None,
-        integral: IntegralFeedback | None = None,
     ) -> None:
         """Bring the parts together; the plant begins where it is.
 
@@ -91,14 +79,12 @@ class Loop:
             plant: The plant, started.
             motion: Method that integrates the motion of a plant that moves as it is told.
             chain: Noise and filters between controller and plant; None: none.
-            integral: Feedback of the error's integral; None: none.
         """
         self.controller = controller
         self.plant = plant
         self.q = plant.q
         self._motion = MOTIONS[motion]
         self._chain = chain
-        self._integral = integral
         self._yielded = False  # the last step was a policy's
         self._has_levels = bool(controller.levels)
         accelerates = controller.program.accelerates
@@ -116,20 +102,6 @@ class Loop:
                 return k - first + 1
         return steps
 
-    def brake(self) -> None:
-        """Bring a real arm to rest within the controller's limits; nobody observes it.
-
-        It rests when it has got the command to: if that came too late, it still moves.
-        """
-        delay = self.controller.delay
-        self.controller.halt()
-        for k in range(round(_LONGEST_BRAKING / self.controller.dt)):
-            if self.step(k).ends:
-                self.plant.move(np.zeros_like(self.q))
-                if self.plant.substitutes is None:
-                    break
-        self.controller.delay = delay  # that of the run, which ended before
-
     def step(self, k: int) -> Outcome:
         """Take step k.
 
@@ -138,7 +110,7 @@ class Loop:
         """
         controller = self.controller
         plant = self.plant
-        t = self._time(k)
+        t = k * controller.dt
         seen = self.q
         if self._misled:
             reading = plant.read()
@@ -146,8 +118,7 @@ class Loop:
         try:
             if not self._plain:
                 return self._general_step(k, t, seen)
-            target = None if self._integral is None else self._corrected(seen, t)
-            command = controller.step(seen, t, target)
+            command = controller.step(seen, t)
         except NoSolutionError as error:
             raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
         dq = command.dq
@@ -161,16 +132,6 @@ class Loop:
         self.q = plant.q
         return Outcome((command,), dq, dq, self.q, levels=levels)
 
-    def _time(self, k: int) -> float:
-        """Return the time of step k [s], after a real arm's controller knows of late commands."""
-        plant = self.plant
-        if not plant.is_real:
-            return k * self.controller.dt
-        substitutes = plant.substitutes
-        if substitutes is not None:
-            self.controller.resume(substitutes)
-        return plant.time
-
     def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
         """Take a step of several stages, of the acceleration level, or with an altered command."""
         controller = self.controller
@@ -179,10 +140,7 @@ class Loop:
         levels: list[Levels] = []
 
         def ask(q: Vector, time: float) -> Vector:
-            target = None
-            if self._integral is not None:
-                target = self._corrected(q, time, observe=not commands)
-            command = controller.compute(q, time, target)
+            command = controller.compute(q, time)
             commands.append(command)
             if self._has_levels:
                 levels.append(self._level_answers())
@@ -237,8 +195,6 @@ class Loop:
         torque = None
         ends = False
         before = self.q
-        elapsed = self.controller.dt
-        t = self.plant.time if self.plant.is_real else None
         if action is Action.STOP:
             self.controller.halt(commands[0])
             ends = not commands[0].dq.any()
@@ -247,10 +203,8 @@ class Loop:
             self.q = self.plant.q
             torque = self.plant.torque
             ends = self.plant.fault is not None
-            if t is not None and not ends:
-                elapsed = self.plant.time - t
             # Of an arm with mass the mean velocity of the period.
-            dq = dq if self.plant.exact else (self.q - before) / elapsed
+            dq = dq if self.plant.exact else (self.q - before) / self.controller.dt
         if ends:
             dq = np.zeros_like(dq)
             self.q = before
@@ -263,18 +217,7 @@ class Loop:
             torque=torque,
             levels=levels,
             ends=ends,
-            t=None if t is None else t + elapsed,
         )
-
-    def _corrected(self, q: Vector, t: float, observe: bool = True) -> dict[str, Target]:
-        """Return the target of a time with the integral of the errors fed back."""
-        assert self._integral is not None
-        controller = self.controller
-        target = Target.from_data(controller.targets(t - controller.delay)[0])
-        # Not while the arm cannot follow: the integral would wind up.
-        if observe and not self._yielded:
-            self._integral.observe(Configuration(controller.robot, q), target, controller.dt)
-        return {controller.program.target_frames[0]: self._integral.apply(target)}
 
     def _show_true_pose(self, command: Command) -> None:
         """Put the frame's true placement into the row of a command that was misled."""

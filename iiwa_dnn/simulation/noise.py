@@ -94,7 +94,6 @@ class Disturbance:
         noise_at: ``"velocity"``, commanded; ``"network"``, its x; ``"measurement"``, read joints.
         velocity: Added to every joint's velocity beside the noise; None: nothing.
         filter_window: Samples of the moving average of the velocity; 1: no filter.
-        integral_gain: Feedback of the error's integral [1/s^2] (`iiwa_dnn.control.feedback`).
         estimator: Noise model of a Kalman filter of the joint positions, whose bias the controller
             takes off its command; None: it sees what is measured.
     """
@@ -103,14 +102,12 @@ class Disturbance:
     noise_at: NoiseEntry = "velocity"
     velocity: VelocityDisturbance | None = None
     filter_window: int = 1
-    integral_gain: float = 0.0
     estimator: NoiseModel | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters; raises InvalidInputError naming the one that is wrong."""
         checks.one_of("noise_at", self.noise_at, NOISE_ENTRIES)
         checks.integer("filter_window", self.filter_window, 1)
-        checks.not_negative("integral_gain", self.integral_gain)
         if self.velocity is not None:
             checks.instance("disturbance", self.velocity, VelocityDisturbance)
         if self.estimator is not None:
@@ -123,6 +120,5 @@ class Disturbance:
             "noise_at": self.noise_at,
             "disturbance": None if self.velocity is None else asdict(self.velocity),
             "filter_window": self.filter_window,
-            "integral_gain": self.integral_gain,
             "estimator": None if self.estimator is None else self.estimator.settings(),
         }

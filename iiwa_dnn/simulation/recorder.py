@@ -83,8 +83,6 @@ class Recorder:
         steps = slice(self._done, self._done + count)
         arrays = self.arrays
         arrays["q"][steps.start + 1 : steps.stop + 1] = [each.q for each in outcomes]
-        if outcomes[0].t is not None:
-            self._array("t")[steps.start + 1 : steps.stop + 1] = [each.t for each in outcomes]
         arrays["dq"][steps] = [each.dq for each in outcomes]
         arrays["dq_solver"][steps] = [each.velocity for each in outcomes]
         stages = len(rows) // count
@@ -136,8 +134,7 @@ class Recorder:
     def finish(self) -> dict[str, NDArray[Any]]:
         """Return the columns, cut to the steps that were taken."""
         controller = self._controller
-        if "t" not in self.arrays:
-            self.arrays["t"] = controller.dt * np.arange(self._done + 1, dtype=np.float64)
+        self.arrays["t"] = controller.dt * np.arange(self._done + 1, dtype=np.float64)
         q = self.arrays["q"][self._done]
         placement = controller.placement(q)
         targets = controller.targets(self.arrays["t"][self._done] - controller.delay)

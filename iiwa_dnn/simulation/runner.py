@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import copy
-import gc
-import signal
-import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.metadata import version
@@ -18,10 +13,9 @@ from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.control.controller import Controller, Mode
-from iiwa_dnn.control.feedback import IntegralFeedback
 from iiwa_dnn.control.paths import References, by_frame
 from iiwa_dnn.control.policies import Policy
-from iiwa_dnn.errors import InvalidInputError, NoSolutionError, suggestion
+from iiwa_dnn.errors import InvalidInputError, suggestion
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.qp.compiling import WATCH
@@ -32,7 +26,7 @@ from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.collisions import collision_arrays, collision_settings
 from iiwa_dnn.simulation.chain import SignalChain
 from iiwa_dnn.simulation.judgement import Judgement
-from iiwa_dnn.simulation.loop import Loop, Observer
+from iiwa_dnn.simulation.loop import Loop
 from iiwa_dnn.simulation.motion import MOTIONS, Motion, check_motion
 from iiwa_dnn.simulation.noise import Disturbance
 from iiwa_dnn.simulation.plants import IdealPlant, Plant
@@ -45,11 +39,6 @@ BLOCK = 1000
 
 MAX_STEPS = 20_000_000
 """More would not fit into the memory of a usual machine: a record takes 0.4 kB a step."""
-
-_REHEARSED = 5
-"""Steps that are rehearsed before a real arm moves."""
-
-_INTERRUPTS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 
 _PACKAGES = ("iiwa-dnn", "numpy", "numba", "pin", "qpsolvers", "proxsuite", "osqp")
 
@@ -114,7 +103,6 @@ class Simulation:
     Attributes:
         controller: The controller of the run.
         steps: Number of steps.
-        interrupt: Signal at which a real arm was brought to rest; None: there was none.
     """
 
     def __init__(
@@ -150,7 +138,6 @@ class Simulation:
         chosen = RunOptions.of(options)
         dt = chosen.dt
         self._options = chosen
-        self.interrupt: signal.Signals | None = None
         self._plant = IdealPlant() if plant is None else plant
         checks.offers("plant", self._plant, "start", "read", "move", "packages", "settings")
         self._check = checks.instance("check", CrossCheck() if check is None else check, CrossCheck)
@@ -178,11 +165,8 @@ class Simulation:
         disturbance = self._options.disturbance
         one_clock = controller.mode != "converged" or not self._plant.exact
         check_motion(self._options.motion, one_clock, bool(program.ahead))
-        gain = disturbance.integral_gain
-        if gain and len(program.target_frames) > 1:
-            raise InvalidInputError("integral_gain", "is for one tracked frame", gain)
         chain = SignalChain(disturbance, 1, controller.robot.dof, controller.dt, self._options.seed)
-        if program.accelerates and (chain.changes or gain):
+        if program.accelerates and chain.changes:
             problem = "is of the acceleration level: it takes no noise but of measurements"
             raise InvalidInputError("scheme", problem, scheme)
 
@@ -232,12 +216,8 @@ class Simulation:
     def run(self, progress: Progress | None = None) -> Record:
         """Take every step, or those until a policy or the plant ends the run.
 
-        A real arm brakes at the end. At Ctrl-C or SIGTERM, noted in `interrupt`, it brakes at once,
-        and what it did is recorded all the same.
-
         Args:
-            progress: Called now and then with the number of steps done since the last call; for a
-                real arm once, at the end.
+            progress: Called now and then with the number of steps done since the last call.
 
         Raises:
             NoSolutionError: A step has no solution and the policy is ``raise``.
@@ -247,19 +227,15 @@ class Simulation:
         dt = controller.dt
         controller.reset()
         self._plant.start(controller.robot, self._q0, dt, self._options.seed)
-        if self._plant.is_real:
-            self._rehearse()
         loop = self._loop()
         recorder = Recorder(self.steps, controller, loop.q, self._settings)
         stages = MOTIONS[self._options.motion].stages
         layout = recorder.layout
-        # A hand-over takes longer than a real arm's period.
-        block = self.steps if self._plant.is_real else BLOCK
         done = 0
         with Judgement(self._check, self.steps, stages, layout, controller.levels) as judgement:
             observers = (recorder.observe, judgement.observe)
             while done < self.steps and recorder.last_step is None:
-                taken = self._move(loop, min(block, self.steps - done), observers, done)
+                taken = loop.run(min(BLOCK, self.steps - done), observers, done)
                 judgement.submit(recorder.flush())
                 done += taken
                 if progress is not None:
@@ -281,51 +257,6 @@ class Simulation:
             wall_time_s=time.perf_counter() - WATCH.seconds - began,
         )
 
-    def _rehearse(self) -> None:
-        """Call all that a run may need once: a first call takes many of a robot's periods."""
-        controller = self.controller
-        controller.warm_up()
-        twin = copy.copy(controller)
-        middle = 0.5 * self.steps * controller.dt
-        with suppress(NoSolutionError):
-            for _ in range(_REHEARSED):
-                twin.step(self._q0, middle)  # where the arm is not, so that a policy decides
-        twin.halt()
-        twin.step(self._q0, middle)
-        controller.compute(self._q0, 0.0)
-
-    def _move(self, loop: Loop, steps: int, observers: Sequence[Observer], first: int) -> int:
-        """Take steps of the loop, a real arm's with a motion to rest after them; return how many.
-
-        Signals let a real arm brake. Python's handlers run between two instructions, and an
-        exception there could lose a command.
-        """
-        plant = self._plant
-        if not plant.is_real:
-            return loop.run(steps, observers, first)
-
-        def brake(number: int, frame: object) -> None:
-            self.interrupt = signal.Signals(number)
-            loop.controller.halt()
-
-        handlers = {}
-        if threading.current_thread() is threading.main_thread():
-            handlers = {each: signal.signal(each, brake) for each in _INTERRUPTS}
-        collects = gc.isenabled()
-        gc.disable()  # a collection among the outcomes of a run takes many periods
-        try:
-            try:
-                return loop.run(steps, observers, first)
-            finally:
-                if plant.fault is None:
-                    loop.brake()
-        finally:
-            plant.stop()
-            for each, handler in handlers.items():
-                signal.signal(each, handler)
-            if collects:
-                gc.enable()
-
     def _loop(self) -> Loop:
         """Make the loop of one run, its noise drawn."""
         controller = self.controller
@@ -333,20 +264,16 @@ class Simulation:
         chain = SignalChain(
             disturbance, self.steps, controller.robot.dof, controller.dt, self._options.seed
         )
-        gain = disturbance.integral_gain
-        integral = IntegralFeedback(gain) if gain else None
-        return Loop(controller, self._plant, self._options.motion, chain, integral)
+        return Loop(controller, self._plant, self._options.motion, chain)
 
     def _status(self, recorder: Recorder) -> str:
         """Describe the end of a run."""
         k = recorder.last_step
         if k is None:
             return COMPLETED
-        where = f"stopped at step {k} (t = {recorder.arrays['t'][k]:g} s)"
+        where = f"stopped at step {k} (t = {k * self.controller.dt:g} s)"
         if self._plant.fault is not None:
             return f"{where}: {self._plant.fault}"
-        if self.interrupt is not None:
-            return f"{where}: {_INTERRUPTS[self.interrupt]}"
         against = recorder.stop_reason(k)
         if self.controller.mode == "continuous" and not against:
             return f"{where}: the network diverged: take a smaller dt, larger rho or more substeps"
@@ -382,10 +309,7 @@ def simulate(
         NoSolutionError: A step has no solution and the policy is ``raise``.
     """
     simulation = Simulation(robot, scheme, reference, q0, **options)
-    record = simulation.run(progress)
-    if simulation.interrupt is not None:
-        signal.raise_signal(simulation.interrupt)
-    return record
+    return simulation.run(progress)
 
 
 def _reference_settings(reference: References | None) -> dict[str, Any]:

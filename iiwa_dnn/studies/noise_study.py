@@ -51,8 +51,6 @@ COUNTERMEASURES: dict[str, dict[str, Any]] = {
     "average of 10, the paper's": {"filter_window": paper.WINDOW},
     "gain": {"gain": GAIN},
     "gain and average": {"gain": GAIN, "filter_window": paper.WINDOW},
-    "integral": {"integral_gain": DoubleIndicator().position_gain ** 2 / 4.0},
-    "gain and integral": {"gain": GAIN, "integral_gain": GAIN**2 / 4.0},
     "Kalman": {"estimator": {"velocity": 1e-3, "measurement": ENCODER_NOISE}},
     "Kalman with bias": {
         "estimator": {"velocity": 1e-3, "measurement": 1e-6, "bias_walk": 0.01, "bias": 0.1}

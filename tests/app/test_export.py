@@ -40,7 +40,6 @@ def test_the_settings_of_a_run_become_c(
 @pytest.mark.parametrize(
     ("words", "named"),
     [
-        (["--integral-gain", "3"], "--integral-gain"),
         (["--filter-window", "5"], "--filter-window"),
         (["--motion", "rk4"], "--motion"),
     ],

@@ -1,4 +1,4 @@
-"""The integral term and the chosen gain, against what their differential equation does."""
+"""The chosen gain against the stationary variance of its recursion."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_discrete_lyapunov
 
-from helpers_kinematics import PAPER_Q0
-from helpers_simulation import near_target, paper_robot
-from iiwa_dnn.control.feedback import ROUGHNESS, IntegralFeedback, noise_gain
+from iiwa_dnn.control.feedback import ROUGHNESS, noise_gain
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.robot.configuration import Configuration
 
 
 def variance(gain: float, velocity: float, measurement: float, dt: float) -> float:
@@ -51,35 +48,3 @@ def test_an_exact_measurement_is_fed_back_as_far_as_the_roughness_allows() -> No
 def test_a_bad_number_is_named(arguments: tuple[float, ...], name: str) -> None:
     with pytest.raises(InvalidInputError, match=rf"^{name}\b"):
         noise_gain(*arguments)
-
-
-def test_the_integral_is_that_of_position_and_rotation_errors() -> None:
-    conf, target = Configuration(paper_robot(), PAPER_Q0), near_target(PAPER_Q0, 3)
-    feedback = IntegralFeedback(gain=5.0)
-    untouched = target.data.copy()
-    for _ in range(4):
-        feedback.observe(conf, target, 0.1)
-    moved = feedback.apply(target)
-    np.testing.assert_array_equal(target.data, untouched)
-    np.testing.assert_array_equal(moved.data[:12], untouched[:12])
-    error = target.position - conf.position
-    np.testing.assert_allclose(
-        moved.linear_velocity - target.linear_velocity, 5.0 * 0.4 * error, rtol=1e-12
-    )
-    # The rotation's error by its own definition: turning by it leads from here to there.
-    turn = (moved.angular_velocity - target.angular_velocity) / (5.0 * 0.4)
-    x, y, z = turn
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    power, series = np.eye(3), np.zeros((3, 3))
-    for k in range(1, 30):
-        series += power
-        power = power @ cross / k
-    np.testing.assert_allclose(series @ conf.rotation, target.rotation, rtol=0, atol=1e-12)
-    feedback.reset()
-    np.testing.assert_array_equal(feedback.apply(target).data, untouched)
-
-
-@pytest.mark.parametrize("gain", [0.0, -1.0, np.nan])
-def test_a_bad_integral_gain_is_named(gain: float) -> None:
-    with pytest.raises(InvalidInputError, match=r"^integral_gain\b"):
-        IntegralFeedback(gain)

@@ -189,7 +189,6 @@ def test_an_arm_with_mass_follows() -> None:
         (lambda: scheme(tasks=(PositionTask(tracking="next"),)).program(ROBOT), "tasks"),
         (lambda: scheme().build_qp(START, heart().at(0.0)), "dt"),
         (lambda: drive(scheme(), noise=0.1), "scheme"),
-        (lambda: drive(scheme(), integral_gain=1.0), "scheme"),
         (lambda: JointAcceleration(damping=-1.0), "damping"),
         (lambda: JointTorque(weight=-1.0), "weight"),
     ],

@@ -88,12 +88,10 @@ def test_a_run_without_a_task_of_the_tip_records_the_frame_that_it_tracks() -> N
     assert record.frame_position is None
 
 
-def test_a_frame_without_a_reference_and_an_integral_over_two_frames_are_refused() -> None:
+def test_a_frame_without_a_reference_is_refused() -> None:
     robot, start = paper_robot(), paper_start()
     paths = references(robot.tip, ELBOW)
     with pytest.raises(InvalidInputError, match=rf"^reference.*{ELBOW}"):
         simulate(robot, scheme(None, ELBOW), {robot.tip: paths[robot.tip]}, start.q)
     with pytest.raises(InvalidInputError, match=rf"^reference.*no task tracks.*{ELBOW}"):
         simulate(robot, scheme(None), paths, start.q)
-    with pytest.raises(InvalidInputError, match=r"^integral_gain"):
-        simulate(robot, scheme(None, ELBOW), paths, start.q, integral_gain=1.0)

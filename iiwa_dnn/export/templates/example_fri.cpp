@@ -2,7 +2,6 @@
 // It needs KUKA's FRI client SDK, in the folder SDK with its library built:
 //     cc -O2 -c controller.c
 //     c++ -O2 -I$SDK/include example_fri.cpp controller.o libFRIClient.a -o example_fri
-// Without a robot, beside it: iiwa-dnn fri-robot --period @dt@
 #include <cmath>
 #include <cstddef>  // the SDK's headers take NULL for granted
 

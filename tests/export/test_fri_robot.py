@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fri_robot import MIRRORED_PERIODS, READY_PERIODS, WINDOW, FriController
 from helpers_fri import read_monitoring, write_command
 from helpers_simulation import paper_start
 from iiwa_dnn import InvalidInputError, load_robot
 from iiwa_dnn.simulation import IdealPlant
-from iiwa_dnn.simulation.fri_robot import MIRRORED_PERIODS, READY_PERIODS, WINDOW, FriController
 
-pytest.importorskip("google.protobuf", reason="pip install 'iiwa-dnn[fri]'")
+pytest.importorskip("google.protobuf")
 
 PERIOD = 5e-3
 IDLE, MONITORING_WAIT, MONITORING_READY, COMMANDING_WAIT, COMMANDING_ACTIVE = range(5)

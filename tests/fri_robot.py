@@ -19,13 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.files import one_line
-from iiwa_dnn.qp.program import Vector
-from iiwa_dnn.robot import Robot
-from iiwa_dnn.simulation.plants.base import JOINTS, Plant
-from iiwa_dnn.simulation.plants.fri_messages import (
+from fri_messages import (
     COMMAND_ID,
     LARGEST_MESSAGE,
     MONITORING_ID,
@@ -36,6 +30,14 @@ from iiwa_dnn.simulation.plants.fri_messages import (
     message_types,
     parse,
 )
+from iiwa_dnn import checks
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.files import one_line
+from iiwa_dnn.qp.program import Vector
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.simulation.plants import Plant
+
+JOINTS = 7
 
 WINDOW = 100
 """Number of the last messages that the connection quality is computed from."""
