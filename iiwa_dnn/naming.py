@@ -19,16 +19,20 @@ def bound_words(settings: Mapping[str, Any]) -> tuple[str, ...]:
     return ("position" if len(bounding) <= 1 else f"position limit or {own}"), *KINDS[1:]
 
 
-def bound_name(joint: int, code: int, words: Sequence[str]) -> dict[str, Any]:
+def bound_name(
+    joint: int, code: int, words: Sequence[str], joints: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return the name of a joint's bound, as `describe` takes it.
 
     Args:
         joint: Number of the joint, from 0.
         code: Kind of the bound, positive for an upper one, negative for a lower one.
         words: `bound_words`.
+        joints: Names of the joints; none: they go by their numbers.
     """
     side = "upper" if code > 0 else "lower"
-    return {"joint": joint + 1, "side": side, "limit": words[abs(code) - 1]}
+    name = {"joint": joint + 1, "side": side, "limit": words[abs(code) - 1]}
+    return name | {"name": joints[joint]} if joints else name
 
 
 def in_the_way(
@@ -42,17 +46,32 @@ def in_the_way(
         rows: Other than 0 for an inequality row that is meant, (m,).
     """
     words = bound_words(settings)
-    bounds = [bound_name(joint, int(code), words) for joint, code in enumerate(codes) if code]
+    joints = settings.get("joints", ())
+    bounds = [bound_name(j, int(code), words, joints) for j, code in enumerate(codes) if code]
     return bounds + [row for row, acts in zip(settings["rows"], rows, strict=True) if acts]
 
 
 def describe(limit: Mapping[str, Any]) -> str:
-    """Name a bound, ``joint 1 lower position limit``, or a row, ``row 3 of CollisionAvoidance``."""
+    """Name a bound, ``panda_joint4 lower velocity limit``, or a row, ``row 3 of TipSpeedLimit``."""
     if "row" in limit:
         about = f" ({limit['about']})" if "about" in limit else ""
         return f"row {limit['row']} of {limit['part']}{about}"
     end = " limit" if limit["limit"] in KINDS else ""
-    return f"joint {limit['joint']} {limit['side']} {limit['limit']}{end}"
+    joint = limit.get("name", f"joint {limit['joint']}")
+    return f"{joint} {limit['side']} {limit['limit']}{end}"
+
+
+def joint_name(settings: Mapping[str, Any], joint: int) -> str:
+    """Return the name of a joint, counted from 0, in a run of these settings."""
+    names = settings.get("joints") or ()
+    return str(names[joint]) if names else f"joint {joint + 1}"
+
+
+def short_names(settings: Mapping[str, Any], dof: int) -> list[str]:
+    """Return short names of the joints, without the words that all their names have in common."""
+    names = [joint_name(settings, joint).replace("_", " ").split() for joint in range(dof)]
+    common = set(names[0]).intersection(*names) if dof > 1 else set()
+    return [" ".join(word for word in name if word not in common) for name in names]
 
 
 def unwatched(links: Iterable[str]) -> str:

@@ -9,9 +9,11 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
-from iiwa_dnn.naming import describe
+from iiwa_dnn.naming import describe, joint_name
 from iiwa_dnn.results.markdown import number
 from iiwa_dnn.results.metrics import (
+    BOUNDS,
+    EXCESS_TOLERANCE,
     FAR,
     JOINT_LIMITS,
     PROOF,
@@ -67,6 +69,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
         *([] if is_finite else ["the tip position is not finite at every step"]),
         *_unsolved(metrics, record),
         *_crosscheck(metrics["crosscheck"], metrics["steps"]),
+        *_other_programs(metrics["crosscheck"]),
         *_broken_limits(metrics, record),
         *_too_near(metrics.get("collisions")),
         *_torques(metrics, record),
@@ -148,9 +151,18 @@ def _needed(metrics: Mapping[str, Any]) -> str:
     time = np.ceil(10.0 * needed["time_s"]) / 10.0
     return (
         f"; {part}needs {ratio:g} times the joints' speed, "
-        f"most of all joint {needed['joint']}'s, or "
-        f"{ratio:g} times as long a time; slowed as here it ends after about {time:g} s"
+        f"most of all {needed['name']}'s, or {ratio:g} times as long a time "
+        f"({_slower(metrics['settings'].get('reference'), ratio)}); "
+        f"slowed as here it ends after about {time:g} s (--duration {time:g})"
     )
+
+
+def _slower(reference: object, ratio: float) -> str:
+    """Return the option that makes a path take so many times as long."""
+    if isinstance(reference, Mapping) and "period" in reference:
+        period = ratio * reference["period"]
+        return f"--period {period:g} --duration {period:g}"
+    return f"--stretch {ratio:g} times as large"
 
 
 def _off_path(incidents: Mapping[str, Any]) -> str:
@@ -261,9 +273,13 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
         if first["solver"] == PROOF:
             said = f"proven within {_show(first['gap'])} rad/s of the exact solution alone"
             disagree = ""
+        tolerance = check["tolerance"]
+        if first["solver"] == BOUNDS:
+            said = f"the command is {_show(first['gap'])} outside of its bounds and rows"
+            tolerance = EXCESS_TOLERANCE
         reasons.append(
             f"step {first['step']} (t = {first['time_s']:.6g} s): {said}, tolerance "
-            f"{_show(check['tolerance'])}; {_count(check['disagreements'])}{disagree} in all"
+            f"{_show(tolerance)}; {_count(check['disagreements'])}{disagree} in all"
         )
     if not check["judged"]:  # in continuous mode the gap is a lag
         return reasons
@@ -276,9 +292,28 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> list[str]:
             f"{missing:,} reference {answers} missing or not accurate enough to judge by "
             f"({check['solver']}); the check 'proof' needs no other solver"
         )
-    if check["steps_checked"] < steps:
-        reasons.append(f"only {check['steps_checked']:,} of {_count(steps)} were checked")
+    missing = steps - check["steps_checked"] - check["kinds"]["stopped"]
+    if missing:
+        reasons.append(f"{_count(missing)} of {steps:,} not checked")
     return reasons
+
+
+def programs_checked(check: Mapping[str, Any], separator: str = ", ") -> str:
+    """State which programs were checked, ``736 own, 9,264 softened programs checked``."""
+    kinds = check["kinds"]
+    answered = [f"{kinds[kind]:,} {kind}" for kind in ("own", "scaled", "softened") if kinds[kind]]
+    parts = [f"{', '.join(answered) or 'no'} programs checked"]
+    if kinds["held"]:
+        parts.append(f"{kinds['held']:,} held back, checked for their bounds alone")
+    if kinds["stopped"]:
+        parts.append(f"{kinds['stopped']:,} stopped, with nothing to check")
+    return separator.join(parts)
+
+
+def _other_programs(check: Mapping[str, Any]) -> list[str]:
+    """State what was checked where it is not each step's own program."""
+    others = [kind for kind, steps in check["kinds"].items() if steps and kind != "own"]
+    return [programs_checked(check)] if others and check["judged"] else []
 
 
 def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
@@ -292,7 +327,7 @@ def _broken_limits(metrics: Mapping[str, Any], record: Record | None) -> list[st
             if record is not None:
                 excess = limit.excess(record)
                 step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
-                where = f"; joint {joint + 1} at {_at(record, step)}"
+                where = f"; {joint_name(metrics['settings'], int(joint))} at {_at(record, step)}"
             reasons.append(f"joint {limit.kind} limit broken by {_show(worst)} {limit.unit}{where}")
     return reasons
 
@@ -317,7 +352,8 @@ def _torques(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
     for joint in np.flatnonzero(reached.any(axis=0)):
         steps = np.flatnonzero(reached[:, joint])
         reasons.append(
-            f"joint {joint + 1} torque reached its limit of {limit[joint]:g} N m at "
+            f"{joint_name(metrics['settings'], joint)}: torque reached its limit of "
+            f"{limit[joint]:g} N m at "
             f"{_at(record, steps[0])}; {steps.size:,} in all"
         )
     return reasons

@@ -1,5 +1,6 @@
 """The numbers that sum up a run: pure functions of its record."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
@@ -10,14 +11,25 @@ from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import KINDS, bound_name, bound_words, in_the_way
+from iiwa_dnn.naming import KINDS, bound_name, bound_words, in_the_way, joint_name
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 PROOF = "proof"
 """Name of the proof among a run's reference solvers."""
 
-_SLOW = 2
-ACTIONS = {1: "fallback", _SLOW: "slow", 3: "relax", 4: "stop", 5: "euler"}
+KINDS_OF_PROGRAM = ("own", "scaled", "softened", "held", "stopped")
+"""Kinds of a step by their codes in `Record.kind`."""
+
+_HELD, _STOPPED = (KINDS_OF_PROGRAM.index(name) for name in ("held", "stopped"))
+
+EXCESS_TOLERANCE = 1e-9
+"""Excess of a command over the bounds and rows of its own step that is rounding."""
+
+BOUNDS = "bounds"
+"""Name of what judges a command beside its step's own bounds and rows."""
+
+_SLOW, _RELAX, _STOP = 2, 3, 4
+ACTIONS = {1: "fallback", _SLOW: "slow", _RELAX: "relax", _STOP: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5
@@ -200,6 +212,11 @@ def compute_metrics(record: Record) -> dict[str, Any]:
                 if limit.setting in settings
             },
             "max_kkt_residual": _max(record.kkt_residual),
+            "active_limit_steps": _active(record).sum(),
+            "network_iterations": {
+                "mean": record.iterations.mean() if record.steps else None,
+                "max": _max(record.iterations),
+            },
             "crosscheck": _crosscheck(record),
             **_physics(record, distance),
             **_incidents(record),
@@ -234,9 +251,23 @@ def _frames(record: Record) -> dict[str, Any]:
     return found
 
 
-def _max(values: FloatArray) -> float | None:
+def _max(values: NDArray[Any]) -> Any:
     """Return the largest value (NaN if there is one), None of no values."""
-    return float(values.max()) if values.size else None
+    return values.max() if values.size else None
+
+
+def _active(record: Record) -> BoolArray:
+    """Test for each step whether a bound or an inequality row was active, (N,)."""
+    multipliers = [record.filled(name) for name in ("bound_multiplier", "row_multiplier")]
+    return np.asarray(np.hstack(multipliers).any(axis=1))
+
+
+def program_kinds(record: Record) -> Codes:
+    """Return what each step answered, (N,): places in `KINDS_OF_PROGRAM`."""
+    if record.kind is not None:
+        return record.kind
+    action = record.filled("action")
+    return np.select([action == _SLOW, action == _RELAX, action == _STOP], [1, 2, _STOPPED])
 
 
 def _crosscheck(record: Record) -> dict[str, Any]:
@@ -248,42 +279,67 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     check = record.settings["check"]
     gap = record.solution_gap
     residual = record.reference_residual
-    # A residual without a gap is an answer too: the network's own was then not a number.
-    asked = ~(np.isnan(gap) & np.isnan(residual))
+    kinds = program_kinds(record)
+    # A residual without a gap is an answer too: the network's own was then not a number. Of a
+    # stopped step there is nothing to ask.
+    asked = ~(np.isnan(gap) & np.isnan(residual)) & (kinds != _STOPPED)[:, np.newaxis]
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
     judged = record.settings["mode"] == "converged" and record.references > 0
     # Not `gap > tolerance`, which a NaN would pass.
     disagrees = believed & ~(gap <= check["tolerance"]) & judged
+    excess = record.filled("excess")
+    outside = ~(excess <= EXCESS_TOLERANCE) & (kinds != _STOPPED)
+    outside &= record.settings["mode"] == "converged"
+    checked = asked.all(axis=1) & (record.references > 0)
     proofs = [name == PROOF for name in check["solvers"]]
     proven = {"proven": int(believed[:, proofs].sum())} if any(proofs) else {}
     return {
         "solver": "+".join(check["solvers"]) or "none",
         **proven,
-        "steps_checked": int(asked.all(axis=1).sum()) if record.references else 0,
-        "disagreements": int(disagrees.any(axis=1).sum()),
+        "steps_checked": int(checked.sum()),
+        "kinds": {
+            name: int(((kinds == code) & (checked | (code >= _HELD))).sum())
+            for code, name in enumerate(KINDS_OF_PROGRAM)
+        },
+        **_judged_by(record, asked),
+        "disagreements": int((disagrees.any(axis=1) | outside).sum()),
         "reference_failures": int((asked & ~believed).sum()),
         "max_solution_gap": _max(gap[believed]),
         "max_objective_gap": _max(record.objective_gap[believed]),
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
+        "max_excess": _max(excess),
         "judged": judged,
         "tolerance": check["tolerance"],
-        "first_disagreement": _first_disagreement(record, disagrees),
+        "first_disagreement": _first_disagreement(record, disagrees, outside),
     }
 
 
-def _first_disagreement(record: Record, disagrees: BoolArray) -> dict[str, Any] | None:
-    """Name the first step that disagrees, and the solver that differs most there."""
-    if not disagrees.any():
+def _judged_by(record: Record, asked: BoolArray) -> dict[str, Any]:
+    """Count the answers that each solver judged: those asked for, and the second ones."""
+    if record.judge is None:
+        return {}
+    counts: Counter[str] = Counter()
+    for i, name in enumerate(record.settings["check"]["solvers"]):
+        second = "osqp" if name == "proxqp" else "proxqp"
+        for code, solver in enumerate((name, second)):
+            counts[solver] += int((asked[:, i] & (record.judge[:, i] == code)).sum())
+    return {"judged_by": {solver: count for solver, count in counts.items() if count}}
+
+
+def _first_disagreement(
+    record: Record, disagrees: BoolArray, outside: BoolArray
+) -> dict[str, Any] | None:
+    """Name the first step that disagrees, and the solver that differs most there, or its bounds."""
+    wrong = np.flatnonzero(disagrees.any(axis=1) | outside)
+    if not wrong.size:
         return None
-    step = int(np.flatnonzero(disagrees.any(axis=1))[0])
+    step = int(wrong[0])
+    found = {"step": step, "time_s": record.t[step]}
+    if outside[step]:
+        return found | {"solver": BOUNDS, "gap": record.filled("excess")[step]}
     gap = record.solution_gap[step]
     solver = int(np.argmax(np.where(disagrees[step], gap, -np.inf)))
-    return {
-        "step": step,
-        "time_s": record.t[step],
-        "solver": record.settings["check"]["solvers"][solver],
-        "gap": gap[solver],
-    }
+    return found | {"solver": record.settings["check"]["solvers"][solver], "gap": gap[solver]}
 
 
 def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
@@ -369,7 +425,8 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
     ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
     joint = int(ratio.argmax())
     time = record.t[-1] * record.path_duration / max(record.path_time, np.finfo(float).tiny)
-    return {"joint": joint + 1, "speed_ratio": ratio[joint], "time_s": time}
+    named = {"joint": joint + 1, "name": joint_name(record.settings, joint)}
+    return named | {"speed_ratio": ratio[joint], "time_s": time}
 
 
 def _off_path(record: Record, action: Codes, blocking: Codes) -> float | None:
@@ -381,7 +438,7 @@ def _off_path(record: Record, action: Codes, blocking: Codes) -> float | None:
     slowed = rows & (action == _SLOW) & (np.abs(blocking) <= _VELOCITY).all(axis=1)
     if not slowed.any() or start_distance(record) > FAR:
         return None
-    return _max(np.linalg.norm(position_error(record)[1:][slowed], axis=1))
+    return float(np.linalg.norm(position_error(record)[1:][slowed], axis=1).max())
 
 
 def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:
@@ -419,10 +476,11 @@ def _collisions(record: Record) -> dict[str, Any]:
 def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
     """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
     words = bound_words(record.settings)
+    joints = record.settings.get("joints", ())
     codes = range(1, 1 + len(words))
     for joint, sign, code in product(range(record.dof), (-1, 1), codes):
         of_kind = kinds[:, joint] == code
-        name = bound_name(joint, sign * code, words)
+        name = bound_name(joint, sign * code, words, joints)
         yield name, np.where(of_kind, sign * signed[:, joint], 0)
 
 

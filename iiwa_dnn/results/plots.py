@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.files import prepare_folder, write_atomically
-from iiwa_dnn.naming import describe
+from iiwa_dnn.naming import describe, short_names
 from iiwa_dnn.results.envelope import BUCKETS, envelope, stretches
 from iiwa_dnn.results.metrics import (
     blocking_limits,
@@ -37,12 +37,13 @@ STYLE = Path(__file__).with_name("style.mplstyle")
 
 _ROUGH = 40.0  # sum of the ups and downs of a rough curve, over its largest value
 _COARSE = 60  # stretches that a rough curve is drawn in
+_TAG_HEIGHT = 0.05  # of a limit's name, over the height of the axes
 _MOST_BARS = 6  # limits below the path's time
 
 _JOINTS = {
-    "q": (r"$q_{}$", "Joint angle [rad]"),
-    "dq": (r"$\dot{{q}}_{}$", "Joint velocity [rad/s]"),
-    "torque": (r"$\tau_{}$", "Joint torque [% of its limit]"),
+    "q": (r"$q_{{{}}}$", "Joint angle [rad]"),
+    "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]"),
+    "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]"),
 }
 _COMPONENTS = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
 _LIMIT_LINE: dict[str, Any] = {"color": "0.0", "linewidth": 0.8, "linestyle": (0, (8, 3))}
@@ -271,6 +272,8 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     t = record.t[: len(values)]
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     every = max(min(len(t), BUCKETS) // 7, 1)
+    names = short_names(record.settings, record.dof)
+    labels = [label.format(name) if name.isdigit() else name for name in names]
     for joint, curve in enumerate(values.T):
         style = {
             "color": colors[joint],
@@ -278,16 +281,18 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
             "marker": _MARKERS[joint % len(_MARKERS)],
             # Each joint's markers start elsewhere, lest they lie on top of each other.
             "markevery": (every * joint // record.dof, every),
-            "label": label.format(joint + 1),
+            "label": labels[joint],
         }
         _draw_curve(axes, t, curve, **style)
     time_axis(axes, record)
     if name == "q":
-        _draw_limits(axes, [*limits(record, "q_lower", -np.inf), *limits(record, "q_upper")])
+        bounds = [limits(record, "q_lower", -np.inf), limits(record, "q_upper")]
+        _draw_limits(axes, bounds, labels, colors)
     elif name == "dq":
-        _draw_limits(axes, [*-limits(record, "dq_max"), *limits(record, "dq_max")])
+        bounds = [-limits(record, "dq_max"), limits(record, "dq_max")]
+        _draw_limits(axes, bounds, labels, colors)
     axes.set_ylabel(quantity)
-    legend_above(axes, columns=4)
+    legend_above(axes, columns=4 if max(map(len, names)) < 8 else 2)
 
 
 def _draw_curve(
@@ -309,13 +314,37 @@ def _draw_curve(
         axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.3)
 
 
-def _draw_limits(axes: Axes, values: list[float]) -> None:
-    """Draw the limits near the curves; one far off would only flatten them."""
+def _draw_limits(axes: Axes, bounds: list[FloatArray], labels: list[str], colors: Any) -> None:
+    """Draw the limits near the curves, beside each the joints that it belongs to.
+
+    A limit far off would only flatten the curves. Limits too near each other share their names.
+    """
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)
-    near = {value for value in values if low - margin <= value <= high + margin}
-    for i, limit in enumerate(sorted(near)):
-        axes.axhline(limit, label=None if i else "limit", **_LIMIT_LINE)
+    values = np.concatenate(bounds)
+    tags: list[list[int]] = []
+    for i in np.argsort(values):
+        if not low - margin <= values[i] <= high + margin:
+            continue
+        if not tags or values[i] - values[tags[-1][0]] > _TAG_HEIGHT * (high - low):
+            tags.append([])
+        tags[-1].append(int(i))
+    for number, tag in enumerate(tags):
+        joints = sorted({i % len(labels) for i in tag})
+        color = colors[joints[0]] if len(joints) == 1 else "0.0"
+        style = _LIMIT_LINE | {"color": color}
+        for value in np.unique(values[tag]):
+            axes.axhline(value, label=None if number else "limit", **style)
+            number += 1
+        names = ", ".join(labels[joint] for joint in joints)
+        axes.annotate(
+            "all" if len(joints) == len(labels) else names,
+            (1.01, float(values[tag].mean())),
+            xycoords=axes.get_yaxis_transform(),
+            va="center",
+            fontsize=6,
+            color=color,
+        )
 
 
 def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None:

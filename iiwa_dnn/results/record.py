@@ -174,6 +174,32 @@ class Record:
             "1 where an inequality row was in the way of a solution, else 0", ("N", "m"), np.int8
         ),
     ] = None
+    kind: Annotated[
+        CodeArray | None,
+        Column(
+            "Program that each step answered: 0 its own, 1 the scaled one (A x = s b), 2 the "
+            "softened one, 3 held back from it by acceleration, jerk or braking, 4 stopped",
+            ("N",),
+            np.int8,
+        ),
+    ] = None
+    excess: Annotated[
+        FloatArray | None,
+        Column(
+            "Largest excess of each command over the bounds and inequality rows of its own step",
+            ("N",),
+        ),
+    ] = None
+    judge: Annotated[
+        CodeArray | None,
+        Column(
+            "Solver that judged in the place of each reference: 0 itself, 1 the second one, -1 "
+            "none",
+            ("N", "k"),
+            np.int8,
+            fill=-1,
+        ),
+    ] = None
     level_residual: Annotated[
         FloatArray | None,
         Column("Largest residual of the task rows of each priority level", ("N", "l")),
@@ -263,6 +289,7 @@ class Record:
         if array is not None:
             return array
         sizes = {"n": self.dof, "m": len(self.settings.get("rows") or ()), "l": 0, "f": 0}
+        sizes["k"] = self.references
         return COLUMNS[name].allocate(self.steps, **sizes)
 
     @property

@@ -9,7 +9,7 @@ from typing import Any
 
 from iiwa_dnn.files import prepare_folder, write_json
 from iiwa_dnn.naming import describe, unwatched
-from iiwa_dnn.results.failures import INFEASIBLE, failures
+from iiwa_dnn.results.failures import INFEASIBLE, failures, programs_checked
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import save_figures
@@ -61,8 +61,10 @@ _SUMMARY = {
     "kinetic index": "max {max_kinetic_index} {kinetic_unit}",
     "beyond limits": "{position_limit_violation_rad} rad, {velocity_limit_violation_rad_s} rad/s",
     "KKT residual": "max {max_kkt_residual}, tolerance {tol}",
-    "cross-check": "{solver}, {steps_checked} steps checked, {disagreements} disagreements, "
-    "{reference_failures} failures\n"
+    "difficulty": "{active_limit_steps} of {steps} steps with an active limit; "
+    "{mean} {systems} a step, at most {max}",
+    "cross-check": "{solver}: {programs}, {disagreements} disagreements, "
+    "{reference_failures} failures{judged_by}\n"
     "largest gap {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
     "wall time": "{wall_time_s} s, {realtime_factor} x real time",
 }
@@ -71,7 +73,7 @@ _PROVEN = (
     "{reference_failures} not proven"
 )
 _COMPARED = (
-    "{solver}, {steps_checked} steps compared, not judged; "
+    "{solver}, {steps_checked} own programs compared, not judged; "
     "{reference_failures} of them it could not solve\n"
     "largest lag {max_solution_gap} rad/s"
 )
@@ -98,6 +100,7 @@ _RESULTS: Table = (
     ("beyond acceleration limits", "acceleration_limit_violation_rad_s2", "rad/s²"),
     ("beyond jerk limits", "jerk_limit_violation_rad_s3", "rad/s³"),
     ("steps", "steps", ""),
+    ("steps with an active bound or row", "active_limit_steps", ""),
     ("time step", "dt_s", "s"),
     ("time simulated", "duration_s", "s"),
     ("wall time", "wall_time_s", "s"),
@@ -105,13 +108,18 @@ _RESULTS: Table = (
 )
 _CROSSCHECK: Table = (
     ("reference solver", "solver", ""),
-    ("steps checked", "steps_checked", ""),
+    ("own programs checked", "own", ""),
+    ("scaled programs checked", "scaled", ""),
+    ("softened programs checked", "softened", ""),
+    ("steps held back, checked for their bounds alone", "held", ""),
+    ("steps stopped, with nothing to check", "stopped", ""),
     ("steps that disagree", "disagreements", ""),
     ("reference answers not to be believed", "reference_failures", ""),
     ("largest gap in the solution", "max_solution_gap", "rad/s"),
     ("tolerance on it", "tolerance", "rad/s"),
     ("largest gap in the objective", "max_objective_gap", ""),
     ("largest residual of a reference", "max_reference_residual", ""),
+    ("largest excess of a command over its step's bounds and rows", "max_excess", ""),
 )
 _PROOF: Table = (
     ("answers proven", "proven", ""),
@@ -140,6 +148,13 @@ _PUSH: Table = (
     ),
 )
 _HEAD = ("quantity", "value", "unit")
+_WHY = {
+    "adjacent": "joined to each other",
+    "never": "never near each other",
+    "always": "in touch in most postures",
+    "start": "near each other in the start posture",
+}
+"""Reasons of a collision model to leave a pair of links out, in words."""
 
 
 def save_run(
@@ -184,7 +199,8 @@ def write_report(
         FileError: If it cannot be written.
     """
     settings = metrics["settings"]
-    results = _rows(metrics, _RESULTS) + _frames(metrics) + _physics(metrics.get("physics"))
+    results = _rows(metrics, _RESULTS) + _iterations(metrics)
+    results += _frames(metrics) + _physics(metrics.get("physics"))
     versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
     lag = "Continuous mode: the gap is the network's lag, reported and not judged."
     parts = [
@@ -198,6 +214,7 @@ def write_report(
         *_incidents(metrics.get("incidents")),
         *(f"Nearest pair: {pair}." for pair in _nearest_pair(metrics)),
         *_unwatched(settings),
+        *_pairs(settings),
         *([lag] if settings["mode"] == "continuous" else []),
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
@@ -223,6 +240,10 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     check = metrics["crosscheck"]
     reasons = failures(metrics) if reasons is None else reasons
     more = {
+        **metrics["network_iterations"],
+        "systems": _systems(settings),
+        "programs": programs_checked(check, ",\n"),
+        "judged_by": _judged_by(check),
         "angle_unit": _angle_unit(settings),
         "kinetic_unit": _kinetic_unit(settings).replace("²", "^2"),
     }
@@ -269,10 +290,13 @@ def _success(metrics: Mapping[str, Any]) -> str:
 
 def _checked(check: Mapping[str, Any]) -> str:
     """Lay out the report's table on the cross-check, and the proof's line above its own."""
+    kinds = {name: steps for name, steps in check["kinds"].items() if steps or name == "own"}
     if check["solver"] != PROOF:
         left_out = () if check["judged"] else ("disagreements", "tolerance")
         table = [row for row in _CROSSCHECK if row[1] not in left_out]
-        return markdown_table(_HEAD, _rows(check, table))
+        judges = check.get("judged_by", {}).items()
+        judged = [(f"answers judged by {name}", _number(count), "") for name, count in judges]
+        return markdown_table(_HEAD, [*_rows({**kinds, **check}, table), *judged])
     return f"{_fill(_PROVEN, check)}.\n\n{markdown_table(_HEAD, _rows(check, _PROOF))}"
 
 
@@ -290,6 +314,38 @@ def _unwatched(settings: Mapping[str, Any]) -> list[str]:
     """Name the links of a run that nothing kept clear of obstacles."""
     links = settings.get("collisions", {}).get("unwatched")  # older records lack it
     return [f"Beware: {unwatched(links)}."] if links else []
+
+
+def _pairs(settings: Mapping[str, Any]) -> list[str]:
+    """State which pairs of bodies are watched, and which are not and why."""
+    collisions = settings.get("collisions", {})
+    groups = {"Watched pairs": [" and ".join(pair) for pair in collisions.get("pairs", ())]}
+    for first, second, why in collisions.get("left_out", ()):
+        groups.setdefault(f"Not watched, {_WHY.get(why, why)}", []).append(f"{first} and {second}")
+    items = groups.items()
+    return [f"{name} ({len(pairs)}): {'; '.join(pairs)}." for name, pairs in items if pairs]
+
+
+def _judged_by(check: Mapping[str, Any]) -> str:
+    """State how many answers each solver judged, if a second one had to."""
+    judges = check.get("judged_by", {})
+    if set(judges) <= set(check["solver"].split("+")) and len(judges) < 2:
+        return ""
+    return "\njudged by " + ", ".join(f"{name} {count:,}" for name, count in judges.items())
+
+
+def _systems(settings: Mapping[str, Any]) -> str:
+    """Return what an iteration of the network's integrator is called."""
+    integrator = settings.get("integrator")
+    name = integrator.get("name") if isinstance(integrator, Mapping) else None
+    return "linear systems" if name == "ImplicitEuler" else "network iterations"
+
+
+def _iterations(metrics: Mapping[str, Any]) -> list[Row]:
+    """Lay out the report's rows on the work of each step."""
+    name = f"{_systems(metrics['settings'])} a step"
+    mean, most = (_number(metrics["network_iterations"][key]) for key in ("mean", "max"))
+    return [(f"{name}, mean", mean, ""), (f"{name}, most", most, "")]
 
 
 def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:

@@ -446,7 +446,7 @@ def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture
     assert metrics["settings"]["status"].startswith(f"stopped at step {steps - 1} ")
     output = capsys.readouterr().out
     assert f"ended after {steps} of 2,000 steps" in output
-    assert "against joint 4 lower velocity limit" in output
+    assert "against iiwa7_joint_4 lower velocity limit" in output
     np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
 
 
@@ -475,7 +475,7 @@ def test_a_step_that_raises_writes_nothing(
     assert captured.out == ""
     assert captured.err == (
         "track_heart: error: step 403: no joint velocity inside the limits fulfils the task, "
-        "against joint 4 lower velocity limit\n"
+        "against iiwa7_joint_4 lower velocity limit\n"
     )
     assert list(tmp_path.iterdir()) == []
 
@@ -492,7 +492,7 @@ def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> Non
     assert metrics["incidents"][f"{policy}_steps"] > 300
     assert metrics["incidents"]["blocking"][0]["joint"] == 4
     report = (tmp_path / "report.md").read_text()
-    assert "joint 4 lower velocity limit" in report
+    assert "iiwa7_joint_4 lower velocity limit" in report
     if policy == "slow":  # exactly along the path, later
         assert metrics["max_position_error_m"] < 1e-4
         assert metrics["incidents"]["path_time_s"] < 0.9

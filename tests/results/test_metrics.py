@@ -31,6 +31,8 @@ DESIGN_KEYS = [
     "position_limit_violation_rad",
     "velocity_limit_violation_rad_s",
     "max_kkt_residual",
+    "active_limit_steps",
+    "network_iterations",
     "crosscheck",
     "settings",
     "versions",
@@ -142,11 +144,13 @@ def test_crosscheck_counts_only_what_is_believed():
     assert compute_metrics(record)["crosscheck"] == {
         "solver": "proxqp+osqp",
         "steps_checked": 5,
+        "kinds": {"own": 5, "scaled": 0, "softened": 0, "held": 0, "stopped": 0},
         "disagreements": 1,
         "reference_failures": 2,
         "max_solution_gap": 2e-6,
         "max_objective_gap": 1e-11,
         "max_reference_residual": 1e-3,
+        "max_excess": 0.0,
         "judged": True,
         "tolerance": 1e-6,
         "first_disagreement": {
@@ -160,7 +164,7 @@ def test_crosscheck_counts_only_what_is_believed():
         "step 1 (t = 0.1 s): osqp differs by 2e-06 rad/s, tolerance 1e-06; 1 step disagrees in all",
         "2 reference answers missing or not accurate enough to judge by (proxqp+osqp); "
         "the check 'proof' needs no other solver",
-        "only 5 of 6 steps were checked",
+        "1 step of 6 not checked",
     ]
     assert failures(compute_metrics(record)) == failures(record)
 
@@ -327,7 +331,10 @@ ROWS = [
 
 def test_the_policies_are_named_with_their_steps():
     record = make_record(action=[0, 2, 3, 3, 2, 2, 4, 0, 0, 0], fraction=np.ones(10))
-    (reason, slowed_down) = failures(record)
+    (reason, slowed_down, programs) = failures(record)
+    assert programs == (
+        "4 own, 3 scaled, 2 softened programs checked, 1 stopped, with nothing to check"
+    )
     assert reason.startswith("6 steps without a solution (3 slowed, 2 relaxed, 1 stopped), the")
     assert slowed_down == "slowed: path time 1 s after 1 s"
 
@@ -344,16 +351,21 @@ def test_what_would_suffice_does_and_less_does_not():
 
     slow = run_at(0.05)
     needed = compute_metrics(slow)["incidents"]["needed"]
-    pattern = r"needs ([\d.]+) times .* joint (\d)'s, or \1 times .* after about ([\d.]+) s"
-    said = re.search(pattern, failures(slow)[-1])
+    pattern = (
+        r"needs ([\d.]+) times .* iiwa7_joint_(\d)'s, or \1 times as long a time \(--period "
+        r"([\d.]+) --duration \3\); .* after about ([\d.]+) s \(--duration \4\)"
+    )
+    reasons = failures(slow)
+    said = re.search(pattern, reasons[2])
+    assert float(said[3]) == pytest.approx(3.0 * float(said[1]))
     ratio = float(said[1])
     assert 0.0 <= ratio - 1.02 * needed["speed_ratio"] < 0.1 + 1e-9
     assert int(said[2]) == needed["joint"]
     assert failures(run_at(0.05 * ratio)) == []
     assert failures(run_at(0.05, 3.0 * ratio, 3.0 * ratio)) == []
-    assert "what was drawn needs" in failures(slow)[-1]
+    assert "what was drawn needs" in reasons[2]
     assert failures(run_at(0.05 * ratio * 0.9)) != []
-    later = run_at(0.05, float(said[3]))
+    later = run_at(0.05, float(said[4]))
     assert later.path_time == pytest.approx(3.0, rel=0.1)
     assert later.path_completed > 0.9  # of one round
     assert compute_metrics(later)["incidents"]["needed"]["time_s"] == pytest.approx(
@@ -365,13 +377,13 @@ def test_what_would_suffice_is_not_said_of_other_limits():
     fraction = [0.5] * 4 + [1.0] * 6
     fast = np.zeros((10, 7), int)
     fast[:4, 3] = 2
-    assert "needs" in failures(slowed(fraction, blocking=fast))[-1]
+    assert "needs" in failures(slowed(fraction, blocking=fast))[2]
     away = np.zeros((11, 3))
     away[:3, 0] = 0.1  # slowed on the way to a path that begins elsewhere
-    assert "needs" not in failures(slowed(fraction, blocking=fast, position=away))[-1]
+    assert "needs" not in failures(slowed(fraction, blocking=fast, position=away))[2]
     fast[2, 1] = 1  # a position limit: speed alone does not help
-    assert "needs" not in failures(slowed(fraction, blocking=fast))[-1]
-    assert "needs" not in failures(slowed(fraction))[-1]
+    assert "needs" not in failures(slowed(fraction, blocking=fast))[2]
+    assert "needs" not in failures(slowed(fraction))[2]
 
 
 def slowed(fraction, **changes):
@@ -480,6 +492,7 @@ def test_the_first_step_is_said_of_the_reason_that_it_belongs_to():
         "1 step answered at a second attempt: the network did not settle, the first at step 2 "
         "(t = 0.2 s)",
         "1 step without a solution (1 stopped); in the way: no bound, a singular pose",
+        "9 own programs checked, 1 stopped, with nothing to check",
     ]
 
 
@@ -552,7 +565,7 @@ def test_three_limits_in_the_way_are_named_and_digits_are_few():
     blocking = np.zeros((10, 7), int)
     for joint in range(4):
         blocking[: 8 - joint, joint] = 1
-    reason, clock = failures(slowed([1.0 / 3.0] * 8 + [1.0] * 2, blocking=blocking))[1:]
+    reason, clock = failures(slowed([1.0 / 3.0] * 8 + [1.0] * 2, blocking=blocking))[1:3]
     assert reason.endswith("in the way: " + ", ".join(
         f"joint {joint} upper position limit" for joint in (1, 2, 3)
     ))  # fmt: skip
@@ -562,3 +575,82 @@ def test_three_limits_in_the_way_are_named_and_digits_are_few():
     residual = np.array([0.0, 0.0, 3e-9, 5e-9, *[0.0] * 6])
     assert failures(make_record(kkt_residual=residual))[0].startswith("step 2 (t = 0.2 s): KKT r")
     assert "residual 3e-09" in failures(make_record(kkt_residual=residual))[0]
+
+
+KINDS = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
+
+
+def test_each_kind_of_program_is_counted_and_a_stopped_step_has_nothing_to_check():
+    gap = np.full((10, 1), 1e-9)
+    gap[9] = 1.0  # of the stopped step: nobody is to be asked there
+    check = compute_metrics(make_record(kind=KINDS, solution_gap=gap))["crosscheck"]
+    assert check["kinds"] == {"own": 2, "scaled": 1, "softened": 3, "held": 3, "stopped": 1}
+    assert (check["steps_checked"], check["disagreements"]) == (9, 0)
+    record = make_record(kind=KINDS)
+    assert failures(record) == [
+        "2 own, 1 scaled, 3 softened programs checked, "
+        "3 held back, checked for their bounds alone, 1 stopped, with nothing to check"
+    ]
+    gap[7] = 1e-3  # the velocity that was wanted at a step held back
+    wrong = compute_metrics(make_record(kind=KINDS, solution_gap=gap))["crosscheck"]
+    assert (wrong["disagreements"], wrong["first_disagreement"]["step"]) == (1, 7)
+    nobody = compute_metrics(make_record(solvers=(), kind=KINDS))["crosscheck"]["kinds"]
+    assert nobody == {"own": 0, "scaled": 0, "softened": 0, "held": 3, "stopped": 1}
+
+
+@pytest.mark.parametrize("value", [1.1e-9, 0.3, np.nan])
+def test_a_command_outside_of_its_steps_bounds_disagrees(value):
+    excess = np.zeros(10)
+    excess[[2, 9]], excess[6] = 1e-9, value
+    record = make_record(kind=KINDS, excess=excess)
+    check = compute_metrics(record)["crosscheck"]
+    assert check["disagreements"] == 1
+    assert check["first_disagreement"]["solver"] == "bounds"
+    assert "step 6 (t = 0.6 s): the command is " in failures(record)[0]
+    assert "tolerance 1e-09; 1 step disagrees in all" in failures(record)[0]
+    both = dataclasses.replace(record, solution_gap=np.where(excess > 0.0, 1e-3, 0.0)[:, None])
+    assert compute_metrics(both)["crosscheck"]["disagreements"] == 2  # not that of step 9
+    lag = make_record(excess=excess, settings={"mode": "continuous"})
+    assert compute_metrics(lag)["crosscheck"]["disagreements"] == 0
+
+
+def test_who_judged_is_counted():
+    judge = np.array([[0, 0], [0, 1], [1, 0], [-1, 0]])
+    record = make_record(steps=4, solvers=("proxqp", "osqp"), judge=judge)
+    assert compute_metrics(record)["crosscheck"]["judged_by"] == {"proxqp": 3, "osqp": 4}
+    alone = make_record(steps=4, judge=judge[:, :1])
+    assert compute_metrics(alone)["crosscheck"]["judged_by"] == {"proxqp": 2, "osqp": 1}
+
+
+def test_a_run_says_how_hard_it_was():
+    multiplier, rows = np.zeros((10, 7)), np.zeros((10, 3))
+    multiplier[2:4, 1], rows[3:7, 2] = -0.5, 1.0
+    record = make_record(
+        bound_multiplier=multiplier,
+        row_multiplier=rows,
+        iterations=np.arange(10),
+        settings={"rows": ROWS},
+    )
+    metrics = compute_metrics(record)
+    assert metrics["active_limit_steps"] == 5
+    assert metrics["network_iterations"] == {"mean": 4.5, "max": 9}
+    assert compute_metrics(make_record())["active_limit_steps"] == 0
+
+
+def test_a_path_from_a_file_is_stretched():
+    fast = np.zeros((10, 7), int)
+    fast[:4, 3] = 2
+    settings = {"reference": {"name": "waypoints"}}
+    dq = 0.9 * np.eye(7)[[3] * 10]  # of 1.5 rad/s, at half the path's speed: 1.2, and 2 % more
+    record = slowed([0.5] * 4 + [1.0] * 6, blocking=fast, settings=settings, dq_solver=dq)
+    assert "(--stretch 1.3 times as large)" in failures(record)[2]
+
+
+def test_joints_go_by_their_names():
+    blocking = np.zeros((10, 7), int)
+    blocking[3, 4] = -1
+    names = {"joints": [f"arm_{letter}" for letter in "abcdefg"]}
+    record = slowed([0.5] * 4 + [1.0] * 6, blocking=blocking, settings=names)
+    assert "in the way: arm_e lower position limit" in failures(record)[1]
+    broken = make_record(q=np.full((11, 7), 2.6), settings=names)
+    assert failures(broken)[0].endswith("; arm_a at step 0 (t = 0 s)")

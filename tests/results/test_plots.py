@@ -307,3 +307,14 @@ def test_the_paths_time_lags_by_what_the_slowed_steps_cost(slowed):
 def test_a_slowed_run_without_a_limit_in_the_way_is_at_a_singular_pose():
     limit = path_time_figure(make_record(fraction=np.full(10, 0.5))).axes[1]
     assert [text.get_text() for text in limit.texts] == ["no limit: a singular pose"]
+
+
+def test_each_limit_is_named_after_its_joints(heart):
+    upper = [2.5, *[9.0] * 5, 1.2]
+    record = dataclasses.replace(heart, settings=heart.settings | {"q_upper": upper})
+    axes = FIGURES["joint_angles"](record).axes[0]
+    assert [text.get_text() for text in axes.texts] == ["all", "$q_{7}$", "$q_{1}$"]
+    assert [text.xy[1] for text in axes.texts] == [-2.5, 1.2, 2.5]
+    named = heart.settings | {"joints": [f"arm_{letter}_joint" for letter in "abcdefg"]}
+    axes = FIGURES["joint_angles"](dataclasses.replace(heart, settings=named)).axes[0]
+    assert axes.get_legend_handles_labels()[1] == [*"abcdefg", "limit"]

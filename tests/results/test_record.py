@@ -24,8 +24,9 @@ ARRAYS = [
 ]
 OPTIONAL = {
     "ddq", "torque", "bound_multiplier", "bound_kind", "clipped", "action", "fraction", "blocking",
-    "row_multiplier", "blocking_rows", "distance", "nearest", "level_residual", "frame_position",
-    "frame_rotation", "frame_position_desired", "frame_rotation_desired",
+    "row_multiplier", "blocking_rows", "distance", "nearest", "kind", "excess", "judge",
+    "level_residual", "frame_position", "frame_rotation", "frame_position_desired",
+    "frame_rotation_desired",
 }  # fmt: skip
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 

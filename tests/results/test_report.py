@@ -77,7 +77,7 @@ def test_the_reports_numbers_are_the_metrics(run):
         ("steps", metrics["steps"], ""),
         ("time simulated", metrics["duration_s"], "s"),
         ("wall time", metrics["wall_time_s"], "s"),
-        ("steps checked", check["steps_checked"], ""),
+        ("own programs checked", check["kinds"]["own"], ""),
         ("steps that disagree", check["disagreements"], ""),
         ("largest gap in the solution", check["max_solution_gap"], "rad/s"),
         ("largest gap in the objective", check["max_objective_gap"], ""),
@@ -121,13 +121,13 @@ def test_verdicts_claim_no_more_than_was_checked(tmp_path):
 def test_a_lag_is_compared_and_not_judged(tmp_path):
     metrics = compute_metrics(make_record(settings={"mode": "continuous"}))
     text = summary(metrics)
-    assert "proxqp, 10 steps compared, not judged; 0 of them it could not solve\n" in text
+    assert "proxqp, 10 own programs compared, not judged; 0 of them it could not solve\n" in text
     assert "disagreements" not in text
     assert "tolerance" not in text
     write_report(make_record(), metrics, tmp_path)
     table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
     assert "steps that disagree" not in table
-    assert table["steps checked"] == ["10"]
+    assert table["own programs checked"] == ["10"]
 
 
 def test_an_orientation_that_no_task_holds_is_called_free(tmp_path):
@@ -167,7 +167,7 @@ def test_summary_is_short_aligned_and_true(run):
     assert all(line[19] != " " and line[18] == " " for line in lines)
     text = summary(metrics)
     assert f"max {metrics['max_position_error_m']:.4g} m," in text
-    assert "500 steps checked, 0 disagreements, 0 failures" in text
+    assert "500 own programs checked, 0 disagreements, 0 failures" in text
     assert lines[-1].endswith("in agreement with proxqp+osqp")
 
 
@@ -279,3 +279,43 @@ def test_an_unknown_kinetic_index_has_no_unit(scheme, tmp_path):
     table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
     assert "".join(table["largest kinetic index"][1:]) == ""
     assert re.search(r"kinetic index +max 0 *\n", summary(compute_metrics(record)))
+
+
+def test_the_summary_says_what_was_checked_and_who_judged(tmp_path):
+    kind = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
+    record = make_record(kind=kind, judge=np.where(kind == 2, 1, 0)[:, None])
+    text = summary(compute_metrics(record))
+    line = "proxqp: 2 own, 1 scaled, 3 softened programs checked,"
+    assert f"cross-check        {line}\n" in text
+    assert "3 held back, checked for their bounds alone,\n" in text
+    assert "0 failures\n                   judged by proxqp 6, osqp 3\n" in text
+    write_report(record, compute_metrics(record), tmp_path)
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert table["softened programs checked"] == ["3"]
+    assert table["steps held back, checked for their bounds alone"] == ["3"]
+    assert table["answers judged by osqp"] == ["3"]
+    assert "judged by" not in summary(compute_metrics(make_record(judge=np.zeros((10, 1), int))))
+
+
+def test_the_report_says_how_hard_the_run_was(tmp_path):
+    integrator = {"integrator": {"name": "ImplicitEuler"}}
+    record = make_record(iterations=np.arange(10), settings=integrator)
+    said = "0 of 10 steps with an active limit; 4.5 linear systems a step, at most 9"
+    assert f"difficulty         {said}\n" in summary(compute_metrics(record))
+    write_report(record, compute_metrics(record), tmp_path)
+    table = rows_of((tmp_path / "report.md").read_text(encoding="utf-8"))
+    assert table["linear systems a step, most"] == ["9"]
+    assert table["steps with an active bound or row"] == ["0"]
+
+
+def test_pairs_that_are_watched_and_that_are_not_are_named(tmp_path):
+    collisions = {
+        "pairs": [["link_1", "link_3"]],
+        "left_out": [["link_5", "link_7", "start"], ["link_1", "link_2", "by hand"]],
+        "distance": 0.02,
+    }
+    record = make_record(settings={"collisions": collisions})
+    text = write_report(record, compute_metrics(record), tmp_path).read_text(encoding="utf-8")
+    assert "Watched pairs (1): link_1 and link_3." in text
+    assert "Not watched, near each other in the start posture (1): link_5 and link_7." in text
+    assert "Not watched, by hand (1): link_1 and link_2." in text
