@@ -431,7 +431,7 @@ def test_one_wrong_answer_of_the_network_is_caught(
 def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # The start itself is outside.
     assert call([*QUICK, "--joint-limit", "2.35", "--out", str(tmp_path)]) == 1
-    assert "joint position limit broken by 0.007 rad; joint 1" in capsys.readouterr().out
+    assert "joint position limit broken by 0.007 rad; iiwa7_joint_1" in capsys.readouterr().out
     _, metrics = results(tmp_path)
     assert metrics["position_limit_violation_rad"] == pytest.approx(0.007)
 
@@ -475,7 +475,7 @@ def test_a_step_that_raises_writes_nothing(
     assert captured.out == ""
     assert captured.err == (
         "track_heart: error: step 403: no joint velocity inside the limits fulfils the task, "
-        "against iiwa7_joint_4 lower velocity limit\n"
+        "against joint 4 lower velocity limit\n"
     )
     assert list(tmp_path.iterdir()) == []
 
