@@ -7,7 +7,7 @@ controller's estimator, over the heart and before a target that rests.
 import numpy as np
 
 import iiwa_dnn
-from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.results.markdown import markdown_table
 
 DT = 2e-3
@@ -47,7 +47,9 @@ def measure(
         position_gain=GAIN, orientation_gain=GAIN, extra_limits=limits
     )
     reference = reference.anchored(iiwa_dnn.Configuration(robot, Q0))
-    controller = iiwa_dnn.Controller(robot, scheme, reference, dt=DT, estimator=model)
+    controller = iiwa_dnn.Controller(robot, scheme, reference, dt=DT)
+    estimator = JointEstimator(model or NoiseModel(), DT)
+    delay = model.delay if model else 0
     random = np.random.default_rng(0)
     steps = round(duration / DT)
     q = np.array(Q0)
@@ -56,7 +58,12 @@ def measure(
     slowed = 0
     cannot = 0
     for k in range(steps):
-        command = controller.step(q + noise * random.standard_normal(robot.dof), k * DT)
+        seen = q + noise * random.standard_normal(robot.dof)
+        if model is not None:
+            seen = estimator.update(seen)
+        command = controller.step(seen, (k + delay) * DT)
+        if model is not None:
+            estimator.predict(command.dq)
         slowed += not command.ok
         cannot += not (command.ok or command.limited)
         sent[k + 2] = command.dq

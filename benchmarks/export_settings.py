@@ -82,17 +82,6 @@ def softly() -> Made:
     )
 
 
-def by_priority() -> Made:
-    """Return position, orientation and two joints, in this order, which contradict each other."""
-    tasks = [
-        iiwa_dnn.PositionTask(priority=1),
-        iiwa_dnn.OrientationTask(priority=2),
-        iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.5, "iiwa7_joint_3": -0.4}, priority=3),
-    ]
-    base = DoubleIndicator()
-    return drawing(Scheme(base.costs, tasks, base.limits))
-
-
 def along_axis() -> Made:
     """Return a position, the direction of the tool and a coupling of two joints."""
     tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.AxisTask()]
@@ -148,7 +137,6 @@ SETTINGS: dict[str, Callable[[], Made]] = {
     "collisions with itself, a box, a floor": among_boxes,
     "two arms": two_arms,
     "soft tasks": softly,
-    "priorities": by_priority,
     "axis and coupling": along_axis,
     "block form": lambda: drawing(DoubleIndicator(orientation="block")),
     "next target, cone": lambda: drawing(DoubleIndicator(tracking="next"), iiwa_dnn.Cone()),

@@ -24,7 +24,6 @@ CHOSEN = (
     "without a solution: relax",
     "yielding to acceleration and jerk",
     "braking among balls",
-    "priorities",
     "two arms",
     "inertia",
     "obstacles that move",

@@ -18,7 +18,6 @@ import numpy as np
 
 import iiwa_dnn
 from benchmarks.collisions import BALLS, DISTANCE, RADII
-from benchmarks.priorities import SCHEME as PRIORITIES
 from benchmarks.targets import STREAMS
 from iiwa_dnn import (
     AccelerationLimits,
@@ -109,8 +108,6 @@ def cases() -> dict[str, Case]:
     above = np.array(paper.START)
     above[3] = robot.q_upper[3] + 0.05
     plain = scheme()
-    levels = iiwa_dnn.Configuration(robot, paper.START)
-    high = Target(levels.position + [0.05, 0.0, 0.3], levels.rotation)
     found = {
         "the heart": Case(robot, plain, heart),
         "a limit active": Case(robot.with_limits(velocity=0.1), plain, heart),
@@ -120,7 +117,6 @@ def cases() -> dict[str, Case]:
         "acceleration limits": Case(robot, scheme(acceleration), heart),
         "acceleration and jerk limits": Case(robot, scheme(*both), heart),
         "21 pairs of collisions": Case(robot, scheme(avoidance), heart),
-        "priorities": Case(robot, PRIORITIES, None, lambda k: high),
         "start outside a limit": Case(robot, plain, heart, start=tuple(above)),
         "target 1e9 m away": Case(robot, plain, None, lambda k: far),
     }

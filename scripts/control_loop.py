@@ -17,7 +17,7 @@ import tyro
 import iiwa_dnn
 from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.control.estimation import NoiseModel
+from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 
 DT = 1e-3  # control period [s]
 ACCELERATION = 10.0  # limit of every joint beside a jerk limit [rad/s^2]
@@ -66,16 +66,15 @@ def main(
         limits = (iiwa_dnn.AccelerationLimits(), iiwa_dnn.JerkLimits())
         # A loop with these limits is stable below 1 / (acceleration / jerk + dt): docs/limits.md
         gain = min(gain, 0.9 / (ACCELERATION / jerk + DT))
-    model = None
-    if noise or delay:
-        model = NoiseModel(velocity=1e-3, measurement=noise or 1e-6, delay=delay)
+    model = NoiseModel(velocity=1e-3, measurement=noise or 1e-6, delay=delay)
+    estimator = JointEstimator(model, DT)
     arm = Arm([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0], noise, delay)
     start = iiwa_dnn.Configuration(robot, arm.q)
     heart = iiwa_dnn.Heart(period=10.0).anchored(start)
     scheme = iiwa_dnn.DoubleIndicator(
         position_gain=gain, orientation_gain=gain, extra_limits=limits
     )
-    controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT, estimator=model)
+    controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT)
     controller.warm_up()  # compiles, so that the first step is as quick as the others
     times = []
     errors = []
@@ -84,11 +83,15 @@ def main(
         time.sleep(max(0.0, began + k * DT - time.perf_counter()))
         q = arm.read_encoders()
         asked = time.perf_counter()
-        command = controller.step(q, k * DT)
+        if noise or delay:
+            q = estimator.update(q)
+        command = controller.step(q, (k + delay) * DT)  # for the time at which the drives begin it
         times.append(1e6 * (time.perf_counter() - asked))
         if not (command.ok or command.limited):
             print(f"step {k}: {command}")
             return 1
+        if noise or delay:
+            estimator.predict(command.dq)
         arm.send(command.dq)
         tip = iiwa_dnn.Configuration(robot, arm.q).position
         errors.append(np.linalg.norm(tip - heart.at((k + 1) * DT).position))

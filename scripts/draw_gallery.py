@@ -118,14 +118,6 @@ def pivot(axes, record):
     plots.legend_above(axes, 2)
 
 
-def levels(axes, record):
-    """Draw the residual of each level of priority."""
-    names = ["position", "direction", "joints"]
-    plots.draw_log(axes, record.t[:-1], record.level_residual, names)
-    axes.set_ylabel("Residual of a level")
-    plots.time_axis(axes, record)
-
-
 def residual(axes, record):
     """Draw the KKT residual of the network's answers."""
     plots.draw_log(axes, record.t[:-1], record.kkt_residual[:, None], ["own network"], 1e-9)
@@ -148,7 +140,6 @@ def scenes(csv):
         ("noise", error, lambda: run("track", "--noise", "0.01")),
         ("push", error, lambda: run("physics", *push)),
         ("remote_centre", partial(figure, pivot), lambda: example("remote_centre.py")),
-        ("priorities", partial(figure, levels), lambda: example("priorities.py")),
         ("live_drag", lambda _: Image.open(PAGE).convert("RGB"), lambda: None),
     )
 

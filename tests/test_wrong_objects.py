@@ -80,7 +80,6 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "path of a surface": (lambda: d.OnSurface(3), "along: must be an iiwa_dnn.Reference"),
     "path that tilts": (lambda: d.Tilting(d.Circle), "along: must be an iiwa_dnn.Reference"),
     "no list of costs": (lambda: d.Scheme(3), "costs: must be a list of parts"),
-    "priority 0": (lambda: d.PositionTask(priority=0), "priority: must be a whole number of at"),
     "obstacles": (lambda: d.CollisionAvoidance(3), "obstacles: number 1 must be a Sphere"),
     "solvers": (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),
     "disturbances": (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import threading
-import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal
@@ -13,9 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.control.cascade import Cascade, Level, Priorities
 from iiwa_dnn.control.command import Command, RowLayout
-from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
 from iiwa_dnn.control.paths import (
     References,
     by_frame,
@@ -31,7 +28,6 @@ from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
 from iiwa_dnn.control.yielding import guard_step, yield_step
-from iiwa_dnn.errors import InvalidInputError, NoSolutionError
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
@@ -63,11 +59,8 @@ class Controller:
         mode: ``"converged"``: the network settles at every step. ``"continuous"``: it advances by
             one control period, as in the paper, and lags: bounds of the joints hold, the rows of
             other limits, of collisions for example, only where it has settled.
-        policy: Action at a step without a solution in ``converged`` mode (`control.policies`). At
-            the acceleration level ``slow`` acts as ``relax``, with a warning when it does.
+        policy: Action at a step without a solution in ``converged`` mode (`control.policies`).
         solver: Network, integrators and tolerance; keeps the network's state between steps.
-        estimator: Noise of encoders and drives, and delay of the drives, which a Kalman filter of
-            the measured joint positions in `step` reckons with; None: they are taken as they are.
         delay: Time by which the reference's clock is behind, since a policy slowed it [s].
     """
 
@@ -78,7 +71,6 @@ class Controller:
     mode: Mode
     policy: Policy
     solver: DNNSolver
-    estimator: NoiseModel | None
 
     def __init__(
         self,
@@ -91,7 +83,6 @@ class Controller:
         policy: Policy = "slow",
         tol: float = 1e-9,
         solver: DNNSolver | None = None,
-        estimator: NoiseModel | None = None,
     ) -> None:
         """Bring the parts together.
 
@@ -101,17 +92,16 @@ class Controller:
             reference: Path of the tip or of several frames; None where every step gets a target.
             dt: Control period [s].
             mode: ``"converged"`` or ``"continuous"``.
-            policy: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
+            policy: ``"slow"``, ``"relax"`` or ``"stop"``.
             tol: Absolute tolerance on the KKT residuals in ``converged`` mode.
             solver: The network and its integrators; None takes the paper's network with `tol`.
-            estimator: Model of a filter of the measured joint positions, without a bias.
 
         Raises:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self._lock = threading.Lock()
         self._state = ControllerState(0)
-        self._derived: tuple[ControlStep, Cascade] | None
+        self._derived: ControlStep | None
         self._anchored: Scheme | None = None
         self.mode = mode
         self.policy = policy
@@ -120,7 +110,6 @@ class Controller:
         self.scheme = scheme
         self.reference = reference
         self.solver = DNNSolver(tol=tol) if solver is None else solver
-        self.estimator = estimator
 
     def __setattr__(self, name: str, value: Any) -> None:
         check = _CHECKS.get(name)
@@ -130,8 +119,6 @@ class Controller:
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
             self._state = ControllerState(value.dof)
-        if name in ("dt", "estimator"):
-            self._state.estimator = None
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in _DERIVED}
@@ -162,18 +149,13 @@ class Controller:
         q: ArrayLike,
         t: float,
         target: Target | Mapping[str, Target] | None = None,
-        dq: ArrayLike | None = None,
     ) -> Command:
         """Compute the command for joint positions at a time; it counts as sent when it is returned.
 
         Args:
             q: Measured joint positions [rad], (n,).
-            t: Time [s]; the reference is asked for the time `delay` before it. With an estimator
-                the command is for the time at which the drives begin it.
+            t: Time [s]; the reference is asked for the time `delay` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
-                At the acceleration level it has no acceleration.
-            dq: Measured joint velocities [rad/s], (n,), at the acceleration level; None takes the
-                last command.
 
         Returns:
             The command.
@@ -181,24 +163,13 @@ class Controller:
         Raises:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
                 there is neither reference nor target.
-            NoSolutionError: There is no solution and the policy is ``raise``.
         """
         state = self._state
         before = state.past
         delay = state.delay
-        estimated = state.estimator
         try:
             with self._lock:
-                if dq is not None:
-                    self._measure(dq)
-                estimator = self._next_estimator()
-                if estimator is not None:
-                    q = estimator.update(checks.finite_array("q", q, (self.robot.dof,)))
-                    t += estimator.model.delay * self.dt
                 command = self._compute(q, t, target)
-                if estimator is not None:
-                    estimator.predict(command.dq)
-                    state.estimator = estimator
                 if command.action is not Action.NONE:
                     state.delay += self.dt * (1.0 - command.fraction)
                 state.commit()
@@ -207,7 +178,6 @@ class Controller:
             if state.past is not before:  # interrupted before anybody got the command
                 state.commit()
             state.delay = delay
-            state.estimator = estimated
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -227,22 +197,15 @@ class Controller:
         self._state.delay += self.dt * (1.0 - fraction)
         self._state.commit()
 
-    def _next_estimator(self) -> JointEstimator | None:
-        """Return a copy of the estimator, since a step may be broken off; None if there is none."""
-        if self.estimator is None:
-            return None
-        return copy.copy(self._state.estimator or JointEstimator(self.estimator, self.dt))
-
     def _compute(
         self,
         q: ArrayLike,
         t: float,
         target: Target | Mapping[str, Target] | None,
     ) -> Command:
-        derived = self._derived
-        if derived is None or derived[0].version != self.solver.version:
-            derived = self._prepare(q, t, target is None)
-        step = derived[0]
+        step = self._derived
+        if step is None or step.version != self.solver.version:
+            step = self._prepare(q, t, target is None)
         layout = step.layout
         state = self._state
         joints: Any = q
@@ -257,7 +220,7 @@ class Controller:
         program.move(t)
         program.kinematics.update(joints)
         if begin == ANSWER:
-            self._write_program(derived, row, joints, t, target is None)
+            self._write_program(step, row, joints, t)
         asks = not state.yields and state.halted is None
         network = self._warm_state(step) if asks else None
         if network is not None:
@@ -270,21 +233,13 @@ class Controller:
         state.past[Q] = joints
         return self._compute_in_python(step, row, t, begin, asks)
 
-    def _write_program(
-        self, derived: tuple[ControlStep, Cascade], row: Vector, q: Vector, t: float, own: bool
-    ) -> None:
-        """Write the program of a step of which Python code writes a part.
-
-        The targets are in the row; `own` says that they are the reference's.
-        """
-        step, cascade = derived
+    def _write_program(self, step: ControlStep, row: Vector, q: Vector, t: float) -> None:
+        """Write the program of a step of which Python code writes a part; the row has targets."""
         layout = step.layout
         past = self._state.past
         past[Q] = q
-        wanted = self._accelerations(t) if own and step.program.accelerates else None
         data = layout.view(row, "program")
-        step.program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t, wanted)
-        cascade.resolve(QP.from_data(data, layout.sizes))
+        step.program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t)
 
     def _compute_in_python(
         self, step: ControlStep, row: Vector, t: float, begin: int, asks: bool
@@ -313,7 +268,9 @@ class Controller:
         layout.fill(row, qp, solution)
         layout.view(row, "placement")[:] = program.placement
         layout.view(row, "past")[:] = state.past[: LAST + 2].ravel()
-        self._send(step, row)
+        dq = layout.view(row, "dq")
+        dq[:] = layout.view(row, "point")[: layout.dof]
+        state.send(dq)
         if solved and self._is_stoppable(step):
             return Command(row, layout)
         return self._yield(step, row)
@@ -341,14 +298,11 @@ class Controller:
         state = self._state
         layout = step.layout
         halted = state.halted
-        policy = self.policy
         targets = layout.targets(row)
         checks.finite_array("q", state.past[Q], (layout.dof,))
         checks.finite_array("target", targets, targets.shape)
         goes_on = halted is None and self.mode == "converged"
-        if policy == "raise" and goes_on:
-            self._raise_unless_solved(QP.from_data(layout.view(row, "program"), layout.sizes), step)
-        action = step.actions[policy] if goes_on else Action.STOP
+        action = Action[self.policy.upper()] if goes_on else Action.STOP
         n, m, p = layout.sizes
         network = self._warm_state(step)
         if network is None or not is_projection(self.solver.network):
@@ -366,50 +320,9 @@ class Controller:
         state.yields = goes_on and taken in (Action.SLOW, Action.RELAX, Action.STOP)
         if halted is not None:
             layout.view(row, "blocking")[:] = halted
-        if step.program.accelerates:
-            self._send(step, row)
-            _warn_if_not_slowed(policy, taken, stacklevel=4)
         return Command(row, layout, Action(taken))
 
-    def _raise_unless_solved(self, qp: QP, step: ControlStep) -> None:
-        """Raise the error of a program for which all attempts of the solver find no solution."""
-        failed = self.solver.solve(qp)
-        if failed.found:
-            return
-        message = "no joint velocity inside the limits fulfils the task"
-        names = step.layout.names
-        if failed.status is Status.PRIMAL_INFEASIBLE and failed.certificate is not None and names:
-            _, m, p = qp.sizes
-            rows = failed.certificate[p : p + m]
-            past = self._state.past[: LAST + 2]
-            against = names.in_words(qp, failed.certificate[p + m :], rows, past)
-            message += f", against {', '.join(against)}" if against else ""
-        problem = qp.to_qpsolvers()
-        raise NoSolutionError(message, problem, failed.to_qpsolvers(problem))
-
-    def _send(self, step: ControlStep, row: Vector) -> None:
-        """Note the velocity of a row's answer; at the acceleration level, that after the period."""
-        layout = step.layout
-        state = self._state
-        x = layout.view(row, "point")[: layout.dof]
-        dq = layout.view(row, "dq")
-        dq[:] = x
-        if step.program.accelerates:
-            last = state.past[LAST]
-            if layout.view(row, "decision")[0] == Action.STOP:
-                qp = QP.from_data(layout.view(row, "program"), layout.sizes)
-                x[:] = np.clip(-last / self.dt, qp.lb, qp.ub)
-            dq[:] = last + self.dt * x
-        state.send(dq)
-
-    def _measure(self, dq: ArrayLike) -> None:
-        """Take measured joint velocities (n,) [rad/s] for the last command."""
-        program = self.program
-        if not program.accelerates:
-            raise InvalidInputError("dq", "is for schemes of the acceleration level", dq)
-        self._state.past[LAST] = checks.finite_array("dq", dq, (program.robot.dof,))
-
-    def _prepare(self, q: ArrayLike, t: float, own: bool) -> tuple[ControlStep, Cascade]:
+    def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
 
         `own` says that the targets are the reference's.
@@ -426,10 +339,10 @@ class Controller:
                 self.warn_if_far(start, t, stacklevel=5)
         return self._laid_out()
 
-    def _laid_out(self) -> tuple[ControlStep, Cascade]:
-        """Return what is derived from the settings."""
-        derived = self._derived
-        if derived is None or derived[0].version != self.solver.version:
+    def _laid_out(self) -> ControlStep:
+        """Return the control step, laid out anew after a change of the settings."""
+        step = self._derived
+        if step is None or step.version != self.solver.version:
             duration = 0.0 if self.mode == "converged" else self.dt
             if getattr(type(self.scheme), "build_qp", None) is Scheme.build_qp:
                 program = self.scheme.program(self.robot)
@@ -437,10 +350,9 @@ class Controller:
                 program = ForeignProgram(self.robot, self.scheme, self._state.past[Q])
             references = by_frame(self.reference, self.robot.tip)
             step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
-            derived = (step, Cascade(program.priorities, program.sizes, self.solver.tol))
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
-                self._derived = derived
-        return derived
+                self._derived = step
+        return step
 
     @property
     def begun(self) -> bool:
@@ -455,33 +367,23 @@ class Controller:
     @property
     def control_step(self) -> ControlStep:
         """The control step, laid out for scheme, references and network."""
-        return self._laid_out()[0]
+        return self._laid_out()
 
     @property
     def program(self) -> StepProgram:
         """The scheme laid out for the robot."""
-        return self._laid_out()[0].program
+        return self._laid_out().program
 
     @property
     def layout(self) -> RowLayout:
         """Columns of the commands' rows."""
-        return self._laid_out()[0].layout
+        return self._laid_out().layout
 
     @property
     def last(self) -> Vector:
         """Last command [rad/s], (n,), a view into the controller's state."""
         last: Vector = self._state.past[LAST]
         return last
-
-    @property
-    def levels(self) -> list[Level]:
-        """Levels of the tasks with priorities, as the last command has left them."""
-        return self._laid_out()[1].levels
-
-    @property
-    def priorities(self) -> Priorities:
-        """Numbers, rows and programs of those levels, for compiled code."""
-        return self._laid_out()[1].priorities
 
     def halt(self, command: Command | None = None) -> None:
         """Brake at every step from now on.
@@ -490,13 +392,13 @@ class Controller:
             command: The command at which a policy stopped an arm that may be able to stop at once;
                 None: it stops for another reason than a limit.
         """
-        step, _ = self._laid_out()
+        step = self._laid_out()
         if self._state.halted is not None:
             return
         if command is None:
             n, m, _ = step.layout.sizes
             self._state.halted = np.zeros(n + m)
-        elif step.yields or step.program.accelerates:
+        elif step.yields:
             self._state.halted = step.layout.view(command.row, "blocking").copy()
 
     def anchor(self, start: Configuration) -> None:
@@ -578,11 +480,6 @@ class Controller:
             seen.move(t, row)
         return found
 
-    def _accelerations(self, t: float) -> Vector:
-        """Return the accelerations of the targets of a time [s], (6 frames,)."""
-        paths = paths_of(self.reference, self.robot.tip, self.program.target_frames).values()
-        return np.concatenate([path.accelerations(t - self.delay) for path in paths])
-
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
         program = self.program
@@ -599,23 +496,6 @@ class Controller:
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)
-
-
-def _check_estimator(name: str, value: Any) -> None:
-    """Refuse what is no noise model, and one with a bias, which belongs off the plant's command."""
-    if value is not None and checks.instance(name, value, NoiseModel).bias_walk:
-        problem = "has a bias_walk, which the estimator of simulate alone takes off a command"
-        raise InvalidInputError(name, problem, value)
-
-
-def _warn_if_not_slowed(policy: Policy, taken: int, stacklevel: int) -> None:
-    """Warn where the acceleration level has put another action in the place of ``slow``."""
-    if policy == "slow" and taken == Action.RELAX:
-        message = (
-            "a step has no solution: at the acceleration level the clock of an arm in motion "
-            "cannot be slowed at once, so the policy 'slow' acts as 'relax'"
-        )
-        warnings.warn(message, stacklevel=stacklevel + 1)
 
 
 def _is_plain(q: ArrayLike, dof: int) -> bool:
@@ -636,5 +516,4 @@ _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "mode": partial(checks.one_of, choices=MODES),
     "policy": partial(checks.one_of, choices=POLICIES),
     "solver": partial(checks.instance, kind=DNNSolver),
-    "estimator": _check_estimator,
 }

@@ -78,7 +78,7 @@ def warn_if_too_few(program: StepProgram, stacklevel: int) -> None:
 
 def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
     """Warn where a gain is too high for the acceleration and jerk limits at a period dt [s]."""
-    if program.rate_limits is None or program.accelerates:
+    if program.rate_limits is None:
         return
     robot = program.robot
     rate = 1.0 / dt

@@ -16,8 +16,6 @@ rows alone, so no limit is relaxed, and the check gets a program of the usual sh
     rows least, damped near singular poses. The clock runs on.
 ``stop``
     No velocity; the run ends.
-``raise``
-    A `NoSolutionError` with the program inside.
 
 The multipliers of the relaxed programs name the bounds and rows that stand in the way. A row that
 asks for more than all joints together can give is followed as far as they can. If the limits
@@ -25,8 +23,7 @@ contradict each other nevertheless, the arm stops.
 
 With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity on a
 straight line, the clock of ``slow`` by the share of it that is reached, and ``stop`` brakes until
-the arm stands (`iiwa_dnn.control.yielding`). At the acceleration level the clock of an arm in
-motion cannot be slowed at once: ``slow`` acts as ``relax`` there, and warns when it does.
+the arm stands (`iiwa_dnn.control.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -41,8 +38,8 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.qp import QP, Solution
 
-Policy = Literal["slow", "relax", "stop", "raise"]
-POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop", "raise")
+Policy = Literal["slow", "relax", "stop"]
+POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop")
 
 Sides = NDArray[np.int8]
 

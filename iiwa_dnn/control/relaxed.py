@@ -151,7 +151,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
     """Prepare for a scheme that is laid out for a robot, a tolerance and a control period [s]."""
     limits: Vector = np.zeros(0)
     scenes: list[tuple[int, int]] = []
-    if program.rate_limits is not None and not program.accelerates:
+    if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
         scenes = program.constants_of(CollisionAvoidance)
     return Yielding(

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from iiwa_dnn.control.estimation import JointEstimator
 from iiwa_dnn.qp import Vector
 
 Q, LAST, BEFORE, WANTED, REST = range(5)
@@ -23,13 +22,11 @@ class ControllerState:
         delay: Time by which the reference's clock is behind [s].
         begun: Whether a first step was taken.
         yields: Whether the task yielded at the last step, or the arm stopped.
-        estimator: Estimator of the joint positions after this step; None before the first one, or
-            if there is none.
         halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
             step brakes; None: it did not.
     """
 
-    __slots__ = ("begun", "delay", "estimator", "following", "halted", "past", "yields")
+    __slots__ = ("begun", "delay", "following", "halted", "past", "yields")
 
     def __init__(self, dof: int) -> None:
         """Start at rest."""
@@ -43,7 +40,6 @@ class ControllerState:
         self.past[LAST:] = 0.0
         self.delay = 0.0
         self.yields = False
-        self.estimator: JointEstimator | None = None
         self.halted: Vector | None = None
 
     def send(self, dq: Vector) -> None:

@@ -21,7 +21,6 @@ from iiwa_dnn.control.command import (
     RowLayout,
     row_views,
 )
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import make_yielding
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.control.yielding import with_limits
@@ -64,7 +63,6 @@ class ControlStep:
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
         yielding: What relaxed programs need beside a step's own.
-        actions: Action of each policy at a step without a solution.
     """
 
     def __init__(
@@ -99,11 +97,6 @@ class ControlStep:
             check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
         self.run = self._entry()
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
-        # At the acceleration level the clock of an arm in motion cannot be slowed down at once.
-        slow = Action.RELAX if program.accelerates else Action.SLOW
-        # A program that has a solution after all is no reason to raise: `relax` finds it.
-        relax = Action.RELAX
-        self.actions = {"slow": slow, "relax": relax, "stop": Action.STOP, "raise": relax}
 
     @property
     def yields(self) -> bool:
@@ -115,7 +108,7 @@ class ControlStep:
         program = self.program
         answer = None
         # A subclass that solves in a way of its own is asked, not bypassed.
-        if type(solver) is DNNSolver and not program.accelerates:
+        if type(solver) is DNNSolver:
             answer = solver.compiled_answer(program.sizes, duration)
         if answer is None:
             program.append(0, np.zeros(0))

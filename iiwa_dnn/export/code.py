@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from iiwa_dnn.control.cascade import resolve_program
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
@@ -110,8 +109,6 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "active_size": n + m,
         "arrays": arrays_set,
         "yielding": yielding_set,
-        "levels_function": _levels(translator, controller),
-        "resolve": "    resolve_levels(c->row);\n" * (controller.priorities.numbers.size > 0),
         "move_function": _move_function(translator, motions, lengths["constants"]),
         "move": "    move_obstacles(c->constants, t);\n" * bool(motions),
         "start": "    start_constants(c->constants);\n" * bool(motions),
@@ -126,8 +123,6 @@ def code_of(controller: Controller) -> dict[str, Any]:
 def check(controller: Controller, step: ControlStep) -> None:
     """Raise an InvalidInputError that names what of a controller is not compiled."""
     program = step.program
-    if program.accelerates:
-        raise InvalidInputError("scheme", "is of the acceleration level, which is not compiled")
     for block in getattr(program, "numpy_blocks", ()):
         name = type(block.part).__name__
         raise InvalidInputError("scheme", f"{name} is written with numpy, which is not exported")
@@ -135,8 +130,6 @@ def check(controller: Controller, step: ControlStep) -> None:
         raise InvalidInputError("scheme", "is no Scheme of parts that are compiled")
     for part, _ in program.moving:
         _check_motion(part)
-    if controller.estimator is not None:
-        raise InvalidInputError("estimator", "is not exported: hand the estimated positions over")
     network = controller.solver.network
     if type(network).initial_state is not Network.initial_state:
         problem = f"{type(network).__name__} starts from a state of its own, which is not exported"
@@ -328,9 +321,7 @@ def _systems(controller: Controller) -> int:
     """Return the largest number of linear systems that a step may take."""
     program = controller.program
     entry = program.table[1 + program.table[0, 4]]
-    levels = controller.priorities
     own = int(program.constants[entry[4] + OWN_BUDGET])
-    own += 2 * levels.numbers.size * int(levels.settings[OWN_BUDGET])
     return own + (ATTEMPTS - 1) * BUDGET
 
 
@@ -339,21 +330,6 @@ def _action(controller: Controller) -> Action:
     if controller.mode == "continuous":
         return Action.STOP
     return {"slow": Action.SLOW, "relax": Action.RELAX}.get(controller.policy, Action.STOP)
-
-
-def _levels(translator: Translator, controller: Controller) -> str:
-    """Translate the levels of priority, and write the function that resolves them, if any."""
-    own = controller.priorities
-    if not own.numbers.size:
-        return ""
-    n, m, p = controller.program.sizes
-    scratch = {name: name for name in ("data", "x", "missing")}
-    levels, levels_set = _handed(translator, "priorities", own, {**scratch, "tol": repr(own.tol)})
-    data = _array("data", controller.program.data_size)
-    translator.function(resolve_program, [data, *map(integer, (n, m, p)), levels])
-    sizes = {name: getattr(own, name).size for name in scratch}
-    values = {**sizes, "n": n, "m": m, "p": p, "assignments": levels_set}
-    return filled("levels.c", values)
 
 
 def _array(name: str, *shape: int) -> Value:

@@ -8,14 +8,12 @@ from iiwa_dnn.robot.obstacles import (
     Obstacle as Obstacle,
     Sphere as Sphere,
 )
-from iiwa_dnn.schemes.acceleration import (
-    JointAcceleration as JointAcceleration,
-    JointTorque as JointTorque,
-)
 from iiwa_dnn.schemes.base import Scheme as Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance as CollisionAvoidance
 from iiwa_dnn.schemes.costs import (
     CyclicMotion as CyclicMotion,
+    JointAcceleration as JointAcceleration,
+    JointTorque as JointTorque,
     KineticEnergy as KineticEnergy,
     Manipulability as Manipulability,
 )

@@ -11,7 +11,6 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.acceleration import LEVELS, Level
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task
 from iiwa_dnn.schemes.program import StepProgram
@@ -23,22 +22,19 @@ class Scheme:
     """A way to choose joint velocities among those that fulfil the tasks inside the limits.
 
     The program's variables are the n joint velocities [rad/s], then `slack` further variables that
-    costs and limits of one's own may use; the command is the first n of the solution. At the
-    acceleration level they are the joint accelerations [rad/s^2] (`iiwa_dnn.schemes.acceleration`).
+    costs and limits of one's own may use; the command is the first n of the solution.
 
     Attributes:
         costs: Terms of the cost.
         tasks: Equality rows, or soft tasks.
         limits: Bounds and inequality rows.
         slack: Number of slack variables.
-        level: ``"velocity"`` or ``"acceleration"``.
     """
 
     costs: tuple[Cost, ...]
     tasks: tuple[Task, ...]
     limits: tuple[Limit, ...]
     slack: int = 0
-    level: Level = "velocity"
 
     def __init__(
         self,
@@ -46,18 +42,14 @@ class Scheme:
         tasks: Sequence[Task] = (),
         limits: Sequence[Limit] = (),
         slack: int = 0,
-        level: Level = "velocity",
     ) -> None:
         """Compose the parts.
 
         Raises:
-            InvalidInputError: A part is of another kind than its list, or has no meaning at the
-                level, there is no such level, or `slack` is negative.
+            InvalidInputError: A part is of another kind than its list, or `slack` is negative.
         """
         self._compose(costs, tasks, limits)
         self.slack = checks.integer("slack", slack, 0)
-        checks.one_of("level", level, LEVELS)
-        self.level = level
 
     def _compose(
         self, costs: Sequence[Cost], tasks: Sequence[Task], limits: Sequence[Limit]
@@ -108,18 +100,15 @@ class Scheme:
         target: Target | Mapping[str, Target],
         dt: float = np.inf,
         dq: ArrayLike | None = None,
-        acceleration: ArrayLike | None = None,
     ) -> QP:
         """Build the program of one instant; it is not solved here.
 
         Args:
             conf: Configuration of the robot, n joints.
             target: Target of the tip; with tasks of other frames, a target by frame name.
-            dt: Control period [s], which the acceleration level needs, and tasks that track the
-                next target; `target` is then one of `Reference.ahead`.
+            dt: Control period [s], which tasks that track the next target need; `target` is then
+                one of `Reference.ahead`.
             dq: Joint velocities [rad/s], (n,), or the last command; None: zero.
-            acceleration: Accelerations of the targets, linear and angular, (6 frames,), for the
-                acceleration level; None: zero.
 
         Returns:
             A QP in n + slack variables: the rows of the tasks in A, of the limits in G.
@@ -132,13 +121,10 @@ class Scheme:
             checks.positive("dt", dt)
         q = conf.arrays[0]
         velocity = np.zeros(q.size) if dq is None else checks.finite_array("dq", dq, (q.size,))
-        wanted = None
-        if program.accelerates and acceleration is not None:
-            wanted = checks.finite_array("acceleration", acceleration, program.damping.shape)
         targets = np.array(targets_of(conf.robot.tip, program.target_frames, target))
         data = np.empty(program.data_size)
         program.kinematics.update(q)
-        program.write(data, targets, np.array([q, velocity, velocity]), dt, wanted=wanted)
+        program.write(data, targets, np.array([q, velocity, velocity]), dt)
         return QP.from_data(data, program.sizes)
 
     def kinetic_index(self, conf: Configuration, dq: ArrayLike) -> float:
@@ -163,7 +149,6 @@ class Scheme:
         parts: dict[str, Any] = {
             name: [part.settings() for part in getattr(self, name)] for name in _LISTS
         }
-        parts |= {"level": self.level} if self.level != "velocity" else {}
         return {"name": type(self).__name__, **parts, "slack": self.slack, "kinetic": self.kinetic}
 
 

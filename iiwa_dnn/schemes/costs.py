@@ -128,6 +128,52 @@ class CyclicMotion(WeightedCost):
 
 
 @dataclass(frozen=True, kw_only=True)
+class JointAcceleration(WeightedCost):
+    r"""Joint acceleration, with :math:`\ddot q = (x - \dot q) / dt` from the last command to x.
+
+    .. math::  \tfrac12 w\,dt^2\,\|\ddot q + \lambda\,\dot q\|^2
+
+    Source: J. M. Hollerbach, K. C. Suh, "Redundancy resolution of manipulators through torque
+    optimization", IEEE J. Robotics and Automation 3 (1987).
+
+    Attributes:
+        weight: w, at least 0.
+        damping: :math:`\lambda` [1/s], at least 0: rate at which motion that no task sees dies out;
+            it needs a control period.
+    """
+
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        checks.not_negative("damping", self.damping)
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n) and q (n,)."""
+        fading = self.damping * step.dt if self.damping else 0.0
+        return self.weight * np.eye(step.q.size), -self.weight * (1.0 - fading) * step.dq
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointTorque(WeightedCost):
+    r"""Joint torque of the coming period, :math:`\tau = M \ddot q + h(q, \dot q)`.
+
+    .. math::  \tfrac12 w\,dt^2\,\|\tau\|^2
+
+    Alone it lets the joints race before long (the source of `JointAcceleration`, which beside it
+    keeps them in check). It needs a control period.
+
+    Attributes:
+        weight: w, at least 0.
+    """
+
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n) and q (n,)."""
+        M = step.inertia
+        return self.weight * M @ M, self.weight * M @ (step.dt * step.bias - M @ step.dq)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Manipulability(WeightedCost):
     r"""Motion towards postures in which the tool moves with equal ease in all directions.
 

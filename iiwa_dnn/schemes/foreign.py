@@ -25,7 +25,6 @@ class ForeignProgram(StepProgram):
         self.robot = robot
         self.scheme = scheme
         self.target_frames = (robot.tip,)
-        self.damping = np.zeros(0)
         self.blocks = ()
         self.kinematics = Kinematics(robot)
         conf = Configuration(robot, q)
@@ -52,11 +51,6 @@ class ForeignProgram(StepProgram):
         """1 for each inequality row of an elastic limit, (m,): none is."""
         return np.zeros(self.sizes[1])
 
-    @property
-    def priorities(self) -> Any:
-        """Level of each equality row, (p,): none."""
-        return np.zeros(self.sizes[2], dtype=np.int64)
-
     def write(
         self,
         data: Vector,
@@ -64,7 +58,6 @@ class ForeignProgram(StepProgram):
         past: Matrix,
         dt: float,
         t: float = 0.0,
-        wanted: Vector | None = None,
     ) -> None:
         """Write the whole program of one step.
 
@@ -74,7 +67,6 @@ class ForeignProgram(StepProgram):
             past: Joint positions [rad], last command and the one before [rad/s], (3, n).
             dt: Control period [s].
             t: Time [s].
-            wanted: Accelerations of the target, (6,).
 
         Raises:
             InvalidInputError: The program has other sizes than the first one.

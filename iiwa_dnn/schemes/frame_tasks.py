@@ -41,14 +41,12 @@ class FeedbackTask(GainTask):
     Attributes:
         gain: Rate at which the error decays [1/s], at least 0.
         weight: None for hard rows, else the weight of the soft task, at least 0.
-        priority: Level in a cascade, 1 the first; None: no cascade (`iiwa_dnn.control.cascade`).
         tracking: ``"paper"``, or ``"next"``: rows towards the next target.
         next_gain: Gain of ``"next"`` [1/s], as of `PositionTask`.
     """
 
     gain: float = 10.2
     weight: float | None = None
-    priority: int | None = None
     tracking: Tracking = "paper"
     next_gain: float | None = None
 

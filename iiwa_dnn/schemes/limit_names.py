@@ -31,7 +31,7 @@ class LimitNames:
         self._dt = dt
         self._limits = np.vstack([program.robot.limits, np.full((3, program.robot.dof), np.inf)])
         motion = program.rate_limits
-        if motion is not None and not program.accelerates:
+        if motion is not None:
             self._limits = motion.constants(program.robot).reshape(self._limits.shape)
 
     def in_words(self, qp: QP, sides: Signs, rows: Signs, past: Matrix) -> list[str]:

@@ -9,11 +9,16 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.acceleration import JointAcceleration, JointTorque
 from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.costs import CyclicMotion, KineticEnergy, WeightedCost
+from iiwa_dnn.schemes.costs import (
+    CyclicMotion,
+    JointAcceleration,
+    JointTorque,
+    KineticEnergy,
+    WeightedCost,
+)
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.parts import Cost, Limit, Task
+from iiwa_dnn.schemes.parts import Limit, Task
 from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
 
@@ -43,14 +48,6 @@ class SpeedsBelowSlack(Limit):
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (2 n, n + 1) and h (2 n,)."""
         return self._G, np.zeros(self.rows)
-
-
-class VelocityChange(WeightedCost):
-    r"""Change from the last command: :math:`\tfrac12 w \|\dot q - \dot q_-\|^2`."""
-
-    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return P (n, n) and q (n,)."""
-        return self.weight * np.eye(step.q.size), -self.weight * step.dq
 
 
 def minimum_velocity_norm(gain: float = 10.2) -> Scheme:
@@ -97,32 +94,20 @@ def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme
 def minimum_acceleration_norm(gain: float = 10.2, damping: float = 1e-3) -> Scheme:
     """Compose the scheme of least change of velocity, damped so that no motion goes on for ever.
 
-    Source: J. M. Hollerbach, K. C. Suh, "Redundancy resolution of manipulators through torque
-    optimization", IEEE J. Robotics and Automation 3 (1987), for the norm of the acceleration, here
-    that of the difference of two commands.
+    Source: that of `JointAcceleration`.
     """
-    return Scheme([VelocityChange(), KineticEnergy(weight=damping)], _tasks(gain), [JointLimits()])
-
-
-def resolved_acceleration(gain: float = 10.2, damping: float = 5.0) -> Scheme:
-    """Compose the scheme of least joint acceleration norm, of the acceleration level.
-
-    Source: that of `minimum_acceleration_norm`; `damping` [1/s] is that of `JointAcceleration`.
-    """
-    return _second_order(gain, [JointAcceleration(damping=damping)])
+    costs = [JointAcceleration(), KineticEnergy(weight=damping)]
+    return Scheme(costs, _tasks(gain), [JointLimits()])
 
 
 def minimum_torque(gain: float = 10.2, weight: float = 10.0, damping: float = 5.0) -> Scheme:
-    """Compose the scheme of least joint torque norm, of the acceleration level.
+    """Compose the scheme of least joint torque norm.
 
-    Source: that of `minimum_acceleration_norm`. A `JointAcceleration` of a weight [(N m s^2)^2]
-    keeps the joints from racing.
+    Source: that of `JointAcceleration`, of which one with a weight [(N m s^2)^2] and a damping
+    [1/s] keeps the joints from racing.
     """
-    return _second_order(gain, [JointTorque(), JointAcceleration(weight=weight, damping=damping)])
-
-
-def _second_order(gain: float, costs: list[Cost]) -> Scheme:
-    return Scheme(costs, _tasks(gain), [JointLimits()], level="acceleration")
+    costs = [JointTorque(), JointAcceleration(weight=weight, damping=damping)]
+    return Scheme(costs, _tasks(gain), [JointLimits()])
 
 
 def _tasks(gain: float) -> list[Task]:

@@ -127,8 +127,6 @@ class Task(Part):
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
             the task yield (`iiwa_dnn.control.policies`); 0: they are a limit and hold.
         weight: None for hard rows, else the weight of the soft task.
-        priority: Level of a hard task in a cascade, 1 the first; None: it has to hold
-            (`iiwa_dnn.control.cascade`).
         tracking: ``"paper"``: the target of a step is that of its time, with the exact twist there.
             ``"next"``: its twist is the mean one over the coming period, so that b of a frame's
             rows may ask for the next target (`iiwa_dnn.schemes.tasks`).
@@ -138,7 +136,6 @@ class Task(Part):
     tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
-    priority: int | None = None
     tracking: Tracking = "paper"
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:

@@ -21,13 +21,6 @@ from iiwa_dnn.qp.compiling import Signature, borrowed
 from iiwa_dnn.qp.layout import QPViews, compiled, inlined, qp_views
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.acceleration import (
-    check_parts,
-    damping_of,
-    lift_targets,
-    lower_limits,
-    with_squared_gains,
-)
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.filling import fill
@@ -119,7 +112,6 @@ class StepProgram:
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
             tip's if no task tracks one.
-        damping: `damping_of` at the acceleration level, (6 frames,); empty at the velocity level.
         kinematics: The robot's, overwritten by each step.
         table: What compiled code reads of the layout, (1 + parts, 8).
         constants: Numbers that compiled code reads, (k,).
@@ -134,16 +126,9 @@ class StepProgram:
         """
         self.robot = robot
         self.scheme = scheme
-        accelerates = scheme.level == "acceleration"
         tasks: list[Task] = [*scheme.tasks, *couplings(robot)]
         _check_rows(robot, scheme.limits)
         self.target_frames = _tracked(robot, tasks)
-        self.damping: Vector = np.zeros(0)
-        if accelerates:
-            check_parts(scheme.costs, tasks)
-            by_name = [(task.frame_name(robot), task) for task in tasks]
-            self.damping = damping_of(self.target_frames, by_name)
-            tasks = with_squared_gains(tasks)
         hard = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
         rows_of_tasks = _stacked(robot, hard)
@@ -190,7 +175,7 @@ class StepProgram:
         first = _Head(n, m, p, robot.dof, len(entries), tip)
         self.table: Table = np.array([first, *entries], dtype=np.int64)
         self.constants: Vector = np.concatenate(arrays)
-        if self.rate_limits is not None and not self.accelerates:
+        if self.rate_limits is not None:
             for start, _ in self.constants_of(CollisionAvoidance):
                 self.constants[start + BRAKED] = 1.0
 
@@ -224,12 +209,7 @@ class StepProgram:
     @property
     def is_compiled(self) -> bool:
         """Test whether compiled code alone writes the programs."""
-        return not (self.numpy_blocks or self.accelerates or self.priorities.any())
-
-    @property
-    def accelerates(self) -> bool:
-        """Test whether the programs are of the acceleration level."""
-        return self.damping.size > 0
+        return not self.numpy_blocks
 
     @property
     def needs_inertia(self) -> bool:
@@ -264,13 +244,6 @@ class StepProgram:
                 found[block.first : block.first + block.rows] = 1.0
         return found
 
-    @property
-    def priorities(self) -> NDArray[np.int64]:
-        """Level of each equality row, (p,); 0 for one that has to hold."""
-        counts = [task.row_count(self.robot) for task in self.tasks]
-        levels = np.array([task.priority or 0 for task in self.tasks], dtype=np.int64)
-        return np.repeat(levels, counts)
-
     @cached_property
     def ahead(self) -> frozenset[str]:
         """Names of the frames whose tasks track the next target."""
@@ -280,7 +253,7 @@ class StepProgram:
     @property
     def needs_period(self) -> bool:
         """Test whether a program needs a control period."""
-        return self.accelerates or any(task.tracking == "next" for task in self.scheme.tasks)
+        return any(task.tracking == "next" for task in self.scheme.tasks)
 
     @property
     def placement(self) -> Vector:
@@ -332,7 +305,6 @@ class StepProgram:
         past: Matrix,
         dt: float,
         t: float = 0.0,
-        wanted: Vector | None = None,
     ) -> None:
         """Write the whole program of one step, at the joint positions of `kinematics`.
 
@@ -342,15 +314,11 @@ class StepProgram:
             past: Joint positions [rad], last command and the one before [rad/s], (3, n).
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
-            wanted: Accelerations of the targets at the acceleration level, (6 k,); None: zero.
 
         Raises:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
-        of_kernels = (targets, past)
-        if self.accelerates:
-            of_kernels = self._lifted(targets, past, dt, wanted)
-        write_program(data, self.arrays(dt), of_kernels[1], of_kernels[0], float(t))
+        write_program(data, self.arrays(dt), past, targets, float(t))
         qp = QP.from_data(data, self.sizes)
         if self.numpy_blocks:
             by_name = dict(zip(self.target_frames, targets, strict=True))
@@ -359,19 +327,6 @@ class StepProgram:
             step = Step.from_kinematics(self.kinematics, by_name, t, dt, q, dq)
             fill(self.numpy_blocks, qp, step, self.rate_limits is not None, self._unseen)
             self._unseen = False
-        if self.accelerates:
-            lower_limits(qp, past[1], dt)
-
-    def _lifted(
-        self, targets: Matrix, past: Matrix, dt: float, wanted: Vector | None
-    ) -> tuple[Matrix, Matrix]:
-        """Return targets and positions with which the kernels write the acceleration level."""
-        acceleration = np.zeros_like(self.damping) if wanted is None else wanted
-        lifted = lift_targets(
-            self.kinematics, self.target_frames, self.damping, targets, acceleration, past
-        )
-        middle = past[0] + 0.5 * dt * past[1]
-        return lifted, np.vstack([middle, past[1:]])
 
     def row_names(self) -> list[dict[str, object]]:
         """Return for each inequality row its part, its number in it from 1, and its name if any."""

@@ -64,8 +64,6 @@ class GainTask(Task):
     def __post_init__(self) -> None:
         checks.not_negative("gain", self.gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
-        if self.priority is not None:
-            checks.integer("priority", self.priority, 1)
         for name in ("weight", "next_gain"):
             if getattr(self, name) is not None:
                 checks.not_negative(name, getattr(self, name))
@@ -158,7 +156,6 @@ class PositionTask(GainTask):
         gain: The paper's delta [1/s], at least 0.
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
-        priority: Level in a cascade, 1 the first; None: no cascade.
         tracking: ``"paper"``, or ``"next"``: rows towards the next target.
         next_gain: Gain of ``"next"`` [1/s], at least 0; None stands for 1 / dt, and more is cut to
             it.
@@ -168,7 +165,6 @@ class PositionTask(GainTask):
     gain: float = 10.2
     frame: str | None = None
     weight: float | None = None
-    priority: int | None = None
     tracking: Tracking = "paper"
     next_gain: float | None = None
     rows: int = field(default=3, init=False, repr=False)
@@ -270,7 +266,6 @@ class OrientationTask(GainTask):
         form: ``"so3"`` or ``"block"``.
         frame: Name of the frame; None stands for the robot's tip.
         weight: None for hard rows, else the weight of the soft task, at least 0.
-        priority: Level in a cascade, 1 the first; None: no cascade.
         tracking: ``"paper"``, or ``"next"``: rows towards the next target.
         next_gain: Gain of ``"next"`` [1/s], as of `PositionTask`.
     """
@@ -279,7 +274,6 @@ class OrientationTask(GainTask):
     form: Form = "so3"
     frame: str | None = None
     weight: float | None = None
-    priority: int | None = None
     tracking: Tracking = "paper"
     next_gain: float | None = None
     rows: int = field(default=3, init=False, repr=False)

@@ -9,14 +9,10 @@ from numpy.typing import NDArray
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.qp import Vector
 from iiwa_dnn.simulation.chain import SignalChain
-from iiwa_dnn.simulation.motion import MOTIONS, Motion, accelerated
+from iiwa_dnn.simulation.motion import MOTIONS, Motion
 from iiwa_dnn.simulation.plants.base import Plant
-
-Levels = list[tuple[Vector, Vector]]
-"""Program with its answer, and missing task velocity, of each level of priority."""
 
 
 class Outcome(NamedTuple):
@@ -28,10 +24,8 @@ class Outcome(NamedTuple):
         dq: Velocity that moved the robot [rad/s], (n,).
         q: True joint positions after the step [rad], (n,).
         action: Action in place of the network's answer.
-        acceleration: Joint accelerations [rad/s^2], (n,), at the acceleration level; else None.
         clipped: 1 for each joint whose command was clipped, (n,); None if no command may be.
         torque: Largest joint torques of the step [N m], (n,); None for a plant without motors.
-        levels: Levels of priority at each stage.
         ends: Whether the run ends before this step: a policy or the plant stopped it.
     """
 
@@ -40,10 +34,8 @@ class Outcome(NamedTuple):
     dq: Vector
     q: Vector
     action: Action = Action.NONE
-    acceleration: Vector | None = None
     clipped: NDArray[np.int8] | None = None
     torque: Vector | None = None
-    levels: Sequence[Levels] = ()
     ends: bool = False
 
 
@@ -86,10 +78,8 @@ class Loop:
         self._motion = MOTIONS[motion]
         self._chain = chain
         self._yielded = False  # the last step was a policy's
-        self._has_levels = bool(controller.levels)
-        accelerates = controller.program.accelerates
-        self._alters = chain is not None and chain.alters and not accelerates
-        self._plain = motion == "euler" and not (self._alters or accelerates)
+        self._alters = chain is not None and chain.alters
+        self._plain = motion == "euler" and not self._alters
         self._misled = not plant.exact or (chain is not None and chain.misleads)
 
     def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
@@ -103,11 +93,7 @@ class Loop:
         return steps
 
     def step(self, k: int) -> Outcome:
-        """Take step k.
-
-        Raises:
-            NoSolutionError: The step has no solution and the policy is ``raise``.
-        """
+        """Take step k."""
         controller = self.controller
         plant = self.plant
         t = k * controller.dt
@@ -115,45 +101,31 @@ class Loop:
         if self._misled:
             reading = plant.read()
             seen = reading if self._chain is None else self._chain.see(k, reading)
-        try:
-            if not self._plain:
-                return self._general_step(k, t, seen)
-            command = controller.step(seen, t)
-        except NoSolutionError as error:
-            raise NoSolutionError(f"step {k}: {error}", error.problem, error.solution, k) from error
+        if not self._plain:
+            return self._general_step(k, t, seen)
+        command = controller.step(seen, t)
         dq = command.dq
-        levels = [self._level_answers()] if self._has_levels else []
         if self._misled:
             self._show_true_pose(command)
         self._yielded = command.action is not Action.NONE
         if self._yielded or not plant.exact:
-            return self._moved((command,), dq, dq, levels)
+            return self._moved((command,), dq, dq)
         plant.move(dq)
         self.q = plant.q
-        return Outcome((command,), dq, dq, self.q, levels=levels)
+        return Outcome((command,), dq, dq, self.q)
 
     def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
-        """Take a step of several stages, of the acceleration level, or with an altered command."""
+        """Take a step of several stages, or with an altered command."""
         controller = self.controller
         dt = controller.dt
         commands: list[Command] = []
-        levels: list[Levels] = []
 
         def ask(q: Vector, time: float) -> Vector:
             command = controller.compute(q, time)
             commands.append(command)
-            if self._has_levels:
-                levels.append(self._level_answers())
             return command.dq
 
-        before = controller.last.copy()
-        accelerates = controller.program.accelerates
-        if accelerates:
-            velocity, mean = accelerated(self._motion, ask, controller.last, seen, t, dt)
-            controller.last[:] = before
-        else:
-            velocity = self._motion.step(ask, seen, t, dt)
-            mean = velocity
+        velocity = self._motion.step(ask, seen, t, dt)
         if self._misled:
             self._show_true_pose(commands[0])
         self._yielded = any(command.action is not Action.NONE for command in commands)
@@ -161,14 +133,9 @@ class Loop:
             # If only a later stage has no solution, the answer at its start will do.
             commands = [commands[0]] * len(commands)
             velocity = commands[0].dq
-            mean = 0.5 * (before + velocity) if accelerates else velocity
         command, clipped = self._altered(k, t, commands[0], velocity)
         controller.send(command, commands[0].fraction)
-        if not accelerates:
-            return self._moved(commands, velocity, command, levels)._replace(clipped=clipped)
-        moving = mean if self.plant.exact else command
-        outcome = self._moved(commands, velocity, moving, levels)
-        return outcome._replace(acceleration=(velocity - before) / dt)
+        return self._moved(commands, velocity, command)._replace(clipped=clipped)
 
     def _altered(
         self, k: int, t: float, command: Command, velocity: Vector
@@ -186,7 +153,6 @@ class Loop:
         commands: Sequence[Command],
         velocity: Vector,
         dq: Vector,
-        levels: Sequence[Levels],
     ) -> Outcome:
         """Let the plant follow a command, unless a policy has stopped the run."""
         action = Action.NONE
@@ -215,17 +181,9 @@ class Loop:
             self.q,
             action,
             torque=torque,
-            levels=levels,
             ends=ends,
         )
 
     def _show_true_pose(self, command: Command) -> None:
         """Put the frame's true placement into the row of a command that was misled."""
         command.placement[:] = self.controller.placement(self.q)
-
-    def _level_answers(self) -> Levels:
-        """Return programs with answers, and what is missing, of the last command's levels."""
-        return [
-            (np.concatenate([level.data, level.x]), np.abs(level.missing))
-            for level in self.controller.levels
-        ]

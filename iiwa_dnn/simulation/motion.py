@@ -11,8 +11,6 @@ E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I"
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-import numpy as np
-
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.program import Vector
@@ -67,25 +65,3 @@ MOTIONS: dict[str, Method] = {
     "rk4": Method((0.0, 0.5, 0.5, 1.0), (1.0, 2.0, 2.0, 1.0)),
 }
 """Methods by name, of the orders 1, 2 and 4."""
-
-
-def accelerated(
-    method: Method, ask: VelocityField, last: Vector, q: Vector, t: float, dt: float
-) -> tuple[Vector, Vector]:
-    """Integrate positions q (n,) [rad] and velocities over one step of the acceleration level.
-
-    The velocity that is asked for is wanted dt later; the controller starts from `last` (n,)
-    [rad/s], which is overwritten. Returns the velocities after the step [rad/s], (n,), and their
-    mean in it; Euler holds one acceleration.
-    """
-    n = q.size
-    before = last.copy()
-
-    def rate(state: Vector, time: float) -> Vector:
-        last[:] = state[n:]
-        return np.append(state[n:], (ask(state[:n], time) - state[n:]) / dt)
-
-    mean = method.step(rate, np.append(q, before), t, dt)
-    change = dt * mean[n:]
-    moved = before + 0.5 * change if method.stages == 1 else mean[:n]
-    return before + change, moved

@@ -159,16 +159,10 @@ class Recorder:
 
     def _add_incident(self, k: int, outcome: Outcome) -> None:
         """Note what did not go as planned in step k."""
-        if outcome.acceleration is not None:
-            self._array("ddq")[k] = outcome.acceleration
         if outcome.torque is not None:
             self._array("torque")[k] = outcome.torque
         if outcome.clipped is not None and outcome.clipped.any():
             self._array("clipped")[k] = outcome.clipped
-        for stage, levels in enumerate(outcome.levels):
-            residual = self._array("level_residual", l=len(levels))[k]
-            worst = np.array([missing.max() for _, missing in levels])
-            residual[:] = worst if stage == 0 else np.maximum(residual, worst)
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
         command = outcome.commands[0]

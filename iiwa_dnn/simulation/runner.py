@@ -56,7 +56,7 @@ class RunOptions:
         duration: Length of the run [s], rounded to whole steps; None takes the reference's.
         mode: ``"converged"`` or ``"continuous"`` (`iiwa_dnn.Controller`).
         motion: ``"euler"``, ``"midpoint"`` or ``"rk4"``; ``continuous`` and physics take ``euler``.
-        policy: At steps without solution: ``"slow"``, ``"relax"``, ``"stop"`` or ``"raise"``.
+        policy: At steps without solution: ``"slow"``, ``"relax"`` or ``"stop"``.
         disturbance: Noise, filters and estimator.
         seed: Seed of the noise; the same seed gives the same record, bit for bit, but for the last
             digits of the gap to ProxQP, which does not repeat itself.
@@ -153,22 +153,17 @@ class Simulation:
         length = checks.positive("duration", asked)
         self.steps = step_count(length, dt)
         self.controller.anchor(start)
-        self._check_combination(scheme)
+        self._check_combination()
         self._plant.start(robot, self._q0, dt, chosen.seed)
         self.controller.warn_if_far(start, 0.0, 4, refuses=not chosen.far_start)
         self._settings = self._stated(length)
 
-    def _check_combination(self, scheme: Scheme) -> None:
+    def _check_combination(self) -> None:
         """Raise InvalidInputError if the arguments do not go together."""
         controller = self.controller
         program = controller.program
-        disturbance = self._options.disturbance
         one_clock = controller.mode != "converged" or not self._plant.exact
         check_motion(self._options.motion, one_clock, bool(program.ahead))
-        chain = SignalChain(disturbance, 1, controller.robot.dof, controller.dt, self._options.seed)
-        if program.accelerates and chain.changes:
-            problem = "is of the acceleration level: it takes no noise but of measurements"
-            raise InvalidInputError("scheme", problem, scheme)
 
     def _stated(self, duration: float) -> dict[str, Any]:
         """Return the settings of the run, of this duration [s]."""
@@ -218,9 +213,6 @@ class Simulation:
 
         Args:
             progress: Called now and then with the number of steps done since the last call.
-
-        Raises:
-            NoSolutionError: A step has no solution and the policy is ``raise``.
         """
         began = time.perf_counter() - WATCH.seconds
         controller = self.controller
@@ -232,8 +224,8 @@ class Simulation:
         stages = MOTIONS[self._options.motion].stages
         layout = recorder.layout
         done = 0
-        with Judgement(self._check, self.steps, stages, layout, controller.levels) as judgement:
-            observers = (recorder.observe, judgement.observe)
+        with Judgement(self._check, self.steps, stages, layout) as judgement:
+            observers = (recorder.observe,)
             while done < self.steps and recorder.last_step is None:
                 taken = loop.run(min(BLOCK, self.steps - done), observers, done)
                 judgement.submit(recorder.flush())
@@ -306,7 +298,6 @@ def simulate(
 
     Raises:
         InvalidInputError: An argument is out of range; the message names it.
-        NoSolutionError: A step has no solution and the policy is ``raise``.
     """
     simulation = Simulation(robot, scheme, reference, q0, **options)
     return simulation.run(progress)

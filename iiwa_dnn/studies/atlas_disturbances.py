@@ -74,8 +74,8 @@ class Disturbance:
             q: True joint positions [rad], (n,).
         """
 
-    def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
-        """Change the bounds of the program of step k; the last command is (n,) [rad/s]."""
+    def constrain(self, k: int, qp: QP) -> None:
+        """Change the bounds of the program of step k."""
 
     def hold(self, k: int, velocity: Vector) -> None:
         """Change the velocity (n,) [rad/s] that the arm takes in step k, in place."""
@@ -147,12 +147,11 @@ class OtherArm(Disturbance):
 class LockedJoint(Disturbance):
     """A joint that stands still from a step on, as the controller knows."""
 
-    def constrain(self, k: int, qp: QP, velocity: Vector, accelerates: bool) -> None:
-        """Fix the joint by its bounds; the velocity (n,) is in [rad/s]."""
+    def constrain(self, k: int, qp: QP) -> None:
+        """Fix the joint by its bounds."""
         if k >= self.moment:
-            value = -velocity[self.joint] / self.dt if accelerates else 0.0
-            qp.lb[self.joint] = value
-            qp.ub[self.joint] = value
+            qp.lb[self.joint] = 0.0
+            qp.ub[self.joint] = 0.0
 
     def hold(self, k: int, velocity: Vector) -> None:
         """Set the joint's velocity, of (n,) [rad/s], to zero."""

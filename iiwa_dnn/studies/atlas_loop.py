@@ -80,9 +80,8 @@ class DisturbedLoop:
         self._past[0] = seen
         self.disturbance.mislead(program, target, tool, self.q)
         t = k * self._dt
-        wanted = self._reference.accelerations(t) if program.accelerates else None
-        program.write(self._qp.data, target.reshape(1, -1), self._past, self._dt, t, wanted)
-        self.disturbance.constrain(k, self._qp, self._past[1], program.accelerates)
+        program.write(self._qp.data, target.reshape(1, -1), self._past, self._dt, t)
+        self.disturbance.constrain(k, self._qp)
 
     def _answer(self, k: int) -> tuple[Vector, float]:
         """Advance the network; return x and its largest KKT residual."""
@@ -102,12 +101,8 @@ class DisturbedLoop:
         return point, residual
 
     def _move(self, k: int, x: Vector) -> None:
-        """Move the arm by the network's x, whose first n are velocities or accelerations."""
-        last = self._past[1].copy()
+        """Move the arm by the network's x, whose first n are velocities."""
         velocity: Vector = x[: self.q.size].copy()
-        if self.program.accelerates:
-            velocity = last + self._dt * velocity
         self.disturbance.hold(k, velocity)
         self._past[1] = velocity
-        mean = 0.5 * (last + velocity) if self.program.accelerates else velocity
-        self.q = self.q + self._dt * mean
+        self.q = self.q + self._dt * velocity

@@ -40,8 +40,6 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
         [KineticEnergy(weight=0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
     ),
     "pseudo-inverse": PseudoInverse,
-    "resolved acceleration": literature.resolved_acceleration,
-    "minimum torque": literature.minimum_torque,
 }
 """Schemes by name; the first is the default. The double indicator's rows ask for the target one
 period ahead, so that the joints' Euler steps leave no floor that hides a network's own error."""

@@ -466,20 +466,6 @@ def test_programs_without_a_solution_are_no_lag(
     assert call([*words, "--out", str(tmp_path / "slow")]) == 0
 
 
-def test_a_step_that_raises_writes_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    far = [*QUICK, "--scale", "0.1", "--duration", "1", "--policy", "raise"]
-    assert call([*far, "--out", str(tmp_path)]) == 1
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    assert captured.err == (
-        "track_heart: error: step 403: no joint velocity inside the limits fulfils the task, "
-        "against joint 4 lower velocity limit\n"
-    )
-    assert list(tmp_path.iterdir()) == []
-
-
 @pytest.mark.parametrize("policy", ["slow", "relax"])
 def test_slow_joints_draw_as_far_as_they_can(policy: str, tmp_path: Path) -> None:
     far = [*QUICK, "--scale", "0.008", "--speed", "0.06", "--duration", "1", "--policy", policy]

@@ -230,7 +230,7 @@ def test_a_warm_up_takes_a_step_without_a_solution_too(monkeypatch: pytest.Monke
         "yield_step",
         lambda *given: taken.append(yield_step(*given)) or taken[-1],  # type: ignore[func-returns-value]
     )
-    for policy in ("slow", "raise"):
+    for policy in ("slow", "stop"):
         controller = Controller(paper_robot(), DoubleIndicator(), policy=policy)  # type: ignore[arg-type]
         controller.warm_up()
         assert controller.policy == policy

@@ -16,7 +16,6 @@ from iiwa_dnn import (
     Heart,
     InvalidInputError,
     MovingTarget,
-    NoSolutionError,
     Target,
     Waypoints,
 )
@@ -142,18 +141,6 @@ def test_a_reference_far_away_is_told_once() -> None:
     with pytest.warns(UserWarning, match="anchored"):
         controller.step(PAPER_Q0, 0.0)
     assert not controller.step(PAPER_Q0, DT).ok
-
-
-def test_a_step_that_raises_can_be_followed_by_another() -> None:
-    robot = paper_robot()
-    controller = Controller(robot, DoubleIndicator(), Heart(scale=1.0).anchored(paper_start()),
-                            dt=DT, policy="raise")  # fmt: skip
-    ok = controller.step(PAPER_Q0, 0.0)
-    with pytest.raises(NoSolutionError):
-        controller.step(PAPER_Q0, 1.0)
-    again = controller.step(PAPER_Q0, 0.0)
-    np.testing.assert_array_equal(again.qp.b, ok.qp.b)
-    np.testing.assert_allclose(again.dq, ok.dq, rtol=0, atol=1e-9)
 
 
 def test_a_moving_target_is_reached_no_faster_than_it_may() -> None:

@@ -30,7 +30,6 @@ from iiwa_dnn.control.relaxed import (
     note_blocking,
 )
 from iiwa_dnn.control.yielding import ATTEMPTS, yield_step
-from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.integrators.base import ANSWER
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.networks.solver import DNNSolver
@@ -345,18 +344,6 @@ def test_stop_is_no_velocity_and_names_the_bounds() -> None:
     assert answer.sides.tolist() == [1, 1]
 
 
-def test_raise_carries_the_program() -> None:
-    start = paper_start()
-    far = Target(start.position + [0.5, 0.0, 0.0], start.rotation)
-    controller = Controller(paper_robot(), DoubleIndicator(), policy="raise")
-    with pytest.raises(NoSolutionError, match="no joint velocity") as caught:
-        controller.step(PAPER_Q0, 0.0, far)
-    expected = DoubleIndicator(home=PAPER_Q0).build_qp(start, far)
-    np.testing.assert_allclose(caught.value.problem.b, expected.b, atol=1e-12)
-    np.testing.assert_array_equal(caught.value.problem.ub, expected.ub)
-    assert not caught.value.solution.found
-
-
 @pytest.mark.parametrize("policy", ["slow", "relax"])
 def test_a_program_that_has_a_solution_gets_it_at_a_second_attempt(
     policy: policies.Policy,
@@ -563,23 +550,3 @@ def test_the_residuals_of_a_decided_answer_are_its_own(
         found = command.solution
         own = command.qp.residuals(found.x, found.y, found.z, found.z_box)
         np.testing.assert_allclose(found.residuals, own, rtol=0, atol=1e-12)
-
-
-def test_raise_takes_a_solution_that_the_first_attempt_has_missed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    controller = Controller(paper_robot(), DoubleIndicator(), policy="raise")
-    start = paper_start()
-    near = Target(start.position + [1e-3, 0.0, 0.0], start.rotation)
-    expected = controller.step(PAPER_Q0, 0.0, near).dq
-    layout = controller.layout
-    qp = DoubleIndicator(home=PAPER_Q0).build_qp(start, near)
-
-    def missed(row: np.ndarray, *given: object) -> bool:
-        layout.view(row, "program")[:] = qp.data
-        return False
-
-    monkeypatch.setattr(controller._laid_out()[0], "run", missed)
-    command = controller.step(PAPER_Q0, 0.0, near)
-    assert command.action is Action.FALLBACK
-    np.testing.assert_allclose(command.dq, expected, rtol=0, atol=1e-7)

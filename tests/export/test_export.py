@@ -17,7 +17,6 @@ import iiwa_dnn
 from benchmarks.export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
-from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
@@ -335,14 +334,6 @@ def test_a_microcontroller_has_room_for_it(heart: Path, tmp_path: Path) -> None:
     assert data == bss == 0
 
 
-def _accelerates() -> Controller:
-    tasks = [iiwa_dnn.PositionTask(), iiwa_dnn.OrientationTask()]
-    scheme = iiwa_dnn.Scheme(
-        [iiwa_dnn.KineticEnergy()], tasks, [iiwa_dnn.JointLimits()], level="acceleration"
-    )
-    return drawing(scheme)[0]
-
-
 def _with_own_part() -> Controller:
     base = DoubleIndicator()
     costs = [*base.costs, iiwa_dnn.Manipulability()]
@@ -372,22 +363,14 @@ class _Eager(iiwa_dnn.ProjectionNetwork):
         return np.ones(self.state_size(qp))
 
 
-def _with_estimator() -> Controller:
-    controller, _ = drawing()
-    controller.estimator = NoiseModel()
-    return controller
-
-
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (_accelerates, "acceleration level"),
         (_with_own_part, "Manipulability is written with numpy"),
         (_among_guided, "obstacles: Sphere moves by a function"),
         (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing moves by numpy"),
         (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
         (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
-        (_with_estimator, "estimator: is not exported"),
     ],
 )
 def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Path) -> None:

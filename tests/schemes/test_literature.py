@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pinocchio as pin
 import pytest
+import scipy.linalg
 import scipy.optimize
 
 from helpers_simulation import heart, paper_robot, paper_start
@@ -13,11 +15,12 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.schemes import Scheme
+from iiwa_dnn.schemes import JointTorque, Scheme
 from iiwa_dnn.schemes.literature import (
     bi_criteria,
     infinity_norm,
     minimum_acceleration_norm,
+    minimum_torque,
     minimum_velocity_norm,
     repetitive_motion,
 )
@@ -79,3 +82,21 @@ def test_the_largest_speed_is_that_of_a_linear_program() -> None:
 def test_a_weight_outside_is_named() -> None:
     with pytest.raises(InvalidInputError, match=r"^weight"):
         bi_criteria(ROBOT, 1.5)
+
+
+def test_least_torque_is_that_of_a_least_squares_problem() -> None:
+    """The torque of the velocity's change, by Pinocchio, in the null space of the tasks."""
+    dt = 1e-3
+    dq = 0.2 * np.random.default_rng(0).standard_normal(7)
+    target = Target(START.position, START.rotation, np.array([0.02, -0.03, 0.01]), np.zeros(3))
+    scheme = Scheme([JointTorque()], minimum_torque().tasks)
+    x = DNNSolver(tol=1e-11).solve(scheme.build_qp(START, target, dt, dq)).x
+    J = START.jacobian
+    free = scipy.linalg.null_space(J)
+    some = np.linalg.pinv(J) @ target.data[12:]
+    model = ROBOT.model
+    data = model.createData()
+    torque = pin.rnea(model, data, START.q, dq, (some - dq) / dt)
+    by_free = START.inertia @ free / dt
+    least = some - free @ np.linalg.lstsq(by_free, torque, rcond=None)[0]
+    np.testing.assert_allclose(x, least, rtol=0, atol=1e-7)

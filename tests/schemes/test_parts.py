@@ -362,8 +362,8 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
     [
         (KineticEnergy, ["weight", "kinetic"]),
         (CyclicMotion, ["weight", "gain", "home"]),
-        (PositionTask, ["gain", "frame", "weight", "priority", "tracking", "next_gain"]),
-        (OrientationTask, ["gain", "form", "frame", "weight", "priority", "tracking", "next_gain"]),
+        (PositionTask, ["gain", "frame", "weight", "tracking", "next_gain"]),
+        (OrientationTask, ["gain", "form", "frame", "weight", "tracking", "next_gain"]),
         (JointLimits, ["gain"]),
     ],
 )

@@ -39,7 +39,7 @@ static struct yielding controller_yielding(void)
 @yielding@
     return yielding;
 }
-@levels_function@@move_function@
+@move_function@
 static bool all_finite(const double *values, int count)
 {
     double sum = 0.0;
@@ -77,7 +77,7 @@ int controller_step(struct controller *c, const double *q, const double *target,
         c->past[i] = q[i];
     }
 @move@    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
-@resolve@    if (c->yields) {
+    if (c->yields) {
         for (int i = 0; i < 3; i++) {
             c->row[AT_DECISION + i] = 0.0;
         }
