@@ -61,13 +61,13 @@ def warn_if_outside(start: Configuration, stacklevel: int) -> None:
 
 
 def warn_if_too_few(program: StepProgram, stacklevel: int) -> None:
-    """Warn where hard tasks of one level have more independent rows than there are variables."""
+    """Warn where hard tasks have more independent rows than there are variables."""
     variables = program.sizes[0]
     # The paper's four rows of an orientation have rank 3; couplings of joints hold always.
     tasks = [task for task in program.tasks if task.row_weight > 0.0]
     counts = [task.row_count(program.robot) for task in tasks]
     rows = sum(counts) - sum(getattr(task, "form", "") == "block" for task in tasks)
-    if rows > variables and not program.priorities.any():
+    if rows > variables:
         names = ", ".join(type(task).__name__ for task in tasks)
         turning = any(isinstance(task, _TURNING) for task in tasks)
         message = f"{variables} joints cannot fulfil the {rows} rows of {names}"
