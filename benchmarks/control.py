@@ -19,7 +19,7 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.qp.crosscheck import OPTIONS, CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
 from iiwa_dnn.robot import Configuration, Robot
@@ -288,7 +288,9 @@ def _proxqp_alone(robot: Robot, scheme: Any, reference: Any, record: Any) -> tup
     """Seconds that ProxQP takes over every program of a run, and that making them takes."""
     import qpsolvers
 
-    options = CrossCheck().options("proxqp")
+    # Through qpsolvers, as others ask it: that does not hand all settings on.
+    handed = {key: value for key, value in OPTIONS["proxqp"].items() if not key.endswith("_inf")}
+    options = {"backend": "dense", **handed}
     data = robot.model.createData()
     solving = 0.0
     making = 0.0

@@ -9,8 +9,9 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.backend import provide
+from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.solution import Solution
+from iiwa_dnn.qp.solution import Solution, Status
 
 if TYPE_CHECKING:
     import qpsolvers
@@ -24,6 +25,7 @@ def solve_problem(
     tol: float = 1e-9,
     solver: DNNSolver | None = None,
     sharpen: bool = False,
+    eps_rel: float = 0.0,
 ) -> qpsolvers.Solution:
     """Solve one convex quadratic program with a dynamic neural network, from a cold start.
 
@@ -34,6 +36,9 @@ def solve_problem(
             implicitly. Its state is reset first and its own tolerance replaces `tol`.
         sharpen: Take a few more steps down to rounding, for about a third more time
             (`DNNSolver.sharpen`).
+        eps_rel: Tolerance relative to the largest term of each residual. The network goes on to
+            `tol` as far as rounding lets it; its last point is a solution, too, if each residual is
+            at most ``tol`` plus `eps_rel` times that term.
 
     Returns:
         The solution with x (n,), y (p,), z (m,), z_box (n,), obj, and in `extras` the status,
@@ -49,18 +54,36 @@ def solve_problem(
     else:
         qp = QP.from_qpsolvers(problem)
     qp.check_values()
+    checks.not_negative("eps_rel", eps_rel)
     if solver is None:
         solver = DNNSolver(tol=tol)
     else:
         checks.instance("solver", solver, DNNSolver).reset()
     if qp.data.item(0) < _SLIGHT:  # P[0, 0] tells most programs apart without a look at the others
-        return _at_unit_cost(qp, solver, sharpen).to_qpsolvers(problem)
-    return _solve(qp, solver, sharpen).to_qpsolvers(problem)
+        solution = _at_unit_cost(qp, solver, sharpen)
+    else:
+        solution = _solve(qp, solver, sharpen)
+    if solution.status is Status.NOT_SETTLED and eps_rel > 0.0:
+        tolerances = solver.tol + eps_rel * _largest_terms(qp, solution)
+        if (np.array(solution.residuals) <= tolerances).all():
+            solution = solution._replace(status=Status.SOLVED)
+    return solution.to_qpsolvers(problem)
 
 
 def _solve(qp: QP, solver: DNNSolver, sharpen: bool) -> Solution:
     solution = solver.solve(qp)
     return solver.sharpen(qp, solution) if sharpen else solution
+
+
+def _largest_terms(qp: QP, solution: Solution) -> Vector:
+    """Compute the largest terms of primal residual, dual residual and gap, (3,)."""
+    x = solution.x
+    y = solution.y
+    curved = qp.P @ x
+    primal = [x, qp.A @ x, qp.b, qp.G @ x]
+    dual = [curved, qp.q, qp.A.T @ y, qp.G.T @ solution.z, solution.z_box]
+    gap = [[x @ curved, qp.q @ x, qp.b @ y]]
+    return np.array([np.abs(np.concatenate(terms)).max() for terms in (primal, dual, gap)])
 
 
 def _at_unit_cost(qp: QP, solver: DNNSolver, sharpen: bool) -> Solution:

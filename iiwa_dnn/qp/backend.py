@@ -26,7 +26,7 @@ def register() -> None:
     From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
     Keyword arguments: ``eps_abs``, the absolute tolerance on primal residual, dual residual and gap
-    (1e-9); ``eps_rel``, which adds nothing to it: an answer is then within both together. The
+    (1e-9); ``eps_rel``, a tolerance relative to the largest term of each, that is added (0). The
     start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex
     problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """
@@ -49,7 +49,9 @@ def _solve_problem(
     from qpsolvers import ProblemError
 
     try:
-        solution: qpsolvers.Solution = _solve[0](problem, tol=eps_abs, sharpen=True)
+        solution: qpsolvers.Solution = _solve[0](
+            problem, tol=eps_abs, sharpen=True, eps_rel=eps_rel
+        )
         return solution
     except InvalidInputError as error:
         raise ProblemError(str(error)) from error

@@ -239,6 +239,7 @@ class Simulation:
             solution_gap=agreement.solution_gap,
             objective_gap=agreement.objective_gap,
             reference_residual=agreement.reference_residual,
+            judge=agreement.judge,
             settings={
                 **self._settings,
                 **self._plant.settings(),

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 import qpsolvers
 
+import iiwa_dnn
 from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp
 from helpers_simulation import heart, near_target, paper_start, run
+from iiwa_dnn import Record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Solution
-from iiwa_dnn.qp.crosscheck import SOLVERS, Agreement, CrossCheck
+from iiwa_dnn.qp import QP, Solution, crosscheck
+from iiwa_dnn.qp.crosscheck import OPTIONS, Agreement, CrossCheck
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.schemes import DoubleIndicator
 
-BOTH = CrossCheck(("proxqp", "osqp"))
+SOLVERS = ("proxqp", "osqp")
+BOTH = CrossCheck(SOLVERS)
 EACH = [CrossCheck((name,)) for name in SOLVERS]
 IDS = list(SOLVERS)
 
@@ -38,9 +43,10 @@ def value(qp: QP, x: np.ndarray) -> float:
     return 0.5 * x @ qp.P @ x + qp.q @ x
 
 
-def with_options(name: str, **changes: object) -> CrossCheck:
-    """A check whose one solver gets other options than the package's."""
-    return CrossCheck((name,), _options={name: changes})
+def quitting(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
+    """Let solvers give up after one iteration."""
+    for name in names:
+        monkeypatch.setitem(OPTIONS, name, {**OPTIONS[name], "max_iter": 1})
 
 
 @pytest.mark.parametrize("check", EACH, ids=IDS)
@@ -125,7 +131,7 @@ def test_a_block_of_programs_is_judged_one_by_one() -> None:
     x = np.stack([best for _, best in known])
     x[3, 2] += 1e-5
     block = BOTH.check_block(np.stack([qp.data for qp, _ in known]), known[0][0].sizes, x)
-    assert [array.shape for array in block] == [(5, 2)] * 3
+    assert [array.shape for array in block] == [(5, 2)] * 4
     assert ((block.solution_gap > 1e-6) == (np.arange(5) == 3)[:, np.newaxis]).all()
     for i, (qp, _) in enumerate(known):
         for together, alone in zip(block, BOTH.check(qp, x[i]), strict=True):
@@ -151,60 +157,106 @@ def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
     np.testing.assert_array_equal(agreement.reference_residual, [[np.inf]])
 
 
-@pytest.mark.parametrize("name", SOLVERS)
-def test_a_reference_that_gives_up_is_not_believed(name: str) -> None:
+@pytest.mark.parametrize("check", EACH, ids=IDS)
+def test_references_that_give_up_are_not_believed(
+    check: CrossCheck, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # Active bounds, so that no solver can be done after one iteration.
     qp, x = known_qp(np.random.default_rng(54), 7, 3, 4)
-    quitter = with_options(name, max_iter=1, **({"raise_error": False} if name == "osqp" else {}))
+    quitting(monkeypatch, *SOLVERS)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        agreement = quitter.check(qp, x)
+        agreement = check.check(qp, x)
     assert np.isnan(agreement.solution_gap).all()
     assert not (agreement.reference_residual <= 1e-8).any()
+    np.testing.assert_array_equal(agreement.judge, [[-1]])
 
 
-@pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1]])
-def test_a_second_solver_is_asked_where_the_first_has_no_answer(
+@pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1], ("daqp", "proxqp")])
+def test_a_second_solver_judges_where_the_first_has_no_answer(
     first: str, second: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve, asked = qpsolvers.solve_problem, []
+    ask, asked = crosscheck.ask, []
 
-    def fail_once(problem: qpsolvers.Problem, solver: str, **options: object) -> object:
-        asked.append(solver)
-        if solver == first:
+    def fail_once(name: str, qp: QP) -> np.ndarray:
+        asked.append(name)
+        if name == first and len(asked) != 2:
             raise qpsolvers.exceptions.SolverError("out of order")
-        return solve(problem, solver, **options)
+        return ask(name, qp)
 
-    monkeypatch.setattr(qpsolvers, "solve_problem", fail_once)
-    known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(3)]
+    monkeypatch.setattr(crosscheck, "ask", fail_once)
+    known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
     x = np.stack([best for _, best in known])
     programs = np.stack([qp.data for qp, _ in known])
-    programs[2, 0] = np.nan
-    agreement = CrossCheck((first,)).check_block(programs, known[0][0].sizes, x)
-    assert asked == [first, first, second, second]
-    assert agreement.solution_gap[:2].max() <= 1e-7
-    assert agreement.reference_residual[:2].max() <= 1e-8
-    assert np.isnan(agreement.solution_gap[2]).all()
+    programs[3, 0] = np.nan
+    check = CrossCheck((first,))
+    agreement = check.check_block(programs, known[0][0].sizes, x)
+    assert asked == [first, first, first, second, second]
+    assert agreement.solution_gap[:3].max() <= 1e-7
+    assert agreement.reference_residual[:3].max() <= 1e-8
+    assert np.isnan(agreement.solution_gap[3]).all()
+    np.testing.assert_array_equal(agreement.judge[:, 0], [1, 0, 1, -1])
+    assert check.settings()["second"] == [second]
 
 
-def test_a_third_solver_is_asked_and_the_first_of_the_table_where_it_fails() -> None:
-    qp, x = known_qp(np.random.default_rng(3), 7, 3, 2)
-    tight = {"primal_tol": 1e-10, "dual_tol": 1e-10}
-    for options, largest in ((tight, 1e-8), ({"iter_limit": 0, **tight}, 1e-8)):
-        table = {"daqp": options, "proxqp": CrossCheck().options("proxqp")}
-        agreement = CrossCheck(("daqp", "proxqp"), _options=table).check(qp, x)
-        assert agreement.solution_gap.shape == (1, 2)
-        assert agreement.solution_gap.max() < 1e-6
-        assert agreement.reference_residual.max() <= largest
-    with pytest.raises(InvalidInputError, match="gurobi"):
+def test_a_run_counts_who_judged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    ask, calls = crosscheck.ask, []
+
+    def fail_thrice(name: str, qp: QP) -> np.ndarray:
+        calls.append(name)
+        if name == "proxqp" and calls.count("proxqp") in (2, 3, 5):
+            raise qpsolvers.exceptions.SolverError("out of order")
+        return ask(name, qp)
+
+    monkeypatch.setattr(crosscheck, "ask", fail_thrice)
+    record = run(duration=0.01, check=CrossCheck(("proxqp",)))
+    record.save(tmp_path / "record.npz")
+    loaded = Record.load(tmp_path / "record.npz")
+    np.testing.assert_array_equal(loaded.judge[:, 0], [0, 1, 1, 0, 1, 0, 0, 0, 0, 0])
+    assert compute_metrics(loaded)["crosscheck"]["judged_by"] == {"proxqp": 7, "osqp": 3}
+    older = dataclasses.replace(record, judge=None)
+    assert "judged_by" not in compute_metrics(older)["crosscheck"]
+
+
+def test_programs_with_narrow_bounds_are_judged_by_proxqp_itself() -> None:
+    # Acceleration and jerk limits leave bounds 1e-3 apart. ProxQP's own tolerance of infeasibility
+    # calls half of these infeasible, feasible though they are.
+    rng = np.random.default_rng(61)
+    judged = []
+    for _ in range(100):
+        x = rng.uniform(-0.2, 0.2, 7)
+        A = rng.standard_normal((6, 7))
+        lb = x - rng.uniform(0.0, 1e-3, 7)
+        lb[0] = x[0]
+        qp = QP(np.eye(7), A.T @ rng.standard_normal(6) - x + np.eye(7)[0], None, None,
+                A, A @ x, lb, lb + 1e-3)  # fmt: skip
+        judged.append(CrossCheck().check(qp, DNNSolver().solve(qp).x).judge[0, 0])
+    assert judged.count(0) >= 99
+
+
+@pytest.mark.parametrize("name", sorted({"clarabel", "daqp", "piqp", "quadprog"}))
+def test_any_solver_of_qpsolvers_judges(name: str) -> None:
+    rng = np.random.default_rng(60)
+    for active in range(4):
+        qp, x = known_qp(rng, 7, 3, active, inequalities=4)
+        agreement = CrossCheck((name,)).check(qp, x)
+        assert agreement.solution_gap.max() < 1e-7
+        np.testing.assert_array_equal(agreement.judge, [[0]])
+
+
+def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None:
+    with pytest.raises(InvalidInputError, match=r"daqp.*proof, not 'gurobi'"):
         CrossCheck(("gurobi",))
+    iiwa_dnn.qp.register()
+    with pytest.raises(InvalidInputError, match="not 'iiwa_dnn'"):
+        CrossCheck(("iiwa_dnn",))
 
 
 def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*args: object, **options: object) -> None:
         raise qpsolvers.exceptions.SolverError("out of order")
 
-    monkeypatch.setattr(qpsolvers, "solve_problem", fail)
+    monkeypatch.setattr(crosscheck, "ask", fail)
     agreement = BOTH.check(heart_qp(), np.zeros(7))
     assert np.isnan(agreement.solution_gap).all()
     np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
@@ -221,8 +273,9 @@ def test_a_reference_that_is_not_a_number_is_not_believed(
         getattr(solution, field)[0] = np.nan
         return solution
 
+    quitting(monkeypatch, "proxqp")
     monkeypatch.setattr(qpsolvers, "solve_problem", spoil)
-    agreement = EACH[0].check(heart_qp(), np.zeros(7))
+    agreement = EACH[1].check(heart_qp(), np.zeros(7))
     assert not (agreement.reference_residual <= 1e-8).any()
     assert np.isnan(agreement.solution_gap).all()
 
@@ -235,9 +288,10 @@ def test_a_reference_outside_its_bounds_is_not_believed(
     def answer(problem: qpsolvers.Problem, **options: object) -> qpsolvers.Solution:
         return qpsolvers.Solution(problem, found=True, x=np.zeros(2), z_box=np.zeros(2))
 
+    quitting(monkeypatch, "proxqp")
     monkeypatch.setattr(qpsolvers, "solve_problem", answer)
     qp = QP(np.eye(2), np.zeros(2), lb=[lb] * 2, ub=[ub] * 2)
-    agreement = EACH[0].check(qp, np.zeros(2))
+    agreement = EACH[1].check(qp, np.zeros(2))
     np.testing.assert_array_equal(agreement.reference_residual, [[1.0]])
     assert np.isnan(agreement.solution_gap).all()
 
@@ -245,11 +299,7 @@ def test_a_reference_outside_its_bounds_is_not_believed(
 def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.MonkeyPatch) -> None:
     # ProxQP takes minutes over one NaN, OSQP its whole budget of iterations.
     asked = []
-    monkeypatch.setattr(
-        qpsolvers,
-        "solve_problem",
-        lambda *args, **options: asked.append(args) or qpsolvers.Solution(args[0]),
-    )
+    monkeypatch.setattr(crosscheck, "ask", lambda *args: asked.append(args))
     qp = heart_qp()
     spoilt = QP(qp.P, qp.q * np.nan, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)
     agreement = BOTH.check(spoilt, np.zeros(7))
@@ -264,14 +314,18 @@ def test_an_answer_that_is_not_a_number_does_not_agree() -> None:
     assert (agreement.reference_residual <= 1e-8).all()
 
 
-def test_osqp_is_accurate_enough_with_our_options_and_not_with_its_own() -> None:
-    ours, defaults = CrossCheck(("osqp",)), with_options("osqp", raise_error=False)
+def test_osqp_is_accurate_enough_with_our_options_and_not_with_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     rng = np.random.default_rng(55)
     programs = [known_qp(rng, 7, 3, active) for active in range(5)]
     programs += [(qp, DNNSolver().solve(qp).x) for qp in map(heart_qp, (0.5, 2.0, 7.0))]
     for qp, x in programs:
-        assert ours.check(qp, x).reference_residual.max() <= 1e-8
-        agreement = defaults.check(qp, x)
+        assert EACH[1].check(qp, x).reference_residual.max() <= 1e-8
+    quitting(monkeypatch, "proxqp")
+    monkeypatch.setitem(OPTIONS, "osqp", {"raise_error": False})
+    for qp, x in programs:
+        agreement = EACH[1].check(qp, x)
         assert agreement.reference_residual.min() > 1e-8
         assert np.isnan(agreement.solution_gap).all()
 
@@ -288,7 +342,9 @@ def test_the_worst_of_the_stages_of_each_step() -> None:
     # Two steps of two stages, two references; NaN and inf where the second gave no answer.
     gap = np.array([[1.0, 5.0], [3.0, 4.0], [2.0, np.nan], [1.0, 1.0]])
     residual = np.array([[1e-9, 1e-10], [1e-10, 1e-9], [1e-9, np.inf], [1e-9, 1e-9]])
-    worst = Agreement(gap, 2.0 * gap, residual).worst_of(2)
+    judge = np.array([[0, 0], [1, 0], [0, -1], [0, 1]], dtype=np.int8)
+    worst = Agreement(gap, 2.0 * gap, residual, judge).worst_of(2)
+    np.testing.assert_array_equal(worst.judge, [[1, 0], [0, -1]])
     np.testing.assert_array_equal(worst.solution_gap, [[3.0, 5.0], [2.0, np.nan]])
     np.testing.assert_array_equal(worst.objective_gap, [[6.0, 10.0], [4.0, np.nan]])
     np.testing.assert_array_equal(worst.reference_residual, [[1e-9, 1e-9], [1e-9, np.inf]])
@@ -358,11 +414,11 @@ def test_a_wrong_answer_below_the_tolerance_is_let_pass_and_recorded() -> None:
     assert record.crosscheck_gap[3] == pytest.approx(5e-7, rel=1e-1)
 
 
-def test_a_run_whose_reference_fails_is_counted_and_never_averaged() -> None:
-    quitter = with_options("osqp", max_iter=1, raise_error=False)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        record = run(check=quitter, duration=0.01)
+def test_a_run_whose_reference_fails_is_counted_and_never_averaged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    quitting(monkeypatch, *SOLVERS)
+    record = run(check=EACH[1], duration=0.01)
     # The first program, at rest, has the answer zero, which OSQP starts from.
     assert np.isnan(record.crosscheck_gap[1:]).all()
     assert record.crosscheck_gap[0] <= 1e-9

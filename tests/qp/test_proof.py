@@ -109,7 +109,8 @@ def test_a_proven_active_set_has_all_rows_and_bounds_that_the_solution_meets() -
 def test_the_answer_of_another_solver_is_proven_as_well() -> None:
     qp, _ = known_qp(np.random.default_rng(0), 6, 2, 2, inequalities=4)
     problem = qp.to_qpsolvers()
-    for solve in (iiwa_dnn.solve_problem, lambda each: CrossCheck()._solve("proxqp", each)):
+    tight = {"solver": "proxqp", "eps_abs": 1e-10, "eps_rel": 0.0}
+    for solve in (iiwa_dnn.solve_problem, lambda each: qpsolvers.solve_problem(each, **tight)):
         proof, ratio = judged(qp, solve(problem))
         assert not proof.reason
         assert proof.bound < 1e-8

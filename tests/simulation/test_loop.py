@@ -172,6 +172,7 @@ def test_settings_say_what_was_asked_and_with_what() -> None:
     assert settings["reference"] == {"name": "heart", "scale": 3.45e-3, "period": 10.0}
     assert settings["check"] == {
         "solvers": ["osqp"],
+        "second": ["proxqp"],
         "tolerance": 1e-5,
         "reference_tolerance": 1e-8,
     }
