@@ -103,7 +103,6 @@ def cases() -> dict[str, Case]:
     balls = [Sphere(at, radius) for at, radius in zip(BALLS, RADII, strict=True)]
     avoidance = CollisionAvoidance(balls, distance=DISTANCE)
     own = MovingTarget(start)
-    smooth = MovingTarget(start, acceleration=1.0, jerk=10.0)
     far = Target(start.position + [1e9, 0.0, 0.0], start.rotation)
     above = np.array(paper.START)
     above[3] = robot.q_upper[3] + 0.05
@@ -113,7 +112,6 @@ def cases() -> dict[str, Case]:
         "a limit active": Case(robot.with_limits(velocity=0.1), plain, heart),
         "a pose task": Case(robot, Scheme(plain.costs, [PoseTask()], plain.limits), heart),
         "`MovingTarget`, set anew at 30 Hz": Case(robot, plain, own, moved(own, heart)),
-        "the same, with acceleration and jerk": Case(robot, plain, smooth, moved(smooth, heart)),
         "acceleration limits": Case(robot, scheme(acceleration), heart),
         "acceleration and jerk limits": Case(robot, scheme(*both), heart),
         "21 pairs of collisions": Case(robot, scheme(avoidance), heart),

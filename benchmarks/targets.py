@@ -133,13 +133,12 @@ def drive(
 ) -> Drive:
     """Drive an arm towards a stream of poses, with or without the filter of `MovingTarget`."""
     start = Configuration(robot, q0)
-    limits = {"acceleration": 1.0, "jerk": 10.0}
-    hand = iiwa_dnn.MovingTarget(start, **limits)
+    hand = iiwa_dnn.MovingTarget(start)
     controller = iiwa_dnn.Controller(
         robot, scheme, hand if filtered else None, dt=dt, policy=policy
     )
     controller.warm_up()
-    hand = iiwa_dnn.MovingTarget(start, **limits)
+    hand = iiwa_dnn.MovingTarget(start)
     if filtered:
         controller.reference = hand
     q = np.empty((steps + 1, robot.dof))

@@ -1,20 +1,19 @@
 """An orientation of one's own: the heart, the tool nodding to and fro while it is drawn.
 
-A reference that turns gives two things: the turn since t = 0, about the world's axes, and its exact
-angular velocity. One sees that the tool follows the turning target, and that ProxQP agrees.
+The path is the heart's own, and a turn about the world's axes with its exact rate. One sees that
+the tool follows the turning target, and that ProxQP agrees.
 """
 
 import sys
 
 import numpy as np
 import tyro
-from scipy.spatial.transform import Rotation
 
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
+from iiwa_dnn.references.rotations import turn_target
 from iiwa_dnn.results.metrics import orientation_error
 
-AXIS = np.array([1.0, 0.0, 0.0])
 LARGEST = 0.2  # [rad]
 RATE = 2.0  # [rad/s]
 
@@ -22,13 +21,12 @@ RATE = 2.0  # [rad/s]
 class Nodding(iiwa_dnn.Heart):
     """The heart with a tool that nods."""
 
-    def turn(self, t):
-        angle = LARGEST * np.sin(RATE * np.asarray(t))
-        vectors = angle[..., np.newaxis] * AXIS
-        return Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(*angle.shape, 3, 3)
-
-    def angular_velocity(self, t):
-        return LARGEST * RATE * np.cos(RATE * np.asarray(t))[..., np.newaxis] * AXIS
+    def move(self, t, target):
+        """Take a target to time t [s]; see `Reference.move`."""
+        super().move(t, target)
+        angle = LARGEST * np.sin(RATE * t)
+        rate = LARGEST * RATE * np.cos(RATE * t)
+        turn_target(target, (angle, 0.0, 0.0), (rate, 0.0, 0.0))
 
 
 def main(duration: tyro.conf.Positional[float] = 10.0):

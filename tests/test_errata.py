@@ -296,8 +296,8 @@ def test_the_hearts_parenthesis_closes_after_the_fourth_cosine() -> None:
         return a * inner - math.cos(4 * phase) - 5 * a
 
     assert abs(printed(0.0)) > 0.99, "a metre away from the start"
-    assert Heart(scale=a).displacement(0.0)[1] == pytest.approx(0.0, abs=1e-15)
-    drawn = Heart(scale=a).displacement(np.linspace(0.0, 10.0, 1001))
+    assert Heart(scale=a).at(0.0).position[1] == pytest.approx(0.0, abs=1e-15)
+    drawn = Heart(scale=a).sample(np.linspace(0.0, 10.0, 1001)).position
     assert np.ptp(drawn[:, 1]) < 0.11
 
 

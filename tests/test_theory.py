@@ -29,6 +29,7 @@ from iiwa_dnn import (
     Network,
     OneLayerNetwork,
     ProjectionNetwork,
+    Reference,
     Scheme,
     Status,
     Target,
@@ -288,11 +289,21 @@ def test_the_filter_delays_and_that_is_nine_of_eulers_errors() -> None:
     assert filtered / plain == pytest.approx((4.5 + 0.5) / 0.5, rel=0.05)
 
 
+class Straight(Reference):
+    """A straight line at constant velocity."""
+
+    name = "straight"
+    period = 2.0
+
+    def move(self, t: float, target: Array) -> None:
+        target[:3] += t * np.array([0.02, 0.03, -0.01])
+        target[12:15] = [0.02, 0.03, -0.01]
+
+
 def test_the_lag_is_the_delay_times_the_joints_acceleration_over_the_gain() -> None:
     """Also on a straight line at constant velocity, whose target has no acceleration."""
     dt = 1e-3
-    straight = Waypoints([0.0, 2.0], [[0.0, 0.0, 0.0], [0.04, 0.06, -0.02]], ends="natural")
-    path = straight.anchored(paper_start())
+    path = Straight().anchored(paper_start())
     options = {"dt": dt, "filter_window": 10, "check": UNCHECKED}
     record = simulate(paper_robot(), SO3, path, PAPER_Q0, **options)
     acceleration = np.gradient(record.dq, dt, axis=0)

@@ -46,10 +46,8 @@ class Plain(d.Reference):
     name = "plain"
     period = 1.0
 
-    def displacement(self, t: Any) -> Any:
-        return np.zeros((*np.shape(t), 3))
-
-    velocity = displacement
+    def move(self, t: float, target: np.ndarray) -> None:
+        """Leave the target as it is."""
 
 
 CALLS: dict[str, tuple[Callable[[], Any], str]] = {
@@ -77,8 +75,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "pose list": (lambda: d.Circle().anchored([0, 0, 0]), "pose: must be an object with position"),
     "pose of a target": (lambda: d.MovingTarget(EYE), "pose: must be an object with position"),
     "no rotation": (lambda: d.Target(EYE[0], 2.0 * EYE), "rotation: is not a rotation matrix"),
-    "path of a surface": (lambda: d.OnSurface(3), "along: must be an iiwa_dnn.Reference"),
-    "path that tilts": (lambda: d.Tilting(d.Circle), "along: must be an iiwa_dnn.Reference"),
+    "path that tilts": (lambda: d.Tilting(d.Circle), "along: must be one of Still"),
     "no list of costs": (lambda: d.Scheme(3), "costs: must be a list of parts"),
     "obstacles": (lambda: d.CollisionAvoidance(3), "obstacles: number 1 must be a Sphere"),
     "solvers": (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),

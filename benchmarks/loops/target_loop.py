@@ -26,7 +26,7 @@ def make(task: Task, variant: str) -> Loop:
     q = np.array(task["q0"])
     dt = float(task["dt"])
     start = iiwa_dnn.Configuration(robot, q)
-    hand = iiwa_dnn.MovingTarget(start, 0.8, 2.5, acceleration=3.0, jerk=30.0)
+    hand = iiwa_dnn.MovingTarget(start, 0.8, 2.5)
     filtered = variant == "filtered"
     controller = iiwa_dnn.Controller(robot, scheme, hand if filtered else None, dt=dt)
     poses = task["poses"]

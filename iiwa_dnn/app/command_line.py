@@ -6,8 +6,9 @@ import re
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Sequence
-from contextlib import redirect_stderr
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, redirect_stderr
 from dataclasses import fields
 from difflib import get_close_matches
 from functools import partial, wraps
@@ -47,7 +48,7 @@ def run_command(
     options: S | None = None
     try:
         options = parse(kind, prog, sys.argv[1:] if words is None else words)
-        with ended_by_signals():
+        with ended_by_signals(), warnings_in_one_line():
             code = run(options)
         sys.stdout.flush()
         return code
@@ -58,6 +59,19 @@ def run_command(
         if getattr(options, "verbose", False):
             traceback.print_exc()
         return fail(prog, error)
+
+
+@contextmanager
+def warnings_in_one_line() -> Iterator[None]:
+    """Print each warning for the user as one line on standard error, without its place."""
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        print(message, file=sys.stderr)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = show
+        yield
 
 
 def run_script(main: Callable[..., int | None]) -> int:

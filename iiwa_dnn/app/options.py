@@ -56,7 +56,7 @@ class TrackOptions(RunOptions):
 
     command: ClassVar[str] = "track"
     out: Path = Path("runs/heart")  # folder of the results
-    robot: str = "iiwa7"  # robot, by its name or by its file: URDF, xacro, MJCF
+    robot: str = "iiwa7"  # robot, by its name or by its file: URDF, xacro
     tip: _Name = None  # frame that follows the path (none: the end of the chain)
     frames: _Names = ()  # further frames that draw the path, such as a second arm's
     lock: _Names = ()  # names of the joints that are held still
@@ -64,12 +64,10 @@ class TrackOptions(RunOptions):
     q0: _Floats = ()  # joint positions at the start [rad] (none: the robot's start posture)
     joint_limit: _Limit = None  # position limit of all joints [rad], or datasheet (iiwa7: 2.5)
     reference: str = "heart"
-    """path: heart, circle, line, lissajous, cone, tilting-circle, plane-heart, sphere-heart, CSV"""
-    scale: float = Heart.scale  # factor a of the hearts, whose width is 32 a [m]
+    """path: heart, circle, line, lissajous, cone, tilting-circle, or a CSV file"""
+    scale: float = Heart.scale  # factor a of the heart, whose width is 32 a [m]
     radius: float = 0.05  # radius of the circles [m]
     angle: float = TILT  # tilt of the tool on the cone and the tilting circle [rad]
-    sphere: float = 0.2  # radius of the sphere under the sphere-heart [m]
-    normal: _Floats = ()  # outward normal of plane or sphere at the start (none: the tool axis)
     tool_speed: float = SPEED  # speed of the tip along a CSV file without times [m/s]
     stretch: float = 1.0  # ratio of the path's times to those in a CSV file with times [1]
     offset: tuple[float, ...] = (0.1, 0.0, 0.0)  # vector from the line's start to its far end [m]

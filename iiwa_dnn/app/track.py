@@ -24,7 +24,6 @@ from iiwa_dnn.references import (
     Heart,
     Line,
     Lissajous,
-    OnSurface,
     Reference,
     Tilting,
     Waypoints,
@@ -66,14 +65,6 @@ _PATHS: dict[str, tuple[tuple[str, ...], Callable[[Any], Reference]]] = {
     "tilting-circle": (
         ("radius", "angle", "period"),
         lambda o: Tilting(Circle(o.radius, o.period), o.angle),
-    ),
-    "plane-heart": (
-        ("scale", "normal", "period"),
-        lambda o: OnSurface(Heart(o.scale, o.period), None, o.normal or None),
-    ),
-    "sphere-heart": (
-        ("scale", "sphere", "normal", "period"),
-        lambda o: OnSurface(Heart(o.scale, o.period), o.sphere, o.normal or None),
     ),
     "FILE.csv": (
         ("tool_speed", "stretch"),

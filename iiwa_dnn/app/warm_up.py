@@ -21,7 +21,6 @@ from iiwa_dnn.references import (
     Heart,
     Line,
     Lissajous,
-    OnSurface,
     Still,
     Tilting,
     Waypoints,
@@ -42,7 +41,6 @@ PATHS = (
     Still(),
     Cone(),
     Tilting(Circle()),
-    OnSurface(Heart()),
 )
 
 

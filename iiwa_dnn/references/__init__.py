@@ -1,6 +1,6 @@
 """References: paths of a frame, with exact linear and angular velocities."""
 
-from iiwa_dnn.references.base import Motion as Motion, Reference as Reference
+from iiwa_dnn.references.base import Reference as Reference
 from iiwa_dnn.references.moving_target import MovingTarget as MovingTarget
 from iiwa_dnn.references.shapes import (
     Circle as Circle,
@@ -9,6 +9,6 @@ from iiwa_dnn.references.shapes import (
     Lissajous as Lissajous,
     Still as Still,
 )
-from iiwa_dnn.references.targets import Target as Target, Targets as Targets
-from iiwa_dnn.references.turning import Cone as Cone, OnSurface as OnSurface, Tilting as Tilting
+from iiwa_dnn.references.targets import Target as Target
+from iiwa_dnn.references.turning import Cone as Cone, Tilting as Tilting
 from iiwa_dnn.references.waypoints import Waypoints as Waypoints

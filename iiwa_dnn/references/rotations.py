@@ -1,4 +1,4 @@
-r"""Rotations in compiled code: the exponential of SO(3), its left Jacobian and their rates.
+r"""Rotations in compiled code: the exponential of SO(3) and its left Jacobian.
 
 A rotation vector :math:`\theta(t)` gives :math:`R = \exp[\theta]_\times`, which turns with
 
@@ -18,40 +18,27 @@ from numba import njit
 
 from iiwa_dnn.checks import Array, Vector3
 
-Four = tuple[float, float, float, float]
-
 
 # Task rows call it too: without `fastmath` a function takes that of whichever calls it first.
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def coefficients(square: float) -> Four:
-    """Compute a, b and their derivatives by the angle over the angle, at a squared angle."""
+def coefficients(square: float) -> tuple[float, float]:
+    """Compute a and b at a squared angle."""
     if square > 1.0:
         angle = np.sqrt(square)
-        sine = np.sin(angle)
         versine = 2.0 * np.sin(0.5 * angle) ** 2
-        slope = (angle * sine - 2.0 * versine) / square**2
-        return (
-            versine / square,
-            (angle - sine) / (square * angle),
-            slope,
-            (angle * versine - 3.0 * (angle - sine)) / (square**2 * angle),
-        )
+        return versine / square, (angle - np.sin(angle)) / (square * angle)
     term_a = 0.5
     term_b = 1.0 / 6.0
     a = term_a
     b = term_b
-    slope_a = 0.0
-    slope_b = 0.0
     power = 1.0
     for k in range(1, 11):  # the series, whose next term is below rounding
         term_a /= -(2.0 * k + 1.0) * (2.0 * k + 2.0)
         term_b /= -(2.0 * k + 2.0) * (2.0 * k + 3.0)
-        slope_a += 2.0 * k * term_a * power
-        slope_b += 2.0 * k * term_b * power
         power *= square
         a += term_a * power
         b += term_b * power
-    return a, b, slope_a, slope_b
+    return a, b
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -88,7 +75,7 @@ def added(u: Vector3, v: Vector3) -> Vector3:
 def rotated(vector: Vector3, v: Vector3) -> Vector3:
     """Compute exp[vector] v."""
     square = dot(vector, vector)
-    a, b, _, _ = coefficients(square)
+    a, b = coefficients(square)
     once = cross(vector, v)
     return added(v, combined(1.0 - b * square, once, a, cross(vector, once)))
 
@@ -96,19 +83,9 @@ def rotated(vector: Vector3, v: Vector3) -> Vector3:
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
     """Compute J(vector) v: the angular velocity of a rotation vector with the rate v."""
-    a, b, _, _ = coefficients(dot(vector, vector))
+    a, b = coefficients(dot(vector, vector))
     once = cross(vector, v)
     return added(v, combined(a, once, b, cross(vector, once)))
-
-
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def jacobian_rate(vector: Vector3, rate: Vector3) -> Vector3:
-    """Compute dJ/dt rate: the part of the angular acceleration without the second rate."""
-    _, b, slope_a, slope_b = coefficients(dot(vector, vector))
-    along = dot(vector, rate)
-    once = cross(vector, rate)
-    turned = combined(along * slope_a, once, along * slope_b, cross(vector, once))
-    return combined(1.0, turned, b, cross(rate, once))
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
@@ -134,19 +111,6 @@ def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
     after = added(left_jacobian(vector, rate), before)
     for i in range(3):
         target[15 + i] = after[i]
-
-
-@njit(cache=True, error_model="numpy")
-def move_target(target: Array, motion: Array) -> None:
-    """Move a target (18,) at rest by a motion: the target to which it takes one at identity."""
-    for i in range(3):
-        target[i] += motion[i]
-        target[12 + i] = motion[12 + i]
-        target[15 + i] = motion[15 + i]
-    for j in range(3):
-        x, y, z = column_of(target, j)
-        for row in range(3, 12, 3):
-            target[row + j] = motion[row] * x + motion[row + 1] * y + motion[row + 2] * z
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})

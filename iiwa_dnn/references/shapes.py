@@ -15,8 +15,10 @@ from iiwa_dnn.references.base import Reference
 
 
 @njit(cache=True, error_model="numpy")
-def _heart(t: float, constants: Array, target: Array) -> None:
-    scale, rate = constants
+def heart_path(t: float, constants: Array, target: Array) -> None:
+    """Move a target along `Heart`; constants: scale [m], rate [rad/s]."""
+    scale = constants[0]
+    rate = constants[1]
     p = rate * t
     s1 = np.sin(p)
     c1 = np.cos(p)
@@ -52,7 +54,7 @@ class Heart(Reference):
     """
 
     name: ClassVar[str] = "heart"
-    path: ClassVar[Any] = staticmethod(_heart)
+    path: ClassVar[Any] = staticmethod(heart_path)
     scale: float = 3.45e-3
     period: float = 10.0
 
@@ -62,7 +64,8 @@ class Heart(Reference):
 
 
 @njit(cache=True, error_model="numpy")
-def _circle(t: float, constants: Array, target: Array) -> None:
+def circle_path(t: float, constants: Array, target: Array) -> None:
+    """Move a target along `Circle`; constants: radius [m], rate [rad/s], two axes (3,)."""
     radius = constants[0]
     rate = constants[1]
     p = rate * t
@@ -98,7 +101,7 @@ class Circle(Reference):
     """
 
     name: ClassVar[str] = "circle"
-    path: ClassVar[Any] = staticmethod(_circle)
+    path: ClassVar[Any] = staticmethod(circle_path)
     radius: float = 0.05
     period: float = 10.0
     normal: Vector3 = (0.0, 0.0, 1.0)
@@ -115,7 +118,8 @@ class Circle(Reference):
 
 
 @njit(cache=True, error_model="numpy")
-def _line(t: float, constants: Array, target: Array) -> None:
+def line_path(t: float, constants: Array, target: Array) -> None:
+    """Move a target along `Line`; constants: rate [rad/s], offset (3,) [m]."""
     rate = constants[0]
     p = rate * t
     # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
@@ -144,7 +148,7 @@ class Line(Reference):
     """
 
     name: ClassVar[str] = "line"
-    path: ClassVar[Any] = staticmethod(_line)
+    path: ClassVar[Any] = staticmethod(line_path)
     offset: Vector3 = (0.1, 0.0, 0.0)
     period: float = 10.0
 
@@ -156,7 +160,8 @@ class Line(Reference):
 
 
 @njit(cache=True, error_model="numpy")
-def _lissajous(t: float, constants: Array, target: Array) -> None:
+def lissajous_path(t: float, constants: Array, target: Array) -> None:
+    """Move a target along `Lissajous`; constants: amplitudes, rates and phases, (3,) each."""
     for i in range(3):
         amplitude = constants[i]
         rate = constants[3 + i]
@@ -188,7 +193,7 @@ class Lissajous(Reference):
     """
 
     name: ClassVar[str] = "lissajous"
-    path: ClassVar[Any] = staticmethod(_lissajous)
+    path: ClassVar[Any] = staticmethod(lissajous_path)
     amplitudes: Vector3 = (0.05, 0.05, 0.0)
     turns: Vector3 = (1.0, 2.0, 1.0)
     phases: Vector3 = (0.0, 0.0, 0.0)
@@ -207,7 +212,7 @@ class Lissajous(Reference):
 
 
 @njit(cache=True, error_model="numpy")
-def _still(t: float, constants: Array, target: Array) -> None:
+def still_path(t: float, constants: Array, target: Array) -> None:
     """Leave the target as it is."""
 
 
@@ -220,7 +225,7 @@ class Still(Reference):
     """
 
     name: ClassVar[str] = "still"
-    path: ClassVar[Any] = staticmethod(_still)
+    path: ClassVar[Any] = staticmethod(still_path)
     period: float = 10.0
 
     def __post_init__(self) -> None:

@@ -2,50 +2,46 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import os
+import warnings
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array, Vector3, finite_array, one_of, positive, read_only
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
-from iiwa_dnn.references.rotation_spline import fit_rotations
-from iiwa_dnn.references.rotations import (
-    added,
-    combined,
-    jacobian_rate,
-    left_jacobian,
-    scaled,
-    turn_target,
-)
+from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
 
-if TYPE_CHECKING:
-    from scipy.interpolate import CubicSpline
+Ends = Literal["clamped", "closed"]
 
-Ends = Literal["clamped", "natural", "closed"]
-
-_SCIPY_ENDS = {"clamped": "clamped", "natural": "natural", "closed": "periodic"}
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
 _HEADERS = (_COLUMNS[:4], _COLUMNS, _COLUMNS[1:])
 _CLOSED_WITHIN = 1e-9  # [m], and of a quaternion's components
 _NOT_CLOSED = "the last one of a closed path must be the first one"
 _UNIT_WITHIN = 1e-3  # error of a quaternion's length that is taken for rounding
 
-SPEED, RATE = 0.05, 0.5
-"""Speed [m/s] and angular speed [rad/s] along points of a file without times."""
+SPEED = 0.05
+"""Speed along the poses of a file without times [m/s]."""
+
+RATE = 0.5
+"""Angular speed along the poses of a file without times [rad/s]."""
+
+_BESIDE = 1e-10
+"""Time before the start and after the end at which a path of poses rests already [s]."""
+
+_ROUNDS = 6
+"""Rounds before and after a closed path of poses, whose ends are then without effect."""
 
 
 # Constants: 1 if closed, else 0; number of pieces p; knots [s], (p + 1,); of each piece the
-# displacement's coefficients of x^3, x^2, x and 1, and those of `fit_rotations`, (p, 8, 3).
+# displacement's coefficients of x^3, x^2, x and 1, and those of `_fit_turns`, (p, 8, 3).
 
 
 @njit(cache=True, error_model="numpy")
@@ -87,7 +83,8 @@ def _slope(constants: Array, at: int, x: float) -> Vector3:
 
 
 @njit(cache=True, error_model="numpy")
-def _path(t: float, constants: Array, target: Array) -> None:
+def waypoints_path(t: float, constants: Array, target: Array) -> None:
+    """Move a target along `Waypoints`, see the comment above for the constants (c,)."""
     piece, x, moves = _piece(t, constants)
     at = 3 + int(constants[1]) + 24 * piece
     moved = added(_cubic(constants, at, x), _triple(constants, at + 9))
@@ -104,10 +101,10 @@ def _path(t: float, constants: Array, target: Array) -> None:
 class Waypoints(Reference):
     """A smooth path through points or poses: velocity and acceleration are continuous.
 
-    Positions follow a cubic spline, orientations the rotation spline of
-    `iiwa_dnn.references.rotation_spline`. Time counts from the first row and displacement from the
-    first point. Before the start and after the end the path rests at its first and last point; a
-    closed path repeats instead.
+    Positions follow `scipy.interpolate.CubicSpline`, orientations
+    `scipy.spatial.transform.RotationSpline`. Time counts from the first row and displacement from
+    the first point. Before the start and after the end the path rests at its first and last point;
+    a closed path repeats instead.
 
     A path of points is relative: `anchored` moves its first point to a pose, whose orientation it
     keeps. A path of poses is absolute, in the robot's base frame; `anchored` moves it all the same,
@@ -116,9 +113,8 @@ class Waypoints(Reference):
     Attributes:
         times: Times of the points [s], shape (m,), increasing, m >= 2.
         points: The points [m], shape (m, 3).
-        ends: "clamped": at rest at both ends. "natural": without acceleration at both ends, where
-            the velocity may then jump. "closed": ends as it begins and repeats; the last point
-            must be the first one, and m >= 3.
+        ends: "clamped": at rest at both ends. "closed": ends as it begins and repeats; the last
+            point must be the first one, and m >= 3.
         quaternions: Orientations w, x, y, z of the poses, shape (m, 4), or None. Either sign will
             do; neighbours are less than half a turn apart.
 
@@ -127,7 +123,7 @@ class Waypoints(Reference):
     """
 
     name: ClassVar[str] = "waypoints"
-    path: ClassVar[Any] = staticmethod(_path)
+    path: ClassVar[Any] = staticmethod(waypoints_path)
     times: Array
     points: Array
     ends: Ends = "clamped"
@@ -136,77 +132,74 @@ class Waypoints(Reference):
     def __post_init__(self) -> None:
         times = finite_array("times", self.times, (-1,))
         points = finite_array("points", self.points, (len(times), 3))
-        one_of("ends", self.ends, tuple(_SCIPY_ENDS))
-        least = 3 if self.ends == "closed" else 2
-        if len(times) < least:
-            raise InvalidInputError("times", f"at least {least} points are needed", times)
-        if not (times[1:] > times[:-1]).all():
-            raise InvalidInputError("times", "must increase from point to point", times)
+        one_of("ends", self.ends, ("clamped", "closed"))
+        if len(times) < 2:
+            raise InvalidInputError("times", "at least 2 points are needed", times)
+        for row in np.flatnonzero(times[1:] <= times[:-1]):
+            problem = f"must increase: point {row + 2} is at {times[row + 1]:g} s"
+            raise InvalidInputError("times", problem, times)
         self._set(times=times, points=points)
-        spline = self._fit()
-        moves = spline.c.transpose(1, 0, 2)
+        knots, moves = self._fit_moves()
         turns = np.zeros_like(moves)
         if self.quaternions is not None:
-            turns = self._fit_turns(self.quaternions)
+            turns = self._fit_turns(knots, self.quaternions)
         pieces = np.concatenate([moves, turns], axis=1)
         head = [float(self.ends == "closed"), float(len(pieces))]
-        self._set(constants=np.concatenate([head, spline.x, pieces.ravel()]))
+        self._set(constants=np.concatenate([head, knots, pieces.ravel()]))
 
-    def _fit_turns(self, quaternions: Array) -> Array:
-        """Check the quaternions, begin at the first pose, and fit the rotation spline."""
-        from scipy.spatial.transform import Rotation
-
-        quaternions = finite_array("quaternions", quaternions, (len(self.times), 4))
-        norms = np.linalg.norm(quaternions, axis=1, keepdims=True)
-        worst = int(np.abs(norms - 1.0).argmax())
-        if abs(norms[worst, 0] - 1.0) > _UNIT_WITHIN:
-            problem = f"must have length 1; pose {worst + 1} has {norms[worst, 0]:.6g}"
-            raise InvalidInputError("quaternions", problem, quaternions)
-        unit = quaternions / norms
-        if self.ends == "closed" and abs(unit[0] @ unit[-1]) < 1.0 - _CLOSED_WITHIN:
-            raise InvalidInputError("quaternions", _NOT_CLOSED, quaternions)
-        rotation = Rotation.from_quat(unit[0, [1, 2, 3, 0]]).as_matrix()
-        base = np.concatenate([self.points[0], rotation.ravel(), np.zeros(6)])
-        self._set(quaternions=quaternions, base=read_only(base))
-        return fit_rotations(self.times, unit, self.ends)
-
-    def acceleration(self, t: ArrayLike) -> Array:
-        """Compute the exact accelerations, linear [m/s^2] and angular [rad/s^2].
-
-        Args:
-            t: Times [s], shape (...,).
-
-        Returns:
-            Accelerations along the world's axes, shape (..., 6).
-        """
-        pieces = self.constants[2 + len(self.times) :].reshape(-1, 2, 4, 3)
-        found = []
-        for time in np.ravel(t).tolist():
-            piece, x, moves = _piece(time, self.constants)
-            a, b, c, _ = pieces[piece].swapaxes(0, 1)
-            second = moves * (6.0 * x * a + 2.0 * b)
-            vector = tuple((((a * x + b) * x + c) * x)[1])
-            rate = tuple(moves * ((3.0 * a * x + 2.0 * b) * x + c)[1])
-            angular = added(left_jacobian(vector, tuple(second[1])), jacobian_rate(vector, rate))
-            found.append([*second[0], *angular])
-        return np.reshape(found, (*np.shape(t), 6))
-
-    def _fit(self) -> CubicSpline:
+    def _fit_moves(self) -> tuple[Array, Array]:
+        """Fit the displacements; return the knots [s], (m,), and coefficients, (m - 1, 4, 3)."""
         from scipy.interpolate import CubicSpline  # its 0.3 s are for those who use it
 
-        with np.errstate(over="ignore"):  # the result is looked at below
-            times = self.times - self.times[0]
-            displacements = self.points - self.points[0]
-        if self.ends == "closed":
-            if np.abs(displacements[-1]).max() > _CLOSED_WITHIN:
-                raise InvalidInputError("points", _NOT_CLOSED, self.points)
-            displacements[-1] = 0.0  # scipy asks for the very same numbers
+        closed = self.ends == "closed"
+        if closed and np.abs(self.points[-1] - self.points[0]).max() > _CLOSED_WITHIN:
+            raise InvalidInputError("points", _NOT_CLOSED, self.points)
+        kind = "periodic" if closed else "clamped"
         with np.errstate(all="ignore"), suppress(ValueError, np.linalg.LinAlgError):
-            spline = CubicSpline(times, displacements, bc_type=_SCIPY_ENDS[self.ends])
+            displacements = self.points - self.points[0]
+            if closed:
+                displacements[-1] = 0.0  # scipy asks for the very same numbers
+            spline = CubicSpline(self.times - self.times[0], displacements, bc_type=kind)
             if np.isfinite(spline.c).all():
-                return spline
+                return spline.x, spline.c.swapaxes(0, 1)
         problem = "no spline fits: too close together, or the points too far apart"
         raise InvalidInputError("times", problem, self.times)
+
+    def _fit_turns(self, knots: Array, quaternions: Array) -> Array:
+        """Check the quaternions, begin at the first pose, and fit the turns.
+
+        Returns:
+            Coefficients of x^3, x^2 and x of each piece's rotation vector about the base frame's
+            axes, and the rotation vector from the first pose to the piece's, (m - 1, 4, 3).
+        """
+        from scipy.spatial.transform import Rotation, RotationSpline
+
+        quaternions = finite_array("quaternions", quaternions, (len(knots), 4))
+        norms = np.linalg.norm(quaternions, axis=1)
+        for row in np.flatnonzero(np.abs(norms - 1.0) > _UNIT_WITHIN):
+            problem = f"must have length 1; pose {row + 1} has {norms[row]:.6g}"
+            raise InvalidInputError("quaternions", problem, quaternions)
+        turns = Rotation.from_quat(quaternions[:, [1, 2, 3, 0]])
+        if (turns[1:] * turns[:-1].inv()).magnitude().max() > np.pi - 1e-6:
+            raise InvalidInputError("quaternions", "two neighbours are half a turn apart")
+        base = np.concatenate([self.points[0], turns[0].as_matrix().ravel(), np.zeros(6)])
+        self._set(quaternions=quaternions, base=read_only(base))
+        pieces = len(knots) - 1
+        if self.ends == "closed":
+            if (turns[-1] * turns[0].inv()).magnitude() > _CLOSED_WITHIN:
+                raise InvalidInputError("quaternions", _NOT_CLOSED, quaternions)
+            first = _ROUNDS * pieces
+            rounds = np.arange(-_ROUNDS, _ROUNDS + 1)[:, np.newaxis]
+            times = np.append(rounds * knots[-1] + knots[:-1], (_ROUNDS + 1) * knots[-1])
+            fitted = Rotation.concatenate([*[turns[:-1]] * rounds.size, turns[:1]])
+        else:
+            first = 1
+            times = np.concatenate([[-_BESIDE], knots, [knots[-1] + _BESIDE]])
+            fitted = Rotation.concatenate([turns[:1], turns, turns[-1:]])
+        spline = RotationSpline(times, fitted).interpolator
+        own = spline.c[:3, first : first + pieces]  # about the axes of each piece's first pose
+        about_base = [turns[:-1].apply(coefficients) for coefficients in own]
+        return np.stack([*about_base, (turns[:-1] * turns[0].inv()).as_rotvec()], axis=1)
 
     @classmethod
     def from_csv(
@@ -221,44 +214,55 @@ class Waypoints(Reference):
 
         The header is ``t,x,y,z``, ``t,x,y,z,qw,qx,qy,qz`` or ``x,y,z,qw,qx,qy,qz``. Without ``t``
         every stretch takes the time of its length at `speed`, or of its turn at `rate` if that is
-        more.
+        more. If the rows of an open path begin or end at speed, a warning says so.
 
         Args:
             path: The file. Empty lines in it are skipped.
             ends: As for :class:`Waypoints`.
             speed: Mean speed on each stretch of a file without times [m/s].
             rate: Mean angular speed on each stretch of a file without times [rad/s].
-            stretch: Ratio of the path's times to those in a file with times.
+            stretch: Ratio of the path's times to those of the rows.
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
             InvalidInputError: If ``ends`` is not one of its values, or a speed or the ratio is not
-                above zero, or given for the other kind of file.
+                above zero.
         """
         positive("speed", speed)
         positive("rate", rate)
         positive("stretch", stretch)
         path = Path(path)
         columns, table = _read(path)
-        if columns[0] == "t":
-            times = stretch * table[:, 0]
-            if speed != SPEED:
-                raise InvalidInputError("speed", f"is for a file without times, not {path}", speed)
-            if rate != RATE:
-                raise InvalidInputError("rate", f"is for a file without times, not {path}", rate)
-        else:
-            times = _times_at(table, speed, rate)
-            if stretch != 1.0:
-                problem = f"is for a file with times, not {path}, which takes a speed"
-                raise InvalidInputError("stretch", problem, stretch)
+        times = table[:, 0] if columns[0] == "t" else _times_at(table, speed, rate)
         points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
         quaternions = table[:, -4:] if "qw" in columns else None
         try:
-            return cls(times, points, ends, quaternions)
+            made = cls(stretch * times, points, ends, quaternions)
         except InvalidInputError as error:
             if error.argument == "ends":
                 raise
             raise FileError(path, str(error)) from error
+        for message in made._abrupt_ends():
+            warnings.warn(f"{path}: {message}", stacklevel=2)
+        return made
+
+    def _abrupt_ends(self) -> list[str]:
+        """Describe the ends at which an open path of dense rows would be at speed."""
+        if self.ends == "closed" or len(self.times) < 3:
+            return []
+        steps = np.diff(self.times)
+        speeds = np.linalg.norm(np.diff(self.points, axis=0), axis=1) / steps
+        usual = float(speeds @ steps) / self.duration
+        found = []
+        for word, piece in (("begin", 0), ("end", -1)):
+            # Rows that speed up evenly from rest are passed at a third of the next ones' speed.
+            at_speed = speeds[piece] > 0.5 * max(usual, speeds[1 if piece == 0 else -2])
+            if at_speed and steps[piece] < 0.1 * self.duration:
+                found.append(
+                    f"the rows {word} at {speeds[piece]:.3g} m/s, the path at rest: within "
+                    f"{steps[piece]:.3g} s it changes its speed; let the rows {word} slowly"
+                )
+        return found
 
     def __repr__(self) -> str:
         return f"Waypoints({len(self.times)} points, {self.duration:g} s, ends={self.ends!r})"
@@ -288,47 +292,19 @@ def _times_at(poses: Array, speed: float, rate: float) -> Array:
 def _read(path: Path) -> tuple[list[str], Array]:
     """Read a file of points or poses: the names of its columns, and its rows."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file)
-            lines = [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
-    except UnicodeDecodeError as error:
-        raise FileError(path, "not UTF-8 text") from error
-    except (OSError, ValueError, csv.Error) as error:  # a NUL in the path is a ValueError
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, ValueError) as error:  # no UTF-8, or a NUL in the path: a ValueError
         raise FileError(path, one_line(error)) from error
-    (first, header), *filled = lines or [(1, [])]
-    columns = [cell.strip().lower() for cell in header]
+    cells = {number: line.split(",") for number, line in enumerate(lines, 1) if line.strip()}
+    columns = [cell.strip().lower() for cell in cells.pop(min(cells, default=0), [])]
     if columns not in _HEADERS:
         problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
-        raise FileError(path, f"line {first}: {problem}")
-    rows: list[list[float]] = []
-    for number, cells in filled:
-        row = [_number(cell) for cell in cells]
-        problem = _problem(columns, cells, row, rows)
-        if problem:
-            raise FileError(path, f"line {number}: {problem}")
-        rows.append(row)
-    if len(rows) < 2:
-        raise FileError(path, f"at least 2 rows are needed, it has {len(rows)}")
-    return columns, np.array(rows)
-
-
-def _number(cell: str) -> float:
-    """Return the number in a cell; NaN if there is none."""
-    try:
-        return float(cell)
-    except ValueError:
-        return math.nan
-
-
-def _problem(
-    columns: list[str], cells: list[str], row: list[float], before: list[list[float]]
-) -> str:
-    """Describe the fault of a row after those before it; "" if it has none."""
-    if len(cells) != len(columns):
-        return f"{len(columns)} columns are needed, it has {len(cells)}"
-    for column, cell, value in zip(columns, cells, row, strict=True):
-        if not math.isfinite(value):
-            return f"{column} is {cell!r}, not a finite number"
-    if columns[0] == "t" and before and row[0] <= before[-1][0]:
-        return "t does not increase"
-    return ""
+        raise FileError(path, problem)
+    rows = []
+    for number, row in cells.items():
+        try:
+            rows.append(finite_array("row", row, (len(columns),)))
+        except InvalidInputError as error:
+            problem = f"{len(columns)} finite numbers are needed, not {','.join(row)!r}"
+            raise FileError(path, f"line {number}: {problem}") from error
+    return columns, np.reshape(rows, (-1, len(columns)))

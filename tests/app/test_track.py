@@ -540,7 +540,7 @@ BAD: dict[str, tuple[list[str] | Callable[[Path], list[str]], str]] = {
     "continuous and RK4": (["--mode", "continuous", "--motion", "rk4"], "continuous"),
     "unknown path": (["--reference", "hart"], "no path 'hart'; did you mean: heart"),
     "no file of points": (["--reference", "none.csv"], "none.csv: No such file"),
-    "a bad file of points": (bad_csv, "line 1: the header must be t,x,y,z"),
+    "a bad file of points": (bad_csv, "the header must be t,x,y,z"),
     "another path's option": (["--radius", "0.1"], "--radius: is no option of the path 'heart'"),
     "out below a file": (below_a_file, "file"),
     "out a file": (a_file, "file"),
@@ -651,7 +651,7 @@ def test_the_script_from_anywhere_and_as_in_this_process(tmp_path: Path) -> None
 # Paths that turn
 
 
-@pytest.mark.parametrize("name", ["cone", "tilting-circle", "plane-heart", "sphere-heart"])
+@pytest.mark.parametrize("name", ["cone", "tilting-circle"])
 def test_a_path_that_turns_is_drawn_and_its_orientation_error_shown(
     name: str, tmp_path: Path
 ) -> None:
@@ -661,8 +661,7 @@ def test_a_path_that_turns_is_drawn_and_its_orientation_error_shown(
     metrics = json.loads((out / "metrics.json").read_text())
     assert 0.0 <= metrics["max_orientation_error_rad"] < 1e-6
     record = Record.load(out / "record.npz")
-    turned = np.ptp(record.rotation_desired, axis=0).max()
-    assert (turned > 1e-9) == (name != "plane-heart")
+    assert np.ptp(record.rotation_desired, axis=0).max() > 1e-9
 
 
 def test_poses_of_a_file_are_where_they_are_and_a_start_elsewhere_is_told(

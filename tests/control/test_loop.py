@@ -44,11 +44,9 @@ def test_a_path_of_ones_own_and_a_spline_serve_as_well() -> None:
         name = "slanted"
         period = 1.0
 
-        def displacement(self, t):
-            return 0.01 * np.asarray(t)[..., np.newaxis] * np.array([1.0, 0.0, 2.0])
-
-        def velocity(self, t):
-            return 0.01 * np.array([1.0, 0.0, 2.0]) + 0.0 * np.asarray(t)[..., np.newaxis]
+        def move(self, t, target):
+            target[:3] += 0.01 * t * np.array([1.0, 0.0, 2.0])
+            target[12:15] = [0.01, 0.0, 0.02]
 
     points = Waypoints(np.array([0.0, 0.5, 1.0]), 0.01 * np.eye(3))
     for path in (Slanted(), points):

@@ -1,4 +1,4 @@
-"""What holds for every reference: derivatives, period, start, anchoring, settings."""
+"""Every path: derivatives, period, start, anchoring and settings, and its own formula."""
 
 from __future__ import annotations
 
@@ -8,183 +8,264 @@ import math
 from types import SimpleNamespace
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.references import Circle, Heart, Line, Lissajous, Reference, Still, Waypoints
-from iiwa_dnn.robot import Configuration, load_robot
+import iiwa_dnn as d
+from iiwa_dnn.references import rotations
 
 CORNERS = [[1, 2, 3], [1.2, 2, 3.1], [1.2, 2.3, 3], [1, 2, 3]]
+TURNS = Rotation.from_rotvec([[3.0, 0.2, 0], [2.8, 0.9, 0.3], [2.4, 0.2, -0.8], [3.0, 0.2, 0]])
+QUATERNIONS = TURNS.as_quat()[:, [3, 0, 1, 2]] * [[1], [-1], [1], [-1]]
+POSE = SimpleNamespace(
+    position=np.array([0.4, 0.1, 0.5]), rotation=Rotation.from_rotvec([2.9, 0.4, -0.2]).as_matrix()
+)
 CLOSED = [
-    Heart(scale=2e-3, period=7.0),
-    Circle(radius=0.1, period=3.0),
-    Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5)),
-    Circle(normal=(1.0, 0.1, 0.0)),
-    Line(offset=(0.1, -0.2, 0.3), period=4.0),
-    Lissajous(),
-    Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0.0, -1.0), 6.0),
-    Waypoints([5, 6, 8, 9], CORNERS, "closed"),
+    d.Heart(scale=2e-3, period=7.0),
+    d.Circle(radius=0.1, period=3.0),
+    d.Circle(radius=0.2, period=5.0, normal=(1.0, -2.0, 0.5)),
+    d.Circle(normal=(1.0, 0.1, 0.0)),
+    d.Line(offset=(0.1, -0.2, 0.3), period=4.0),
+    d.Lissajous(),
+    d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0.0, -1.0), 6.0),
+    d.Cone(0.3, 4.0),
+    d.Tilting(),
+    d.Tilting(d.Lissajous((0.1, 0.2, 0.3), (3, 2, 5), (0.3, 0, -1), 5.0), 0.2, (1.0, 2.0, -1.0)),
+    d.Tilting(d.Heart(5e-3, 6.0), 0.4, (0.0, 1.0, 0.0)),
+    d.Tilting(d.Line(), 0.4),
+    d.Tilting(d.Still(), 0.4),
+    d.Tilting(d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS), 0.2),
+    d.Waypoints([5, 6, 8, 9], CORNERS, "closed"),
+    d.Waypoints([5, 6, 8, 9], CORNERS, "closed", QUATERNIONS),
 ]
-OPEN = [Waypoints([5, 6, 8, 9], CORNERS, ends) for ends in ("clamped", "natural")]
+OPEN = [
+    d.Waypoints([5, 6, 8, 9], CORNERS),
+    d.Waypoints([5, 6, 8, 9], CORNERS, quaternions=QUATERNIONS),
+]
+TIMES = np.random.default_rng(4).uniform(-5.0, 25.0, 300)
 
 
-def times(reference: Reference, count: int = 200) -> NDArray[np.float64]:
+def times(reference: d.Reference, count: int = 200) -> NDArray[np.float64]:
     """Seeded times inside the path."""
-    return np.random.default_rng(5).uniform(0.0, reference.duration, count)
+    return np.random.default_rng(5).uniform(0.01, reference.duration - 0.01, count)
 
 
 @pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_velocity_is_the_derivative(reference: Reference) -> None:
-    # Off the joints of a spline, across which a central difference is of lower order.
-    t, step = times(reference), 1e-5 * reference.duration
-    slope = (reference.displacement(t + step) - reference.displacement(t - step)) / (2 * step)
-    speed = np.abs(slope).max()
-    assert speed > 0
-    np.testing.assert_allclose(reference.velocity(t), slope, rtol=0, atol=1e-7 * speed)
-
-
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_starts_at_its_origin(reference: Reference) -> None:
-    assert np.abs(reference.displacement(0.0)).max() == 0.0
+def test_the_twist_is_the_derivative_of_the_pose(reference: d.Reference) -> None:
+    anchored = reference.anchored(POSE)
+    t = times(reference)
+    h = 1e-5
+    before, after, now = (anchored.sample(t + step) for step in (-h, h, 0.0))
+    turned = Rotation.from_matrix(after.rotation @ before.rotation.swapaxes(1, 2)).as_rotvec()
+    np.testing.assert_allclose(now.angular_velocity, turned / (2 * h), rtol=0, atol=2e-8)
+    moved = (after.position - before.position) / (2 * h)
+    np.testing.assert_allclose(now.linear_velocity, moved, rtol=0, atol=2e-8)
+    assert max(np.abs(moved).max(), np.abs(turned).max() / h) > 1e-3
+    square = now.rotation @ now.rotation.swapaxes(1, 2)
+    np.testing.assert_allclose(square, np.tile(np.eye(3), (len(t), 1, 1)), atol=1e-13)
 
 
 @pytest.mark.parametrize("reference", CLOSED, ids=repr)
-def test_closed_paths_repeat(reference: Reference) -> None:
+def test_closed_paths_repeat_after_their_period_and_not_before(reference: d.Reference) -> None:
     assert reference.duration == reference.period
     t = times(reference)
-    for shift in (-reference.period, 3 * reference.period):
-        for function in (reference.displacement, reference.velocity):
-            np.testing.assert_allclose(function(t + shift), function(t), rtol=0, atol=1e-13)
-
-
-@pytest.mark.parametrize("reference", CLOSED, ids=repr)
-def test_no_shorter_period(reference: Reference) -> None:
-    t = times(reference)
+    now = reference.sample(t).data
+    for rounds in (-1, 3):
+        again = reference.sample(t + rounds * reference.period).data
+        np.testing.assert_allclose(again, now, rtol=0, atol=1e-12)
     for part in (2, 3, 5):
-        moved = reference.displacement(t + reference.period / part) - reference.displacement(t)
-        assert np.abs(moved).max() > 1e-3
+        assert np.abs(reference.sample(t + reference.period / part).data - now).max() > 1e-3
 
 
 @pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-@pytest.mark.parametrize("shape", [(), (4,), (2, 3), (0,)])
-def test_vectorised(reference: Reference, shape: tuple[int, ...]) -> None:
-    t = np.random.default_rng(6).uniform(-1.0, 12.0, shape)
-    for function in (reference.displacement, reference.velocity):
-        values = function(t)
-        assert values.shape == (*shape, 3)
-        one_by_one = [function(float(x)) for x in t.ravel()]
-        np.testing.assert_allclose(
-            values.reshape(-1, 3), np.reshape(one_by_one, (-1, 3)), atol=1e-15
-        )
-
-
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_anchored(reference: Reference) -> None:
-    robot = load_robot("iiwa7")
-    conf = Configuration(robot, np.random.default_rng(8).uniform(-1, 1, 7))
-    anchored = reference.anchored(conf)
+def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) -> None:
+    anchored = reference.anchored(POSE)
     assert type(anchored) is type(reference)
     start = anchored.at(0.0)
-    np.testing.assert_array_equal(start.position, conf.position)
-    np.testing.assert_array_equal(start.rotation, conf.rotation)
+    np.testing.assert_allclose(start.position, POSE.position, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(start.rotation, POSE.rotation, rtol=0, atol=1e-15)
     t = 0.3 * reference.duration
-    before, after = reference.at(t), anchored.at(t)
-    np.testing.assert_array_equal(before.position, reference.displacement(t))
-    np.testing.assert_array_equal(before.rotation, np.eye(3))
-    np.testing.assert_array_equal(after.position, conf.position + before.position)
-    np.testing.assert_array_equal(after.rotation, conf.rotation)
-    np.testing.assert_array_equal(after.linear_velocity, reference.velocity(t))
-    np.testing.assert_array_equal(after.angular_velocity, np.zeros(3))
-    # Anchored again, it starts at the new place: displacements do not add up.
-    again = anchored.anchored(SimpleNamespace(position=[1, 2, 3], rotation=np.eye(3)))
-    np.testing.assert_array_equal(again.at(0.0).position, [1, 2, 3])
+    free = reference.anchored(SimpleNamespace(position=np.zeros(3), rotation=np.eye(3))).at(t)
+    moved = anchored.anchored(POSE).at(t)  # again: displacements do not add up
+    np.testing.assert_allclose(moved.position, POSE.position + free.position, atol=1e-15)
+    if not isinstance(reference, d.Cone):  # which turns about the tool's axes, not the world's
+        np.testing.assert_allclose(moved.rotation, free.rotation @ POSE.rotation, atol=1e-14)
+        np.testing.assert_allclose(moved.data[12:], free.data[12:], rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_sample_is_at_for_many_times(reference: Reference) -> None:
-    anchored = reference.anchored(SimpleNamespace(position=[1, 2, 3], rotation=np.eye(3)[::-1]))
+def test_a_sample_is_a_target_for_each_time_and_read_only(reference: d.Reference) -> None:
     t = times(reference, 20)
-    targets = anchored.sample(t)
-    assert len(targets) == 20
-    names = ("position", "rotation", "linear_velocity", "angular_velocity")
-    for i in range(-20, 20):
-        one, other = targets[i], anchored.at(t[i])
-        for name in names:
-            np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=0, atol=1e-15)
-            assert not getattr(one, name).flags.writeable
-            assert not getattr(other, name).flags.writeable
-    with pytest.raises(IndexError):
-        targets[20]
+    targets = reference.sample(t)
+    for i in range(20):
+        np.testing.assert_array_equal(targets[i].data, reference.at(t[i]).data)
+    for name in ("position", "rotation", "linear_velocity", "angular_velocity"):
+        assert getattr(targets, name).shape[0] == 20
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(targets[3], name)[0] = 0.0
+    with pytest.raises((dataclasses.FrozenInstanceError, AttributeError)):
+        reference.period = 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        reference.base[0] = 1.0
 
 
 @pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_settings_say_how_to_make_it_again(reference: Reference) -> None:
+def test_settings_say_how_to_make_it_again(reference: d.Reference) -> None:
     settings = reference.settings()
     assert json.loads(json.dumps(settings, allow_nan=False)) == settings
     assert settings.pop("name") == type(reference).__name__.lower()
-    again = type(reference)(**settings)
+    if "along" in settings:
+        settings["along"] = reference.along
     t = times(reference)
-    np.testing.assert_array_equal(again.displacement(t), reference.displacement(t))
+    np.testing.assert_array_equal(
+        type(reference)(**settings).sample(t).data, reference.sample(t).data
+    )
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
-def test_immutable(reference: Reference) -> None:
-    for name in ("period", "origin", "orientation"):
-        with pytest.raises((dataclasses.FrozenInstanceError, AttributeError)):
-            setattr(reference, name, 1.0)
-    with pytest.raises(ValueError, match="read-only"):
-        reference.origin[0] = 1.0
-    with pytest.raises(AttributeError):
-        reference.at(0.0).position = None
+# Each path by its formula
 
 
-def test_bad_times_and_poses() -> None:
-    heart = Heart()
-    for bad in (math.nan, math.inf, [1.0, 2.0], "now"):
-        with pytest.raises(InvalidInputError, match=r"^t: "):
-            heart.at(bad)
-    for bad in ([0.0, math.nan], 1.0, [[1.0]]):
-        with pytest.raises(InvalidInputError, match=r"^times: "):
-            heart.sample(bad)
-    with pytest.raises(InvalidInputError, match=r"^position: "):
-        heart.anchored(SimpleNamespace(position=[0, 0, math.nan], rotation=np.eye(3)))
-    with pytest.raises(InvalidInputError, match=r"^rotation: "):
-        heart.anchored(SimpleNamespace(position=[0, 0, 0], rotation=np.eye(2)))
+def test_the_heart_is_the_papers_formula_and_starts_at_rest() -> None:
+    a, period = 3.45e-3, 10.0  # the defaults
+    expected = []
+    for t in TIMES:
+        wt = 2 * math.pi / period * t
+        x = a * 16 * math.sin(wt) ** 3
+        y = a * (13 * math.cos(wt) - 5 * math.cos(2 * wt) - 2 * math.cos(3 * wt) - math.cos(4 * wt))
+        expected.append((x, y - 5 * a, 0.0))
+    np.testing.assert_allclose(d.Heart().sample(TIMES).position, expected, rtol=0, atol=1e-16)
+    assert not d.Heart().at(0.0).linear_velocity.any()
+    path = d.Heart().sample(np.linspace(0.0, 10.0, 10_001)).position
+    assert np.ptp(path[:, 0]) == pytest.approx(32 * a, rel=1e-6)
+    np.testing.assert_allclose(d.Heart().at(5.0).position, [0, -22 * a, 0], atol=1e-17)
 
 
-@pytest.mark.parametrize(
-    ("make", "argument"),
-    [
-        *[(lambda v=v: Heart(scale=v), "scale") for v in (0, -1, math.nan, math.inf, "1", None)],
-        (lambda: Heart(period=0), "period"),
-        (lambda: Circle(radius=-0.1), "radius"),
-        (lambda: Circle(period=math.inf), "period"),
-        (lambda: Circle(normal=(0, 0, 0)), "normal"),
-        (lambda: Circle(normal=(0, 1)), "normal"),
-        (lambda: Line(offset=(0, 0, 0)), "offset"),
-        (lambda: Line(offset=(math.nan, 0, 0)), "offset"),
-        (lambda: Line(period=-1), "period"),
-        (lambda: Lissajous(turns=(0.5, 1, 1)), "turns"),
-        (lambda: Lissajous(amplitudes=(0, 0, 1), turns=(1, 1, 0)), "amplitudes"),
-        (lambda: Lissajous(phases="abc"), "phases"),
-        (lambda: Lissajous(period=0), "period"),
-    ],
-)
-def test_bad_parameters(make, argument: str) -> None:
-    with pytest.raises(InvalidInputError) as caught:
+@pytest.mark.parametrize("normal", [(0, 0, 1), (0, 0, -2), (1, 0, 0), (1, -2, 0.5), (1e-200, 0, 0)])
+def test_a_circle_is_round_flat_and_turns_the_right_way(normal: tuple[float, ...]) -> None:
+    circle = d.Circle(radius=0.3, period=4.0, normal=normal)
+    axis = np.array(normal) / max(map(abs, normal))
+    axis /= np.linalg.norm(axis)
+    targets = circle.sample(TIMES)
+    radii = targets.position - circle.at(2.0).position / 2  # half a turn away is a diameter away
+    np.testing.assert_allclose(np.linalg.norm(radii, axis=1), 0.3, rtol=1e-12)
+    np.testing.assert_allclose(targets.position @ axis, 0.0, atol=1e-15)
+    spin = (2 * math.pi / 4.0) * axis
+    np.testing.assert_allclose(targets.linear_velocity, np.cross(spin, radii), rtol=0, atol=1e-13)
+
+
+def test_a_line_goes_there_and_back_and_rests_at_both_ends() -> None:
+    line = d.Line(offset=(0.1, 0.2, -0.3), period=8.0)
+    np.testing.assert_allclose(line.at(4.0).position, [0.1, 0.2, -0.3], rtol=1e-15)
+    for t in (0.0, 4.0, 8.0):
+        np.testing.assert_allclose(line.at(t).linear_velocity, 0.0, atol=1e-16)
+    expected = np.outer((1 - np.cos(math.pi / 4.0 * TIMES)) / 2, [0.1, 0.2, -0.3])
+    np.testing.assert_allclose(line.sample(TIMES).position, expected, rtol=0, atol=1e-15)
+
+
+def test_lissajous_is_a_sine_on_each_axis() -> None:
+    moved = d.Lissajous((0.1, 0.2, 0.3), (1, 2, 3), (0.0, 0.5, -0.5), 5.0).sample(TIMES).position
+    for i, (a, k, phi) in enumerate(((0.1, 1, 0.0), (0.2, 2, 0.5), (0.3, 3, -0.5))):
+        expected = a * (np.sin(2 * math.pi * k * TIMES / 5.0 + phi) - math.sin(phi))
+        np.testing.assert_allclose(moved[:, i], expected, rtol=0, atol=1e-14)
+
+
+def test_a_cone_keeps_its_angle_and_does_not_spin() -> None:
+    targets = d.Cone(0.3, 4.0).anchored(POSE).sample(np.linspace(0.0, 4.0, 50))
+    tool = targets.rotation[:, :, 2]
+    # The axis that a rotation by -0.3 about the tool's x axis takes the start's to.
+    axis = Rotation.from_rotvec(-0.3 * POSE.rotation[:, 0]).apply(tool[0])
+    np.testing.assert_allclose(tool @ axis, np.cos(0.3), rtol=0, atol=1e-14)
+    np.testing.assert_array_equal(targets.position, np.tile(POSE.position, (50, 1)))
+    np.testing.assert_allclose(targets.rotation[-1], POSE.rotation, atol=1e-14)
+
+
+@pytest.mark.parametrize("reference", [path for path in CLOSED if isinstance(path, d.Tilting)])
+def test_a_tilting_tool_tilts_to_both_sides_along_the_same_path(reference: d.Tilting) -> None:
+    t = np.linspace(0.0, reference.duration, 9)
+    targets = reference.anchored(POSE).sample(t)
+    along = reference.along.anchored(POSE).sample(t)
+    np.testing.assert_array_equal(targets.position, along.position)
+    angles = reference.angle * np.sin(2 * np.pi * t / reference.duration)
+    axis = np.array(reference.axis) / np.linalg.norm(reference.axis)
+    tilted = Rotation.from_rotvec(angles[:, None] * axis).as_matrix() @ along.rotation
+    np.testing.assert_allclose(targets.rotation, tilted, rtol=0, atol=1e-14)
+
+
+def test_a_pose_that_is_held_does_not_move() -> None:
+    targets = d.Still(period=3.0).anchored(POSE).sample([0.0, 1.0, 2.9])
+    np.testing.assert_array_equal(targets.position, np.tile(POSE.position, (3, 1)))
+    np.testing.assert_array_equal(targets.data[:, 12:], 0.0)
+
+
+class Nodding(d.Heart):
+    """A heart with an orientation of one's own, in Python."""
+
+    def move(self, t: float, target: NDArray[np.float64]) -> None:
+        super().move(t, target)
+        rotations.turn_target(target, (0.2 * np.sin(t), 0.0, 0.0), (0.2 * np.cos(t), 0.0, 0.0))
+
+
+def test_a_path_in_python_turns_the_anchors_orientation() -> None:
+    target = Nodding().anchored(POSE).at(2.0)
+    turned = Rotation.from_rotvec([0.2 * np.sin(2.0), 0, 0]).as_matrix() @ POSE.rotation
+    np.testing.assert_allclose(target.rotation, turned, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(target.angular_velocity, [0.2 * np.cos(2.0), 0, 0], atol=1e-15)
+    np.testing.assert_array_equal(target.linear_velocity, d.Heart().at(2.0).linear_velocity)
+    assert Nodding().compiled is None
+    assert d.Heart().compiled is d.Heart.path
+
+
+def test_a_target_is_a_pose_or_a_position() -> None:
+    pose = pin.SE3(POSE.rotation, POSE.position)
+    np.testing.assert_array_equal(d.Target(pose).data, d.Target(POSE.position, POSE.rotation).data)
+    np.testing.assert_array_equal(d.Target(POSE.position).data[3:12], np.eye(3).ravel())
+    np.testing.assert_array_equal(d.Target(POSE.position).position, POSE.position)
+
+
+REFUSED = {
+    **{f"scale {v}": (lambda v=v: d.Heart(scale=v), "scale") for v in (0, -1, math.nan, "1", None)},
+    "period": (lambda: d.Heart(period=0), "period"),
+    "radius": (lambda: d.Circle(radius=-0.1), "radius"),
+    "infinite": (lambda: d.Circle(period=math.inf), "period"),
+    "normal": (lambda: d.Circle(normal=(0, 0, 0)), "normal"),
+    "short normal": (lambda: d.Circle(normal=(0, 1)), "normal"),
+    "offset": (lambda: d.Line(offset=(0, 0, 0)), "offset"),
+    "turns": (lambda: d.Lissajous(turns=(0.5, 1, 1)), "turns"),
+    "nothing moves": (lambda: d.Lissajous((0, 0, 1), (1, 1, 0)), "amplitudes"),
+    "phases": (lambda: d.Lissajous(phases="abc"), "phases"),
+    "angle": (lambda: d.Cone(angle=1.6), "angle"),
+    "axis": (lambda: d.Tilting(axis=(0.0, 0.0, 0.0)), "axis"),
+    "no tilts": (lambda: d.Tilting(turns=0), "turns"),
+    "own path": (lambda: d.Tilting(Nodding()), "along"),
+    "held": (lambda: d.Still(period=0.0), "period"),
+    "time": (lambda: d.Heart().at(math.nan), "t"),
+    "word": (lambda: d.Heart().at("now"), "t"),
+    "times": (lambda: d.Heart().sample([0.0, math.nan]), "times"),
+    "time for times": (lambda: d.Heart().sample(1.0), "times"),
+    "position": (
+        lambda: d.Heart().anchored(SimpleNamespace(position=[0, 0, math.nan], rotation=np.eye(3))),
+        "position",
+    ),
+    "rotation": (
+        lambda: d.Heart().anchored(SimpleNamespace(position=[0, 0, 0], rotation=np.eye(2))),
+        "rotation",
+    ),
+    "no rotation": (lambda: d.Target([0, 0, 0], np.ones((3, 3))), "rotation"),
+    "speed": (lambda: d.MovingTarget(POSE, speed=-1.0), "speed"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_bad_argument_is_named(case: str) -> None:
+    make, argument = REFUSED[case]
+    with pytest.raises(d.InvalidInputError) as caught:
         make()
     assert caught.value.argument == argument
 
 
-def test_a_pose_that_is_held_does_not_move() -> None:
-    robot = load_robot("iiwa7")
-    q0 = robot.start_posture()
-    goal = Configuration(robot, q0 + 0.1)
-    still = Still(period=3.0).anchored(goal)
-    targets = still.sample([0.0, 1.0, 2.9])
-    np.testing.assert_array_equal(targets.position, np.tile(goal.position, (3, 1)))
-    np.testing.assert_array_equal(targets.data[:, 12:], 0.0)
-    assert still.duration == 3.0
-    with pytest.raises(InvalidInputError, match="period"):
-        Still(period=0.0)
+def test_kernels_that_task_rows_call_too_state_their_arithmetic() -> None:
+    for function in (rotations.coefficients, rotations.cross, rotations.rotated):
+        # Unstated, it would be the first caller's, and bytes a matter of what was compiled first.
+        assert function.targetoptions["fastmath"] == {"contract"}

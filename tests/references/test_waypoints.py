@@ -1,68 +1,75 @@
-"""Waypoints: the spline's properties, and CSV files good and bad."""
+"""Waypoints: the splines' properties, and CSV files good and bad."""
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
 
-from iiwa_dnn.errors import FileError, InvalidInputError
-from iiwa_dnn.references import Waypoints
+from iiwa_dnn import FileError, InvalidInputError, Waypoints
 
-TIMES = np.array([2.0, 2.5, 4.0, 4.2, 6.0])
-POINTS = np.random.default_rng(9).uniform(-0.3, 0.3, (5, 3))
-LOOP = np.vstack([POINTS[:-1], POINTS[0]])
+TIMES = np.array([2.0, 3.0, 5.0, 6.0, 8.5])
+POINTS = np.array([[0.4, 0, 0.5], [0.5, 0.1, 0.5], [0.5, 0.2, 0.6], [0.4, 0.2, 0.5], [0.4, 0, 0.5]])
+TURNS = Rotation.from_rotvec(
+    [[3.0, 0.2, 0], [2.8, 0.9, 0.3], [2.4, 0.2, -0.8], [3.0, -0.5, 0.4], [3.0, 0.2, 0]]
+)
+QUATERNIONS = TURNS.as_quat()[:, [3, 0, 1, 2]] * [[1], [-1], [1], [1], [-1]]
 GOOD = "t,x,y,z\n0,0,0,0\n1,1,2,3\n"
+POSE_HEADER = "x,y,z,qw,qx,qy,qz"
 
 
 def acceleration(path: Waypoints, t: float, side: int) -> NDArray[np.float64]:
-    """Second derivative just before (-1) or after (1) a time; the velocity is quadratic there."""
-    h = side * 1e-3
-    v0, v1, v2 = path.velocity(np.array([t, t + h, t + 2 * h]))
-    return (-3 * v0 + 4 * v1 - v2) / (2 * h)
+    """Derivative of the twist just before (-1) or after (1) a time, to the third order."""
+    h = side * 1e-4
+    twists = path.sample(t + h * np.arange(4)).data[:, 12:]
+    return np.array([-11.0, 18.0, -9.0, 2.0]) @ twists / (6.0 * h)
 
 
-@pytest.mark.parametrize("ends", ["clamped", "natural", "closed"])
-def test_meets_its_points_smoothly(ends: str) -> None:
-    points = LOOP if ends == "closed" else POINTS
-    path = Waypoints(TIMES, points, ends)
+@pytest.mark.parametrize("ends", ["clamped", "closed"])
+def test_poses_are_met_without_a_jump_of_the_acceleration(ends: str) -> None:
+    path = Waypoints(TIMES, POINTS, ends, QUATERNIONS)
     knots = TIMES - TIMES[0]
-    np.testing.assert_allclose(path.displacement(knots), points - points[0], rtol=0, atol=1e-15)
-    smooth = knots if ends == "closed" else knots[1:-1]
-    for t in smooth:
-        before, after = path.velocity(np.array([t - 1e-9, t + 1e-9]))
-        np.testing.assert_allclose(before, after, rtol=0, atol=1e-6)
-        np.testing.assert_allclose(acceleration(path, t, -1), acceleration(path, t, 1), atol=1e-8)
+    targets = path.sample(knots)
+    np.testing.assert_allclose(targets.position, POINTS, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(targets.rotation, TURNS.as_matrix(), rtol=0, atol=1e-14)
+    for t in knots if ends == "closed" else knots[1:-1]:
+        before = acceleration(path, t - 1e-12, -1)
+        np.testing.assert_allclose(before, acceleration(path, t + 1e-12, 1), rtol=0, atol=1e-6)
+    if ends == "clamped":
+        assert np.abs(path.sample([0.0, 6.5]).data[:, 12:]).max() < 1e-9
+        assert (path.duration, path.period) == (6.5, np.inf)
+        outside = path.sample([-1.0, -1e-9, 6.5 + 1e-9, 100.0])
+        expected = [TURNS[0].as_matrix()] * 2 + [TURNS[-1].as_matrix()] * 2
+        np.testing.assert_allclose(outside.rotation, expected, rtol=0, atol=1e-14)
+        assert not outside.data[:, 12:].any()
 
 
-def test_clamped_ends_rest() -> None:
-    path = Waypoints(TIMES, POINTS)
-    assert np.abs(path.velocity([0.0, 4.0])).max() < 1e-14
-    # Between two points that is the one cubic with four known values.
+@pytest.mark.parametrize(("ends", "scipys"), [("clamped", "clamped"), ("closed", "periodic")])
+def test_about_one_axis_it_is_the_cubic_spline_of_the_angle(ends: str, scipys: str) -> None:
+    axis = np.array([0.6, 0.0, 0.8])
+    angles = np.array([0.1, 1.4, -0.9, 0.3, 0.1])
+    turns = Rotation.from_rotvec(angles[:, None] * axis)
+    path = Waypoints(TIMES, POINTS, ends, turns.as_quat()[:, [3, 0, 1, 2]])
+    spline = CubicSpline(TIMES, angles, bc_type=scipys)
+    t = np.linspace(0.0, 6.5, 301)
+    targets = path.sample(t)
+    wanted = Rotation.from_rotvec(spline(t + 2.0)[:, None] * axis).as_matrix()
+    np.testing.assert_allclose(targets.rotation, wanted, rtol=0, atol=1e-10)
+    rates = spline(t + 2.0, 1)[:, None] * axis
+    np.testing.assert_allclose(targets.angular_velocity, rates, rtol=0, atol=1e-9)
+
+
+def test_two_points_are_the_one_cubic_at_rest_at_both_ends() -> None:
     s = np.linspace(0.0, 1.0, 11)[:, np.newaxis]
     two = Waypoints([1.0, 3.0], [[1, 1, 1], [2, 3, -1]])
     np.testing.assert_allclose(
-        two.displacement(2.0 * s[:, 0]), (3 * s**2 - 2 * s**3) * [1, 2, -2], rtol=0, atol=1e-15
+        two.sample(2.0 * s[:, 0]).position, (3 * s**2 - 2 * s**3) * [1, 2, -2], rtol=0, atol=1e-15
     )
-
-
-def test_natural_ends_do_not_accelerate() -> None:
-    path = Waypoints(TIMES, POINTS, "natural")
-    assert np.abs(acceleration(path, 0.0, 1)).max() < 1e-9
-    assert np.abs(acceleration(path, 4.0, -1)).max() < 1e-9
-    assert np.abs(path.velocity([0.0, 4.0])).min() > 1e-3
-
-
-def test_open_paths_rest_before_and_after() -> None:
-    for ends in ("clamped", "natural"):
-        path = Waypoints(TIMES, POINTS, ends)
-        assert (path.duration, path.period) == (4.0, np.inf)
-        outside = np.array([-1.0, -1e-9, 4.0 + 1e-9, 100.0])
-        expected = np.array([[0, 0, 0], [0, 0, 0], *[POINTS[-1] - POINTS[0]] * 2])
-        np.testing.assert_allclose(path.displacement(outside), expected, rtol=0, atol=1e-15)
-        assert not path.velocity(outside).any()
 
 
 def test_closed_path_approaches_a_circle() -> None:
@@ -70,12 +77,9 @@ def test_closed_path_approaches_a_circle() -> None:
     points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
     points[-1] += 5e-10  # its last point need only nearly be its first
     path = Waypoints(angle, points, "closed")
-    assert path.period == pytest.approx(2 * np.pi)
     t = np.random.default_rng(10).uniform(-10, 20, 500)
     circle = np.stack([np.cos(t) - 1, np.sin(t), 0 * t], axis=-1)
-    tangent = np.stack([-np.sin(t), np.cos(t), 0 * t], axis=-1)
-    assert np.abs(path.displacement(t) - circle).max() < 1e-6
-    assert np.abs(path.velocity(t) - tangent).max() < 1e-5
+    assert np.abs(path.sample(t).position - circle).max() < 1e-6
 
 
 @pytest.mark.parametrize(
@@ -91,24 +95,77 @@ def test_closed_path_approaches_a_circle() -> None:
         (([0, 1e-320, 1], [[0, 0, 0], [1, 1, 1], [0, 0, 0]]), "times"),
         (([0, 1], [[-1e308, 0, 0], [1e308, 0, 0]]), "times"),
         (([0, 1], [[0, 0, 0], [1, 1, 1]], "open"), "ends"),
-        (([0, 1], [[0, 0, 0], [0, 0, 0]], "closed"), "times"),
         (([0, 1, 2], [[0, 0, 0], [1, 1, 1], [0, 0, 1e-6]], "closed"), "points"),
+        ((TIMES, POINTS, "clamped", QUATERNIONS[:4]), "quaternions"),
+        ((TIMES, POINTS, "clamped", 1.1 * QUATERNIONS), "quaternions"),
+        ((TIMES[:3], POINTS[:3], "clamped", np.eye(4)[:3]), "quaternions"),  # half a turn apart
+        ((TIMES[:4], [*POINTS[:3], POINTS[0]], "closed", QUATERNIONS[:4]), "quaternions"),
     ],
 )
 @pytest.mark.filterwarnings("error")
-def test_bad_points(arguments: tuple[object, ...], argument: str) -> None:
+def test_a_bad_parameter_is_named(arguments: tuple[object, ...], argument: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         Waypoints(*arguments)
     assert caught.value.argument == argument
 
 
-def test_csv_round_trip(tmp_path: Path) -> None:
-    file = tmp_path / "loop.csv"
-    rows = [",".join(map(repr, map(float, (t, *p)))) for t, p in zip(TIMES, LOOP, strict=True)]
-    file.write_text("\n".join(["t,x,y,z", *rows]) + "\n", encoding="utf-8")
-    path = Waypoints.from_csv(file, ends="closed")
-    assert path.settings() == Waypoints(TIMES, LOOP, "closed").settings()
-    assert repr(path) == "Waypoints(5 points, 4 s, ends='closed')"
+# Files
+
+
+def write(folder: Path, header: str, rows: NDArray[np.float64]) -> Path:
+    path = folder / "path.csv"
+    path.write_text("\n".join([header, *(",".join(map(repr, row)) for row in rows.tolist())]))
+    return path
+
+
+def test_poses_of_a_file_are_in_the_base_frame_with_or_without_times(tmp_path: Path) -> None:
+    poses = np.hstack([POINTS, QUATERNIONS])
+    timed = write(tmp_path, f"t,{POSE_HEADER}", np.hstack([TIMES[:, None], poses]))
+    read = Waypoints.from_csv(timed, ends="closed")
+    assert read.settings() == Waypoints(TIMES, POINTS, "closed", QUATERNIONS).settings()
+    assert repr(read) == "Waypoints(5 points, 6.5 s, ends='closed')"
+    np.testing.assert_array_equal(read.at(0.0).position, POINTS[0])
+    untimed = Waypoints.from_csv(write(tmp_path, POSE_HEADER, poses), speed=0.1, rate=0.7)
+    lengths = np.linalg.norm(np.diff(POINTS, axis=0), axis=1)
+    angles = (TURNS[1:] * TURNS[:-1].inv()).magnitude()
+    np.testing.assert_allclose(np.diff(untimed.times), np.maximum(lengths / 0.1, angles / 0.7))
+
+
+def test_a_stretched_file_is_the_same_path_more_slowly(tmp_path: Path) -> None:
+    file = write(tmp_path, "t,x,y,z", np.hstack([TIMES[:, None], POINTS]))
+    plain, slow = Waypoints.from_csv(file), Waypoints.from_csv(file, stretch=1.4)
+    assert slow.duration == pytest.approx(9.1, rel=1e-15)
+    for t in (0.0, 0.7, 2.0, 3.9):
+        before, after = plain.at(t), slow.at(1.4 * t)
+        np.testing.assert_allclose(after.position, before.position, rtol=0, atol=1e-14)
+        velocity = before.linear_velocity / 1.4
+        np.testing.assert_allclose(after.linear_velocity, velocity, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("slow_at", ["nowhere", "the start", "both ends"])
+def test_rows_that_begin_or_end_at_speed_are_told(slow_at: str, tmp_path: Path) -> None:
+    t = np.linspace(0.0, 8.0, 81)
+    s = t / 8.0
+    if slow_at == "the start":
+        s = s**2
+    elif slow_at == "both ends":
+        s = 3.0 * s**2 - 2.0 * s**3
+    rows = np.stack([t, 0.1 * np.cos(2 * np.pi * s), 0.1 * np.sin(2 * np.pi * s), 0.0 * t], axis=1)
+    file = write(tmp_path, "t,x,y,z", rows)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        path = Waypoints.from_csv(file)
+        rows[-1] = [8.0, 0.1, 0.0, 0.0]
+        Waypoints.from_csv(write(tmp_path, "t,x,y,z", rows), ends="closed")
+    said = [str(warning.message) for warning in caught]
+    words = {"nowhere": ["begin", "end"], "the start": ["end"], "both ends": []}[slow_at]
+    assert [word for word in ("begin", "end") if any(f"rows {word} at" in x for x in said)] == words
+    assert len(said) == len(words)
+    assert not said or f"{file}: the rows" in said[0]
+    # They are told where the spline has to hurry: its speed there is well above that of the rows.
+    early = np.linalg.norm(path.sample(np.linspace(0.0, 0.3, 31)).linear_velocity, axis=1).max()
+    usual = np.linalg.norm(path.sample(np.linspace(3.0, 5.0, 31)).linear_velocity, axis=1).mean()
+    assert (early > 1.1 * usual) == ("begin" in words)
 
 
 @pytest.mark.parametrize(
@@ -129,62 +186,42 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize(
     ("content", "reason"),
     [
-        ("", "line 1: the header"),
-        ("t,x,y\n0,0,0\n", "line 1: the header"),
-        ("0,0,0,0\n1,1,2,3\n", "line 1: the header"),
-        ("t,x,y,z\n", "at least 2 rows are needed, it has 0"),
-        ("t,x,y,z\n0,0,0,0\n", "at least 2 rows are needed, it has 1"),
-        (GOOD + "2,1,one,1\n", "line 4: y is 'one', not a finite number"),
-        (GOOD + "2,1,,1\n", "line 4: y is '', not a finite number"),
-        (GOOD + "\n2,1,1,nan\n", "line 5: z is 'nan', not a finite number"),
-        (GOOD + "inf,1,1,1\n", "line 4: t is 'inf', not a finite number"),
-        (GOOD + "1,1,1,1\n", "line 4: t does not increase"),
-        (GOOD + "0.5,1,1,1\n", "line 4: t does not increase"),
-        (GOOD + "2,1,1\n", "line 4: 4 columns are needed, it has 3"),
-        (GOOD + "2,1,1,1,1\n", "line 4: 4 columns are needed, it has 5"),
-        (GOOD.encode() + b"\xff\xfe", "not UTF-8"),
+        ("", "the header must be"),
+        ("t,x,y\n0,0,0\n", "the header must be"),
+        ("0,0,0,0\n1,1,2,3\n", "the header must be"),
+        ("x,y,z\n0,0,0\n1,1,1\n", "the header must be"),
+        ("t,x,y,z\n", "at least 2 points"),
+        ("t,x,y,z\n0,0,0,0\n", "at least 2 points"),
+        (GOOD + "2,1,one,1\n", "line 4: 4 finite numbers are needed, not '2,1,one,1'"),
+        (GOOD + "2,1,,1\n", "line 4: 4 finite"),
+        (GOOD + "\n2,1,1,nan\n", "line 5: 4 finite"),
+        (GOOD + "2,1,1\n", "line 4: 4 finite"),
+        (GOOD + "2,1,1,1,1\n", "line 4: 4 finite"),
+        (GOOD + "0.5,1,1,1\n", "must increase: point 3 is at 0.5 s"),
+        (GOOD.encode() + b"\xff\xfe", "'utf-8' codec"),
         (GOOD + "1.0000000000000002,1e300,1,1\n", "no spline fits"),
+        (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n0,0,0,1,0,0,0\n", "must increase"),
+        (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n1,0,0,2,0,0,0\n", "length 1"),
+        (None, "No such file"),
     ],
 )
 @pytest.mark.filterwarnings("error")
-def test_bad_csv(tmp_path: Path, content: str | bytes, reason: str) -> None:
+def test_a_bad_file_is_told_in_one_line(
+    tmp_path: Path, content: str | bytes | None, reason: str
+) -> None:
     file = tmp_path / "bad.csv"
-    file.write_bytes(content.encode() if isinstance(content, str) else content)
+    if content is not None:
+        file.write_bytes(content.encode() if isinstance(content, str) else content)
     with pytest.raises(FileError, match=reason) as caught:
         Waypoints.from_csv(file)
     assert caught.value.path == str(file)
     assert "\n" not in str(caught.value)
 
 
-def test_csv_that_cannot_be_read(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="No such file"):
-        Waypoints.from_csv(tmp_path / "none.csv")
-    with pytest.raises(FileError, match="directory"):
-        Waypoints.from_csv(tmp_path)
+def test_a_bad_argument_of_a_good_file_is_named(tmp_path: Path) -> None:
+    (tmp_path / "good.csv").write_text(GOOD)
+    for argument in ({"ends": "open"}, {"speed": 0.0}, {"rate": -1.0}, {"stretch": 0.0}):
+        with pytest.raises(InvalidInputError, match=f"^{next(iter(argument))}"):
+            Waypoints.from_csv(tmp_path / "good.csv", **argument)
     with pytest.raises(FileError, match="null byte"):
         Waypoints.from_csv("a\0.csv")
-
-
-def test_csv_with_unknown_ends(tmp_path: Path) -> None:
-    (tmp_path / "good.csv").write_text(GOOD)
-    with pytest.raises(InvalidInputError, match=r"^ends: "):
-        Waypoints.from_csv(tmp_path / "good.csv", ends="open")
-
-
-def test_a_stretched_file_is_the_same_path_more_slowly(tmp_path: Path) -> None:
-    file = tmp_path / "path.csv"
-    file.write_text("t,x,y,z\n0,0,0,0\n2,0.05,0,-0.02\n4,0.05,0.05,0\n")
-    plain = Waypoints.from_csv(file)
-    slow = Waypoints.from_csv(file, stretch=1.4)
-    assert slow.duration == pytest.approx(5.6, rel=1e-15)
-    for t in (0.0, 0.7, 2.0, 3.9):
-        before = plain.at(t)
-        after = slow.at(1.4 * t)
-        np.testing.assert_allclose(after.position, before.position, rtol=0, atol=1e-15)
-        velocity = before.linear_velocity / 1.4
-        np.testing.assert_allclose(after.linear_velocity, velocity, rtol=0, atol=1e-15)
-    file.write_text("x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0.05,0,0,1,0,0,0\n")
-    with pytest.raises(InvalidInputError, match=r"^stretch: is for a file with times"):
-        Waypoints.from_csv(file, stretch=1.4)
-    with pytest.raises(InvalidInputError, match=r"^stretch"):
-        Waypoints.from_csv(file, stretch=0.0)
