@@ -123,26 +123,11 @@ class Reference(ABC):
         """Return the path with the mean twist over the next dt [s] in place of the targets' own."""
         return Ahead(self, positive("dt", dt))
 
-    def accelerations(self, t: float) -> NDArray[np.float64]:
-        """Compute the acceleration, linear [m/s^2] and angular [rad/s^2], at a time [s], (6,).
-
-        By a difference of the exact twists to the fourth order, forward at t = 0, where many a path
-        begins.
-        """
-        h = 1e-3
-        nodes, weights = _CENTRAL if t >= 2 * h else _FORWARD
-        return weights @ self.sample(t + h * nodes).data[:, 12:] / (12.0 * h)
-
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, in JSON types, to make the path again, not anchored."""
         own: Any = self
         names = [part.name for part in fields(own) if part.init] if is_dataclass(own) else []
         return {"name": self.name} | {name: _plain(getattr(self, name)) for name in names}
-
-
-_CENTRAL = (np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]))
-_FORWARD = (np.arange(5.0), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]))
-"""Nodes and weights of the differences, in steps and twelfths of a step."""
 
 
 class Ahead(Reference):

@@ -79,10 +79,6 @@ class MovingTarget(Reference):
         target[15:] = rate
         self._shown = (t, Target.from_data(target.copy()))
 
-    def accelerations(self, t: float) -> Array:
-        """Return zeros, (6,): it is not known how the target will move on."""
-        return np.zeros(6)
-
     def settings(self) -> dict[str, Any]:
         """Return name and speeds, in values that JSON knows."""
         return {"name": self.name, "speed": self.speed, "rate": self.rate}
