@@ -22,10 +22,11 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import OPTIONS, CrossCheck
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
+from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.robot import file_of
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.simulation import Simulation
+from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 from scripts import own_parts
@@ -232,9 +233,8 @@ def measure_own_part(duration: float, dt: float, rounds: int = 3) -> dict[str, f
     for k in range(rounds + 1):
         for name, scheme in schemes.items():
             length = duration if k else min(duration, 20 * dt)  # the first round compiles
-            run = Simulation(robot, scheme, heart, own_parts.START, dt=dt, duration=length)
             began = time.perf_counter()
-            run.run()
+            simulate(robot, scheme, heart, own_parts.START, dt=dt, duration=length)
             if k:
                 walls[name].append(time.perf_counter() - began)
     medians = {name: float(np.median(values)) for name, values in walls.items()}
@@ -264,11 +264,10 @@ def measure_runs(duration: float, dt: float, rounds: int = 3) -> dict[str, Any]:
     }
     for _ in range(rounds):
         for name, check in (("unchecked", CrossCheck(())), ("checked", CrossCheck())):
-            simulation = Simulation(
+            began = time.perf_counter()
+            record = simulate(
                 robot, scheme, reference, paper.START, dt=dt, duration=duration, check=check
             )
-            began = time.perf_counter()
-            record = simulation.run()
             walls[name].append(time.perf_counter() - began)
         solving, making = _proxqp_alone(robot, scheme, reference, record)
         walls["proxqp"].append(solving)
@@ -317,10 +316,13 @@ def profile_step(dt: float, steps: int) -> list[tuple[str, float]]:
     start = Configuration(robot, paper.START)
     scheme = DoubleIndicator().anchored(start)
     reference = Heart().anchored(start)
-    simulation = Simulation(
-        robot, scheme, reference, paper.START, dt=dt, duration=steps * dt, check=CrossCheck(())
-    )
-    record = simulation.run()
+
+    def run() -> Record:
+        return simulate(
+            robot, scheme, reference, paper.START, dt=dt, duration=steps * dt, check=CrossCheck(())
+        )
+
+    record = run()
     targets = reference.sample(record.t[:-1])
     data = robot.model.createData()
     solver = DNNSolver()
@@ -351,7 +353,7 @@ def profile_step(dt: float, steps: int) -> list[tuple[str, float]]:
         ("network: DNNSolver.solve", _per_call(lambda k: solver.solve(programs[k]), steps)),
         ("kinematics, program and network: Controller.answer", _per_call(answer, steps)),
         ("reference: sample, per target", _each(lambda: reference.sample(record.t[:-1]), steps)),
-        ("the whole loop, per step", _each(simulation.run, steps)),
+        ("the whole loop, per step", _each(run, steps)),
         (
             "check: ProxQP, per step",
             _each(lambda: check.check_block(rows, programs[0].sizes, x), block),

@@ -88,7 +88,6 @@ from iiwa_dnn.schemes import (
 )
 from iiwa_dnn.simulation import (
     MujocoPlant,
-    Simulation,
     simulate,
 )
 
@@ -107,7 +106,7 @@ __all__ = [
     "OrientationTask", "PoseSolution", "PoseTask", "PositionTask", "PostureTask",
     "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
     "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
-    "Simulation", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
+    "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
     "TipSpeedLimit", "TrackingSolver", "Waypoints", "ZeroingNetwork",
     "available_robots", "compute_metrics", "failures", "load_robot", "prove",
     "robot_from_dh", "simulate", "solve_batch", "solve_pose", "solve_problem",

@@ -178,13 +178,14 @@ class FriController:
         self._held = self.commanded
         self._in_state = 0
         self._moves = False
+        self._torque: Vector | None = None
         plant.start(robot, self.commanded, self.period, 0)
 
     def message(self) -> bytes:
         """Encode the monitoring message of this period."""
         seconds, nanoseconds = divmod(time.time_ns(), 10**9)
         zeros = {"value": [0.0] * JOINTS}
-        torque = self._plant.torque
+        torque = self._torque
         held = {
             "jointPosition": {"value": self._held.tolist()},
             "clientCommandMode": _COMMAND_POSITION,
@@ -236,10 +237,11 @@ class FriController:
         elif command is not None:
             q = self._judge(np.array(command.commandData.jointPosition.value))
             self._moves = bool((q != self.commanded).any())
-        self._plant.move((q - self.commanded) / self.period)
+        moved = self._plant.move((q - self.commanded) / self.period)
+        self._torque = moved.torque
         self.commanded = q
-        if self._plant.fault is not None:
-            self.end(self._plant.fault)
+        if moved.fault is not None:
+            self.end(moved.fault)
 
     def end(self, fault: str | None = None) -> None:
         """End the session; the arm keeps its commanded position."""

@@ -36,7 +36,7 @@ from iiwa_dnn import (
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.control.policies import POLICIES
 from iiwa_dnn.references import Reference
-from iiwa_dnn.simulation import NOISE_ENTRIES, VelocityDisturbance
+from iiwa_dnn.simulation import NOISE_ENTRIES
 
 ROBOTS = ("iiwa7", "panda", "xarm7")
 REFERENCES = ("heart", "circle", "lissajous", "line", "waypoints")
@@ -110,7 +110,6 @@ def options(number: int) -> dict[str, Any]:
         "noise": float(10 ** rng.uniform(-4, 1)) * scale * noisy,
         "noise_at": entry,
         "filter_window": int(rng.choice([1, 1, 10])),
-        "disturbance": VelocityDisturbance(0.1, 0.1, 0.1) if rng.random() < 0.2 else None,
         "estimator": NoiseModel(bias_walk=0.01) if rng.random() < 0.2 else None,
         "policy": POLICIES[int(rng.integers(3))],
         "seed": number,

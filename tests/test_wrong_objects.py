@@ -59,7 +59,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "scheme text": (lambda: drive(scheme="paper"), "scheme: must be an object with build_qp"),
     "plant class": (lambda: drive(plant=d.MujocoPlant), "plant: must be an object with start"),
     "estimator": (lambda: drive(estimator=3), "estimator: must be an iiwa_dnn.NoiseModel"),
-    "disturbance": (lambda: drive(disturbance=0.1), "disturbance: must be an iiwa_dnn.Velocity"),
+    "noise": (lambda: drive(noise=EYE[0]), "noise: must have shape"),
     "reference of a controller": (
         lambda: d.Controller(paper_robot(), d.DoubleIndicator(), EYE), "reference: must be",
     ),

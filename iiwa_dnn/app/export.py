@@ -8,6 +8,7 @@ from iiwa_dnn.app.command_line import print_lines
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import ExportOptions
 from iiwa_dnn.app.track import arm, beyond_data_sheet, refuse_set, simulation
+from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.export import c99
 
 _OUTSIDE = ("filter_window", "motion")
@@ -19,7 +20,10 @@ def run(options: ExportOptions) -> int:
     for name in _OUTSIDE:
         refuse_set(options, name, "is no part of a controller and is not exported")
     robot, q0 = arm(options)
-    controller = simulation(options, robot, q0).controller
+    robot, scheme, reference, q0 = simulation(options, robot, q0).run.args
+    controller = Controller(
+        robot, scheme, reference, dt=options.dt, mode=options.mode, policy=options.policy
+    )
     folder = claim_folder(options)
     c99(controller, folder, q0)
     save_settings(options, folder)

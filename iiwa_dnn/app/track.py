@@ -4,8 +4,9 @@ import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import flag_of, print_lines, progress_bar
 from iiwa_dnn.app.folders import claim_folder, save_settings
 from iiwa_dnn.app.options import Check, TrackOptions
+from iiwa_dnn.control.paths import References
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.naming import unwatched
@@ -44,7 +46,7 @@ from iiwa_dnn.schemes import (
     TipSpeedLimit,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of, unwatched_by
-from iiwa_dnn.simulation import Plant, Simulation
+from iiwa_dnn.simulation import Plant, count_steps, simulate
 from iiwa_dnn.studies import paper
 
 CHECKS: dict[Check, tuple[str, ...]] = {
@@ -102,6 +104,14 @@ _IDLE: dict[str, tuple[Callable[[Any], bool], str]] = {
     "push_for": (lambda o: not o.push, "--push"),
 }
 
+
+class Drawing(NamedTuple):
+    """A run and its number of steps."""
+
+    run: partial[Record]
+    steps: int
+
+
 More = Callable[[Record, Path], list[Path]]
 Last = Callable[[Record, Path], None] | None
 
@@ -132,8 +142,8 @@ def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
 
 def simulation(
     options: TrackOptions, robot: Robot, q0: Vector, plant: Plant | None = None
-) -> Simulation:
-    """Return the simulation that the options describe from q0 (n,) [rad]; no file is written."""
+) -> Drawing:
+    """Return the run that the options describe from q0 (n,) [rad]; no file is written."""
     for name, (is_idle, needed) in _IDLE.items():
         if hasattr(options, name) and is_idle(options):
             refuse_set(options, name, f"has no effect but beside {needed}")
@@ -151,24 +161,20 @@ def simulation(
         further = [replace(task, frame=name) for name in others for task in tasks]
         scheme = Scheme(scheme.costs, [*tasks, *further], scheme.limits)
     arguments = {name: getattr(options, name) for name in _ARGUMENTS}
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", UserWarning)
-        made = Simulation(
-            robot,
-            scheme,
-            {robot.tip: reference, **others} if others else reference,
-            q0,
-            plant=plant,
-            check=CrossCheck(CHECKS[options.check], options.tolerance),
-            far_start=True,
-            **arguments,
-        )
-    # The summary says that the start is outside, other lines speak of the path and of links.
-    for warning in caught:
-        if "cannot hold a pose" in str(warning.message):
-            print(f"{robot.dof} joints cannot hold a pose: --orientation none", file=sys.stderr)
     print_if_unwatched(scheme, robot)
-    return made
+    paths: References = {robot.tip: reference, **others} if others else reference
+    run = partial(
+        simulate,
+        robot,
+        scheme,
+        paths,
+        q0,
+        plant=plant,
+        check=CrossCheck(CHECKS[options.check], options.tolerance),
+        far_start=True,
+        **arguments,
+    )
+    return Drawing(run, count_steps(paths, options.dt, options.duration))
 
 
 def scheme_of(options: TrackOptions) -> Scheme:
@@ -239,7 +245,7 @@ def refuse_set(options: TrackOptions, name: str, problem: str) -> None:
 
 
 def draw(
-    options: TrackOptions, simulation: Simulation, more: More | None = None, last: Last = None
+    options: TrackOptions, simulation: Drawing, more: More | None = None, last: Last = None
 ) -> int:
     """Carry out a run, write it into its folder and print its summary; return the exit code.
 
@@ -251,7 +257,7 @@ def draw(
     """
     folder = claim_folder(options)
     with progress_bar(simulation.steps, "step", options.quiet) as bar:
-        record = simulation.run(bar.update)
+        record = _carry_out(simulation, bar.update)
     save_settings(options, folder)
     if not options.quiet and sys.stderr.isatty():
         print(f"writing report and figures to {folder}", file=sys.stderr)
@@ -269,6 +275,19 @@ def draw(
     elif reasons:
         print("\n".join(reasons), file=sys.stderr)
     return 1 if reasons else 0
+
+
+def _carry_out(drawing: Drawing, progress: Callable[[int], object]) -> Record:
+    """Carry out a run; print of its warnings what no summary says."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UserWarning)
+        record = drawing.run(progress=progress)
+    # The summary says that the start is outside, other lines speak of the path and of links.
+    for warning in caught:
+        if "cannot hold a pose" in str(warning.message):
+            line = f"{record.dof} joints cannot hold a pose: --orientation none"
+            print(line, file=sys.stderr)
+    return record
 
 
 def path(options: TrackOptions) -> Reference:

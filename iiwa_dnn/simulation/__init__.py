@@ -5,14 +5,13 @@ from iiwa_dnn.simulation.disturbances import Disturbances as Disturbances, Push 
 from iiwa_dnn.simulation.motion import MOTIONS as MOTIONS
 from iiwa_dnn.simulation.noise import (
     NOISE_ENTRIES as NOISE_ENTRIES,
-    Disturbance as Disturbance,
     NoiseEntry as NoiseEntry,
-    VelocityDisturbance as VelocityDisturbance,
     gaussian_noise as gaussian_noise,
 )
 from iiwa_dnn.simulation.plants import (
     IdealPlant as IdealPlant,
+    Moved as Moved,
     MujocoPlant as MujocoPlant,
     Plant as Plant,
 )
-from iiwa_dnn.simulation.runner import Simulation as Simulation, simulate as simulate
+from iiwa_dnn.simulation.runner import count_steps as count_steps, simulate as simulate

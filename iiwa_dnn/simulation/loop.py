@@ -1,4 +1,4 @@
-"""The control loop: read, decide, alter, move. Whoever wants to know observes its outcomes."""
+"""The control loop: read, decide, alter, move."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -10,9 +10,9 @@ from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.qp import Vector
-from iiwa_dnn.simulation.chain import SignalChain
-from iiwa_dnn.simulation.motion import MOTIONS, Motion
-from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.motion import Method
+from iiwa_dnn.simulation.noise import SignalChain
+from iiwa_dnn.simulation.plants import Plant
 
 
 class Outcome(NamedTuple):
@@ -55,39 +55,34 @@ class Loop:
         controller: The controller.
         plant: The plant, started.
         q: True joint positions [rad], (n,).
+        fault: Reason for which the plant ended the run; None while it moves.
     """
 
     def __init__(
-        self,
-        controller: Controller,
-        plant: Plant,
-        motion: Motion = "euler",
-        chain: SignalChain | None = None,
+        self, controller: Controller, plant: Plant, chain: SignalChain, method: Method, q0: Vector
     ) -> None:
-        """Bring the parts together; the plant begins where it is.
+        """Bring the parts together.
 
         Args:
             controller: The controller.
             plant: The plant, started.
-            motion: Method that integrates the motion of a plant that moves as it is told.
-            chain: Noise and filters between controller and plant; None: none.
+            chain: Noise, filter and estimator between controller and plant.
+            method: Method that integrates the motion of a plant that moves as it is told.
+            q0: True joint positions at the start [rad], (n,).
         """
         self.controller = controller
         self.plant = plant
-        self.q = plant.q
-        self._motion = MOTIONS[motion]
+        self.q = q0
+        self.fault: str | None = None
         self._chain = chain
-        self._yielded = False  # the last step was a policy's
-        self._alters = chain is not None and chain.alters
-        self._plain = motion == "euler" and not self._alters
-        self._misled = not plant.exact or (chain is not None and chain.misleads)
+        self._method = method
+        self._misled = chain.misleads or not plant.exact
 
-    def run(self, steps: int, observers: Sequence[Observer], first: int = 0) -> int:
-        """Take steps until one of them ends the run; return how many were taken."""
+    def run(self, first: int, steps: int, observe: Observer) -> int:
+        """Take steps from number `first` on until one of them ends the run; count them."""
         for k in range(first, first + steps):
             outcome = self.step(k)
-            for observe in observers:
-                observe(k, outcome)
+            observe(k, outcome)
             if outcome.ends:
                 return k - first + 1
         return steps
@@ -95,95 +90,63 @@ class Loop:
     def step(self, k: int) -> Outcome:
         """Take step k."""
         controller = self.controller
-        plant = self.plant
         t = k * controller.dt
-        seen = self.q
-        if self._misled:
-            reading = plant.read()
-            seen = reading if self._chain is None else self._chain.see(k, reading)
-        if not self._plain:
-            return self._general_step(k, t, seen)
-        command = controller.step(seen, t)
-        dq = command.dq
-        if self._misled:
-            self._show_true_pose(command)
-        self._yielded = command.action is not Action.NONE
-        if self._yielded or not plant.exact:
-            return self._moved((command,), dq, dq)
-        plant.move(dq)
-        self.q = plant.q
-        return Outcome((command,), dq, dq, self.q)
+        seen = self._chain.see(k, self.plant.read())
+        clipped = None
+        if self._chain.alters or self._method.stages > 1:
+            commands, velocity, action = self._ask(seen, t)
+            dq = velocity
+            if self._chain.alters:
+                dq, clipped = self._alter(k, t, commands[0], velocity)
+            controller.send(dq, commands[0].fraction)
+        else:
+            commands = [controller.step(seen, t)]
+            velocity = commands[0].dq
+            action = commands[0].action
+            dq = velocity
+        if self._misled:  # the record keeps the frame's true placement
+            commands[0].placement[:] = controller.placement(self.q)
+        return self._move(dq, Outcome(commands, velocity, dq, self.q, action, clipped))
 
-    def _general_step(self, k: int, t: float, seen: Vector) -> Outcome:
-        """Take a step of several stages, or with an altered command."""
-        controller = self.controller
-        dt = controller.dt
+    def _ask(self, q: Vector, t: float) -> tuple[list[Command], Vector, Action]:
+        """Ask for a step's commands, one a stage; return them, their mean, and the action.
+
+        If only a later stage has no solution, the answer at the step's start is taken.
+        """
         commands: list[Command] = []
 
-        def ask(q: Vector, time: float) -> Vector:
-            command = controller.compute(q, time)
+        def velocity(q: Vector, time: float) -> Vector:
+            command = self.controller.compute(q, time)
             commands.append(command)
             return command.dq
 
-        velocity = self._motion.step(ask, seen, t, dt)
-        if self._misled:
-            self._show_true_pose(commands[0])
-        self._yielded = any(command.action is not Action.NONE for command in commands)
-        if self._yielded:
-            # If only a later stage has no solution, the answer at its start will do.
-            commands = [commands[0]] * len(commands)
-            velocity = commands[0].dq
-        command, clipped = self._altered(k, t, commands[0], velocity)
-        controller.send(command, commands[0].fraction)
-        return self._moved(commands, velocity, command)._replace(clipped=clipped)
+        mean = self._method.step(velocity, q, t, self.controller.dt)
+        if all(command.action is Action.NONE for command in commands):
+            return commands, mean, Action.NONE
+        first = commands[0]
+        return [first] * len(commands), first.dq, first.action or Action.EULER
 
-    def _altered(
+    def _alter(
         self, k: int, t: float, command: Command, velocity: Vector
-    ) -> tuple[Vector, NDArray[np.int8] | None]:
-        """Return a velocity after noise and filters, and the joints that were clipped."""
-        if not self._alters or self._chain is None:
-            return velocity, None
+    ) -> tuple[Vector, NDArray[np.int8]]:
+        """Return a velocity after noise and filter, and the joints that were clipped."""
         qp = command.qp
         if self._misled:
             qp = self.controller.program_at(self.q, command.targets, t)
         return self._chain.act(k, velocity, qp, self.controller)
 
-    def _moved(
-        self,
-        commands: Sequence[Command],
-        velocity: Vector,
-        dq: Vector,
-    ) -> Outcome:
-        """Let the plant follow a command, unless a policy has stopped the run."""
-        action = Action.NONE
-        if self._yielded:
-            action = commands[0].action or Action.EULER
-        torque = None
-        ends = False
-        before = self.q
-        if action is Action.STOP:
-            self.controller.halt(commands[0])
-            ends = not commands[0].dq.any()
-        if not ends:
-            self.plant.move(dq)
-            self.q = self.plant.q
-            torque = self.plant.torque
-            ends = self.plant.fault is not None
-            # Of an arm with mass the mean velocity of the period.
-            dq = dq if self.plant.exact else (self.q - before) / self.controller.dt
-        if ends:
-            dq = np.zeros_like(dq)
-            self.q = before
-        return Outcome(
-            commands,
-            velocity,
-            dq,
-            self.q,
-            action,
-            torque=torque,
-            ends=ends,
-        )
-
-    def _show_true_pose(self, command: Command) -> None:
-        """Put the frame's true placement into the row of a command that was misled."""
-        command.placement[:] = self.controller.placement(self.q)
+    def _move(self, dq: Vector, planned: Outcome) -> Outcome:
+        """Let the plant follow a command (n,) [rad/s], unless a policy has stopped the run."""
+        command = planned.commands[0]
+        if planned.action is Action.STOP:
+            self.controller.halt(command)
+            if not command.dq.any():
+                return planned._replace(dq=np.zeros_like(dq), ends=True)
+        moved = self.plant.move(dq)
+        self.fault = moved.fault
+        if moved.fault is not None:
+            return planned._replace(dq=np.zeros_like(dq), torque=moved.torque, ends=True)
+        if not self.plant.exact:  # of an arm with mass the mean velocity of the period
+            dq = (moved.q - self.q) / self.controller.dt
+        self.q = moved.q
+        return planned._replace(dq=dq, q=moved.q, torque=moved.torque)

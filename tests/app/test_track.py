@@ -240,7 +240,7 @@ def test_defaults_are_the_papers_experiment_without_noise(monkeypatch: pytest.Mo
         asked.update(options, robot=robot, scheme=scheme, reference=reference, q0=q0)
         raise IiwaDnnError("seen enough")
 
-    monkeypatch.setattr(cli, "Simulation", take)
+    monkeypatch.setattr(cli, "simulate", take)
     assert call([]) == 2
     assert asked["robot"].name == "iiwa7"
     np.testing.assert_array_equal(asked["robot"].q_lower, np.full(7, -2.5))

@@ -35,7 +35,6 @@ from iiwa_dnn import (
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.control.relaxed import note_blocking
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
-from iiwa_dnn.simulation.noise import VelocityDisturbance
 from judge_limits import Breach, breaches
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -184,7 +183,7 @@ def test_a_path_that_is_too_quick(policy: Policy) -> None:
         {"noise": 0.3, "filter_window": 5},
         {"noise": 1e-3, "noise_at": "measurement"},
         {"noise": 0.1, "noise_at": "network"},
-        {"disturbance": VelocityDisturbance(0.1, 0.1, 0.5, 3.0)},
+        {"noise": np.tile(0.1 + 0.5 * np.sin(0.018 * np.arange(300))[:, np.newaxis], 7)},
         {"mode": "continuous"},
     ],
 )

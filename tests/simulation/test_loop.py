@@ -29,8 +29,7 @@ from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse
-from iiwa_dnn.simulation import NOISE_ENTRIES, Simulation, gaussian_noise, simulate
-from iiwa_dnn.simulation.noise import Disturbance
+from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise, simulate
 
 OPTIONS = {
     "plain": {},
@@ -144,7 +143,7 @@ def test_settings_say_what_was_asked_and_with_what() -> None:
         noise=0.001,
         filter_window=4,
         seed=11,
-        tol=1e-8,
+        solver=DNNSolver(tol=1e-8),
         check=CrossCheck(("osqp",), tolerance=1e-5),
     ).settings
     expected = {
@@ -249,20 +248,6 @@ def test_a_solver_that_is_already_warm_gives_the_same_run() -> None:
     run(reference=heart(period=3.0), solver=solver)
     second = run(solver=solver)
     np.testing.assert_array_equal(first.dq, second.dq)
-    np.testing.assert_array_equal(first.iterations, second.iterations)
-
-
-@pytest.mark.parametrize("case", ["plain", "noisy", "continuous"])
-def test_one_simulation_run_twice_gives_the_same_run(case: str) -> None:
-    simulation = Simulation(
-        paper_robot(),
-        DoubleIndicator(),
-        heart(),
-        PAPER_Q0,
-        **{"dt": 1e-3, "duration": 0.05, "check": UNCHECKED} | OPTIONS[case],
-    )
-    first, second = simulation.run(), simulation.run()
-    np.testing.assert_array_equal(first.q, second.q)
     np.testing.assert_array_equal(first.iterations, second.iterations)
 
 
@@ -457,7 +442,7 @@ def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
 
 def test_a_tolerance_that_cannot_be_met_stops_the_run() -> None:
     # The first program, at rest, has the answer zero, residual zero; the second has rounding.
-    record = run(tol=1e-30, policy="stop")
+    record = run(solver=DNNSolver(tol=1e-30), policy="stop")
     assert record.steps == 2
     assert record.settings["status"].startswith("stopped at step 1 ")
     np.testing.assert_array_equal(record.dq[-1], np.zeros(7))
@@ -476,14 +461,6 @@ def test_a_budget_that_is_too_small_falls_back_to_the_reference() -> None:
     # Counted, and told: the network did not do what it is for.
     assert compute_metrics(record)["incidents"]["fallback_steps"] == 49
     assert any("49 steps answered at a second attempt" in reason for reason in failures(record))
-
-
-def test_a_disturbance_is_given_whole_or_by_its_parts() -> None:
-    whole = Disturbance(noise=0.01)
-    options = {"dt": 1e-4, "duration": 0.01}
-    np.testing.assert_array_equal(run(disturbance=whole, **options).q, run(noise=0.01, **options).q)
-    with pytest.raises(InvalidInputError, match="holds noise already"):
-        run(disturbance=whole, noise=0.01)
 
 
 def test_noise_does_not_stop_a_run() -> None:
@@ -582,7 +559,6 @@ def test_a_path_of_poses_that_begins_elsewhere_is_refused_unless_asked_for() -> 
         *[("noise", bad) for bad in (-1.0, np.nan, np.inf, None, "loud")],
         *[("filter_window", bad) for bad in (0, -3, 2.5, np.nan, None, "wide")],
         *[("seed", bad) for bad in (-1, 1.5, None, "lucky")],
-        *[("tol", bad) for bad in (0.0, -1e-9, np.nan, np.inf, None, "tight")],
     ],
 )
 def test_a_bad_argument_is_named(argument: str, value: object) -> None:
@@ -609,5 +585,5 @@ def test_a_home_of_the_wrong_length_is_named() -> None:
 
 
 def test_an_argument_that_does_not_exist_is_refused() -> None:
-    with pytest.raises(TypeError, match="'nois'; did you mean: noise"):
+    with pytest.raises(TypeError, match="nois"):
         run(nois=0.2)

@@ -13,7 +13,6 @@ from iiwa_dnn import (
     Heart,
     InvalidInputError,
     Record,
-    Simulation,
     compute_metrics,
     failures,
     simulate,
@@ -137,18 +136,6 @@ def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
     assert files[0] == files[1]
     other = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=8, duration=0.2)
     assert not np.array_equal(other.q, record.q)
-
-
-def test_a_run_can_be_repeated_by_one_object(robot):
-    heart = Heart().anchored(Configuration(robot, START))
-    simulation = Simulation(
-        robot, DoubleIndicator(), heart, START, dt=1e-3, duration=0.1, check=CrossCheck(()),
-        plant=MujocoPlant(Disturbances.typical()),
-    )  # fmt: skip
-    seen: list[int] = []
-    first, second = simulation.run(seen.append), simulation.run()
-    np.testing.assert_array_equal(first.q, second.q)
-    assert sum(seen) == 100
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])

@@ -5,7 +5,9 @@ follow it within its limits, the policy ``slow`` scales the task velocity, in si
 """
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -24,8 +26,7 @@ from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.robot.obstacles import Sphere
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.schemes import CollisionAvoidance, DoubleIndicator, Limit
-from iiwa_dnn.simulation import IdealPlant
-from iiwa_dnn.simulation.loop import Loop
+from iiwa_dnn.simulation import IdealPlant, Moved
 
 TIP_SPEED = 0.25
 """Largest speed of the target and of the ball [m/s]: the limit for robots beside people."""
@@ -40,23 +41,24 @@ _GAINS = ("drift_gain", "position_gain", "orientation_gain", "limit_gain")
 class PushedPlant(IdealPlant):
     """An ideal plant that is displaced inside its joint limits."""
 
-    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> Mapping[str, Any]:
         """Put the arm at q0 (n,) [rad]."""
-        super().start(robot, q0, dt, seed)
         self._robot = robot
         self._pushes: list[Vector] = []
+        return super().start(robot, q0, dt, seed)
 
     def push(self, shift: Vector) -> None:
         """Displace the joints by `shift` (n,) [rad] within the next 0.1 s."""
         count = max(1, round(_PUSH_DURATION / self._dt))
         self._pushes = [shift / count] * count
 
-    def move(self, command: Vector) -> None:
+    def move(self, command: Vector) -> Moved:
         """Move by dt times the command (n,) [rad/s] and by the part of a push."""
         super().move(command)
         if self._pushes:
             pushed = self._q + self._pushes.pop()
             self._q = np.clip(pushed, self._robot.q_lower, self._robot.q_upper)
+        return Moved(self._q)
 
 
 class Ball:
@@ -137,7 +139,6 @@ class Follower:
         self._controller.warm_up()
         self._plant = PushedPlant()
         self._plant.start(robot, start.q, dt, seed=0)
-        self._loop = Loop(self._controller, self._plant)
         self._steps = 0
         self._command: Command | None = None
 
@@ -150,7 +151,7 @@ class Follower:
     @property
     def configuration(self) -> Configuration:
         """Configuration of the arm."""
-        return Configuration(self.robot, self._plant.q)
+        return Configuration(self.robot, self._plant.read())
 
     @property
     def time(self) -> float:
@@ -195,12 +196,12 @@ class Follower:
         conf = self.configuration
         self._target.set(position, rotation)
         began = time.perf_counter()
-        outcome = self._loop.step(self._steps)
+        command = self._controller.step(self._plant.read(), self.time)
         seconds = time.perf_counter() - began
-        self._command = outcome.commands[0]
+        self._command = command
         self._steps += 1
         return FollowerState(
-            q=outcome.q,
+            q=self._plant.move(command.dq).q,
             position_error=float(np.linalg.norm(position - conf.position)),
             orientation_error=float(np.linalg.norm(pin.log3(rotation @ conf.rotation.T))),
             command=self._command,
@@ -212,7 +213,7 @@ class Follower:
         """Distance of the arm from the ball [m]; NaN without one."""
         for part in self.scheme.extra_limits:
             if isinstance(part, CollisionAvoidance):
-                distances, _ = part.scene(self.robot).nearest(self._plant.q[None], np.zeros(1))
+                distances, _ = part.scene(self.robot).nearest(self._plant.read()[None], np.zeros(1))
                 return float(distances[0])
         return float("nan")
 

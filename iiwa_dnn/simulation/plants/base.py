@@ -1,57 +1,75 @@
-"""Plants: robots that move under velocity commands and show their joint angles by encoders."""
+"""Plants: robots that move under velocity commands and show their joint positions by encoders."""
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar
+from collections.abc import Mapping
+from typing import Any, ClassVar, NamedTuple
 
 from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.robot import Robot
+
+
+class Moved(NamedTuple):
+    """The state of a plant after a control period.
+
+    Attributes:
+        q: True joint positions [rad], (n,), an array that stays as it is.
+        torque: Largest torques of the period [N m], (n,), signed; None for joints without motors.
+        fault: Reason for which the plant ends the run; None while it moves.
+    """
+
+    q: Vector
+    torque: Vector | None = None
+    fault: str | None = None
 
 
 class Plant(ABC):
     """A robot that a run moves: `start` once, then `read` and `move` at every control step.
 
     Attributes:
-        packages: Installed packages whose versions belong into the record.
         exact: Whether the joints move as they are told and are read as they are.
     """
 
-    packages: ClassVar[tuple[str, ...]] = ()
     exact: ClassVar[bool] = False
 
     @abstractmethod
-    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
-        """Put a robot at rest at joint angles `q0` (n,) [rad].
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> Mapping[str, Any]:
+        """Put a robot at rest at joint positions `q0` (n,) [rad].
 
         Args:
             robot: The robot, n joints.
-            q0: Joint angles at the start [rad], (n,).
+            q0: Joint positions at the start [rad], (n,).
             dt: Control period [s].
             seed: Seed of everything random.
-        """
 
-    @property
-    @abstractmethod
-    def q(self) -> Vector:
-        """True joint angles [rad], (n,), a copy."""
+        Returns:
+            Entries for the settings of the record, values that JSON can hold.
+        """
 
     @abstractmethod
     def read(self) -> Vector:
-        """Measure the joint angles [rad], (n,); every call is a new reading."""
+        """Measure the joint positions [rad], (n,); every call is a new reading."""
 
     @abstractmethod
-    def move(self, command: Vector) -> None:
+    def move(self, command: Vector) -> Moved:
         """Follow a velocity command (n,) [rad/s] for one control period."""
 
-    @property
-    def torque(self) -> Vector | None:
-        """Largest torques of the last `move` [N m], (n,); None for a plant without motors."""
-        return None
 
-    @property
-    def fault(self) -> str | None:
-        """Reason for which the plant ended the run; None while it moves."""
-        return None
+class IdealPlant(Plant):
+    """Joints without mass or friction, at q + dt dq after each control period."""
 
-    def settings(self) -> dict[str, Any]:
-        """Return the plant's entries in the settings of a record."""
+    exact: ClassVar[bool] = True
+
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> Mapping[str, Any]:
+        """Put the arm at q0 (n,) [rad]."""
+        self._q = q0.copy()
+        self._dt = dt
         return {}
+
+    def read(self) -> Vector:
+        """Measure the joint positions [rad], (n,), exactly."""
+        return self._q
+
+    def move(self, command: Vector) -> Moved:
+        """Move by dt times the command (n,) [rad/s]."""
+        self._q = self._q + self._dt * command
+        return Moved(self._q)

@@ -1,7 +1,8 @@
 """The physical arm: MuJoCo steps it under torques; the torque loop sees its encoders only."""
 
+from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.mujoco_model import TIP_SITE, JointDynamics, compile_model, torque_limits
 from iiwa_dnn.robot.offscreen import import_mujoco
 from iiwa_dnn.simulation.disturbances import Disturbances, Encoder
-from iiwa_dnn.simulation.plants.base import Plant
+from iiwa_dnn.simulation.plants.base import Moved, Plant
 from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
 _COARSEST = 1e-3  # the longest physics step that is accepted [s]
@@ -32,8 +33,6 @@ class MujocoPlant(Plant):
         InvalidInputError: If the physics step is out of range.
     """
 
-    packages: ClassVar[tuple[str, ...]] = ("mujoco",)
-
     def __init__(
         self,
         disturbances: Disturbances | None = None,
@@ -51,8 +50,11 @@ class MujocoPlant(Plant):
         self.gains = TorqueGains() if gains is None else gains
         self.dynamics = JointDynamics() if dynamics is None else dynamics
 
-    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> None:
+    def start(self, robot: Robot, q0: Vector, dt: float, seed: int) -> Mapping[str, Any]:
         """Build the arm, with masses and encoder noise drawn from the seed, and put it at rest.
+
+        Returns:
+            Torque limits, physics and torque loop, for the settings of a record.
 
         Raises:
             MissingDependencyError: If MuJoCo is not installed.
@@ -78,47 +80,35 @@ class MujocoPlant(Plant):
         self._encoder = Encoder(wrong.encoder_noise, wrong.encoder_bits, seed)
         self._torques = TorqueController(robot, dt, timestep, self.gains, self.dynamics, q0)
         self._late: list[Vector] = [np.zeros(robot.dof)] * wrong.delay
-        self._largest: Vector = np.zeros(robot.dof)
         self._reading: Vector | None = None
-
-    @property
-    def q(self) -> Vector:
-        """True joint angles [rad], (n,), a copy."""
-        return np.array(self._data.qpos)
-
-    @property
-    def torque(self) -> Vector:
-        """Largest torques of the last `move` [N m], (n,), signed; a copy."""
-        return self._largest.copy()
-
-    @property
-    def fault(self) -> str | None:
-        """Say that MuJoCo has met a state that is too large and reset the arm, or the loop has."""
-        kinds = self._mj.mjtWarning
-        bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
-        in_arm = any(self._data.warning[int(kind)].number > 0 for kind in bad)
-        return "the physics diverged" if in_arm or self._torques.diverged else None
+        return self._settings()
 
     def read(self) -> Vector:
         """Measure the joint angles [rad], (n,); every call is a new reading."""
         self._reading = self._encoder(self._data.qpos)
         return self._reading.copy()
 
-    def move(self, command: Vector) -> None:
+    def move(self, command: Vector) -> Moved:
         """Follow a velocity command (n,) [rad/s], late by the delay, for one control period.
 
-        The first physics step goes by the last `read`, if there was one since the last move.
+        The first physics step goes by the last `read`, if there was one since the last move. A
+        state that is too large, at which MuJoCo resets the arm, is a fault.
         """
         self._late.append(np.array(command))
         self._torques.command(self._late.pop(0))
-        self._largest = np.zeros_like(command)
+        largest: Vector = np.zeros_like(command)
         for _ in range(self._torques.substeps):
             reading = self._encoder(self._data.qpos) if self._reading is None else self._reading
             self._reading = None
             torque = self._torques.torque(reading)
             self._step(torque)
-            larger = np.abs(torque) > np.abs(self._largest)
-            self._largest[larger] = torque[larger]
+            larger = np.abs(torque) > np.abs(largest)
+            largest[larger] = torque[larger]
+        kinds = self._mj.mjtWarning
+        bad = (kinds.mjWARN_BADQPOS, kinds.mjWARN_BADQVEL, kinds.mjWARN_BADQACC)
+        in_arm = any(self._data.warning[int(kind)].number > 0 for kind in bad)
+        fault = "the physics diverged" if in_arm or self._torques.diverged else None
+        return Moved(np.array(self._data.qpos), largest, fault)
 
     def _step(self, torque: Vector) -> None:
         """Hold joint torques (n,) [N m] for one physics step."""
@@ -138,8 +128,7 @@ class MujocoPlant(Plant):
                 self._mj.mj_applyFT(self._model, data, force, np.zeros(3), point, body, out)
         self._mj.mj_step(self._model, data)
 
-    def settings(self) -> dict[str, Any]:
-        """Return torque limits, physics and torque loop, as a record has them."""
+    def _settings(self) -> dict[str, Any]:
         model = self._model
         physics = {
             "engine": f"MuJoCo {self._mj.__version__}",
