@@ -35,7 +35,7 @@ from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_poin
 from iiwa_dnn.networks.tracking import FIFD, TrackingSolver
 from iiwa_dnn.qp.layout import Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.simulation.runner import step_count
+from iiwa_dnn.simulation import count_steps
 
 START = np.array([-0.2578, 0.2946, 0.5946, -0.9896, 0.4993, 0.3100, 0.8620])
 FASTEST = 3.6 * np.array([1e-4, 0.1, 0.1, 0.1, 1e-4, 1e-4, 0.1])
@@ -244,7 +244,7 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
 
 def main(seconds: tyro.conf.Positional[float] = 10.0) -> None:
     """Run the arm and print what it does."""
-    states, errors = by_network(step_count(seconds, DT))
+    states, errors = by_network(count_steps(None, DT, seconds))
     shares = np.abs(states[:, :7] / FASTEST).max(axis=0)
     print("largest velocities, as shares of their bounds:", *shares.round(3))
     print(
