@@ -255,9 +255,15 @@ def draw(
         more: Function that draws further figures into the folder and returns their files.
         last: Function that writes further files after the report.
     """
-    folder = claim_folder(options)
+    folder = options.out
     with progress_bar(simulation.steps, "step", options.quiet) as bar:
-        record = _carry_out(simulation, bar.update)
+
+        def go_on(steps: int) -> None:
+            if steps == 0:
+                claim_folder(options)
+            bar.update(steps)
+
+        record = _carry_out(simulation, go_on)
     save_settings(options, folder)
     if not options.quiet and sys.stderr.isatty():
         print(f"writing report and figures to {folder}", file=sys.stderr)

@@ -75,7 +75,7 @@ class SignalChain:
         """Draw the noise of a run.
 
         Args:
-            noise: Standard deviation of white noise, or the noise itself, (steps, n).
+            noise: Standard deviation of white noise [rad/s] or [rad], or the noise, (steps, n).
             entry: Signal that it is added to (`NOISE_ENTRIES`).
             window: Samples of the moving average of the velocity; 1: no filter.
             model: Noise model of a Kalman filter of the joint positions, whose bias is taken off

@@ -63,7 +63,7 @@ def simulate(
     estimator: NoiseModel | None = None,
     seed: int = 0,
     far_start: bool = False,
-    progress: Callable[[int], object] | None = None,
+    progress: Callable[[int], object] = lambda steps: None,
 ) -> Record:
     """Let a robot follow a reference, each step's program solved by the network and checked.
 
@@ -94,7 +94,8 @@ def simulate(
         seed: Seed of the noise and of the plant.
         far_start: Whether the arm may go to a path of poses that begins elsewhere than the tip;
             else such a run is refused.
-        progress: Called now and then with the number of steps taken since the last call.
+        progress: Called with 0 when the arguments are found to be right, then now and then with the
+            number of steps taken since the last call.
 
     Returns:
         The record of the run, of every step, or of those until a policy or the plant ended it.
@@ -134,13 +135,13 @@ def simulate(
     }
     loop = Loop(controller, plant, chain, MOTIONS[motion], start.arrays[0])
     recorder = Recorder(steps, controller, loop.q, settings)
+    progress(0)
     stages = MOTIONS[motion].stages
     with Judgement(check, steps, stages, controller.layout) as judgement:
         for first in range(0, steps, BLOCK):
             taken = loop.run(first, min(BLOCK, steps - first), recorder.observe)
             judgement.submit(recorder.flush())
-            if progress is not None:
-                progress(taken)
+            progress(taken)
             if recorder.last_step is not None:
                 break
         agreement = judgement.finish()
