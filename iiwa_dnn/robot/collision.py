@@ -1,17 +1,17 @@
 """Collision geometry of a robot: capsules around its links, and the pairs that may meet.
 
 It is read from ``NAME.collisions.toml`` beside the URDF, or made from the URDF's own shapes: a
-cylinder between two spheres of its radius is a capsule already, anything else gets the smallest
-capsule around it. The pairs are those of an SRDF file: left out are neighbours, pairs that never
-meet, pairs that nearly always do, and pairs that are as near in the start posture.
+cylinder gets two round ends, any other body a capsule around it along one of its principal axes.
+The files of the named arms have smaller ones, along axes of any direction. The pairs are those of
+an SRDF file: left out are neighbours, pairs that never meet, pairs that nearly always do, and pairs
+that are as near in the start posture.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -24,7 +24,6 @@ import pinocchio as pin
 from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
-from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.obstacles import Box
@@ -39,10 +38,6 @@ CLEARANCE = 0.02
 
 ALWAYS = 0.95
 """Fraction of the postures in which a pair that always meets does so."""
-
-
-Ball = tuple[float, ...]
-"""Middle and radius of a sphere [m], rounded."""
 
 
 @dataclass(frozen=True)
@@ -150,70 +145,16 @@ def collision_model(robot: Robot) -> CollisionModel:
 
 @lru_cache(maxsize=32)
 def unwatched_links(robot: Robot) -> tuple[str, ...]:
-    """Name the moving links that have a body but no collision geometry: no row watches them.
-
-    A link has a body if it is drawn and not held by a capsule of the same joint. If the file draws
-    no link at all, a link with a mass has a body, unless its joint carries a capsule.
+    """Name the links on a joint that carries a mass but no capsule: no row watches them.
 
     Raises:
         InvalidInputError, FileError, NotFoundError: As of `collision_model`.
     """
-    capsules = collision_model(robot).capsules
-    watched = {capsule.link for capsule in capsules}
-    root = ET.fromstring(robot.urdf or "<robot/>")
-    drawn = root.find("link/visual") is not None
-    bare = {}
-    for link in root.findall("link"):
-        name = link.get("name", "")
-        if name not in watched and _joint(robot, name):
-            bare[name] = link
-        else:
-            _drop_visuals(link)  # meshes that need not be read
-    if drawn:
-        return _not_held(robot, capsules, bare, urdf.text_of(root))
-    joints = {_joint(robot, name) for name in watched}
-    masses = {name: link.find("inertial/mass[@value]") for name, link in bare.items()}
-    return tuple(
-        name
-        for name, mass in masses.items()
-        if mass is not None and float(mass.attrib["value"]) and _joint(robot, name) not in joints
-    )
-
-
-def _drop_visuals(link: ET.Element) -> None:
-    for visual in link.findall("visual"):
-        link.remove(visual)
-
-
-def _not_held(
-    robot: Robot, capsules: Iterable[LinkCapsule], links: Mapping[str, ET.Element], text: str
-) -> tuple[str, ...]:
-    """Select the links that are drawn, in a URDF's text, outside of the capsules of their joint."""
-    try:
-        shapes = read_shapes(robot, pin.GeometryType.VISUAL, text)
-    except ValueError:  # a mesh that cannot be read is a body
-        return tuple(name for name, link in links.items() if link.find("visual") is not None)
-    frames = robot.model.frames
-    outside = [
-        frames[shape.parentFrame].name
-        for shape in shapes
-        if not any(_holds(frames[robot.frame_id(each.link)], each, shape) for each in capsules)
-    ]
-    return tuple(dict.fromkeys(outside))
-
-
-def _holds(frame: pin.Frame, capsule: LinkCapsule, shape: pin.GeometryObject) -> bool:
-    """Test whether a shape lies in a capsule of a link's frame, both fixed to the same joint."""
-    if frame.parentJoint != shape.parentJoint:
-        return False
-    shape.geometry.computeLocalAABB()
-    pose = frame.placement.actInv(shape.placement)
-    a = np.array(capsule.a)
-    axis = np.array(capsule.b) - a
-    points = _corners(shape.geometry) @ pose.rotation.T + pose.translation - a
-    along = np.clip(points @ axis / max(float(axis @ axis), 1e-12), 0.0, 1.0)
-    away = np.linalg.norm(points - along[:, np.newaxis] * axis, axis=1)
-    return bool((away <= capsule.radius + 1e-6).all())
+    watched = {_joint(robot, capsule.link) for capsule in collision_model(robot).capsules}
+    heavy = {joint for joint, body in enumerate(robot.model.inertias) if joint and body.mass > 0.0}
+    links = [frame for frame in robot.model.frames if frame.type == pin.FrameType.BODY]
+    first = {link.parentJoint: link.name for link in reversed(links)}
+    return tuple(first[joint] for joint in sorted(heavy - watched))
 
 
 def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel:
@@ -288,113 +229,74 @@ def _joint(robot: Robot, link: str) -> int:
 
 
 def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
-    """Fit capsules to the <collision> shapes of the URDF, in the frames of their links."""
+    """Fit a capsule to each <collision> shape of the URDF, in the frame of its link.
+
+    Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
+    """
     try:
         shapes = read_shapes(robot, pin.GeometryType.COLLISION, urdf_of(robot))
     except ValueError as error:
         problem = f"a shape cannot be read: {one_line(error)}"
         hint = "; ROS_PACKAGE_PATH names the folder of its packages" * ("package://" in problem)
         raise FileError(file_of(robot), problem + hint) from error
-    by_link: dict[int, list[pin.GeometryObject]] = {}
-    for shape in shapes:
-        by_link.setdefault(shape.parentFrame, []).append(shape)
-    for index, of_link in by_link.items():
-        frame = robot.model.frames[index]
-        placed = [(frame.placement.actInv(each.placement), each.geometry) for each in of_link]
-        found = [(pose, body.radius) for pose, body in placed if isinstance(body, coal.Sphere)]
-        spheres = {(*pose.translation.round(5).tolist(), round(r, 6)) for pose, r in found}
-        bodies = [(pose, body) for pose, body in placed if not isinstance(body, coal.Sphere)]
-        for a, b, radius in _link_capsules(bodies, spheres):
-            yield LinkCapsule(frame.name, checks.vector3("a", a), checks.vector3("b", b), radius)
+    found: dict[str, list[LinkCapsule]] = {}
+    for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
+        frame = robot.model.frames[shape.parentFrame]
+        pose = frame.placement.actInv(shape.placement)
+        a, b, radius = _fit(shape.geometry)
+        ends = [checks.vector3("end", pose.act(end)) for end in (a, b)]
+        fitted = LinkCapsule(frame.name, ends[0], ends[1], radius)
+        of_link = found.setdefault(frame.name, [])
+        if not any(_holds(each, fitted) for each in of_link):
+            of_link.append(fitted)
+    for of_link in found.values():
+        yield from of_link
 
 
-def _link_capsules(
-    bodies: list[tuple[pin.SE3, coal.CollisionGeometry]], spheres: set[Ball]
-) -> Iterator[tuple[checks.Array, checks.Array, float]]:
-    """Fit capsules (end, end, radius) to the spheres of a link and its other bodies.
-
-    A cylinder between two of the spheres is a capsule, the other spheres are capsules of no
-    length, and one capsule holds all other bodies.
-    """
-    alone = set(spheres)
-    points = []
-    for pose, body in bodies:
-        half = body.halfLength if isinstance(body, coal.Cylinder) else 0.0
-        ends = [pose.act(np.array([0.0, 0.0, z])) for z in (-half, half)]
-        caps = [_spheres_at(end, body.radius, spheres) for end in ends] if half else [set()]
-        if all(caps):
-            alone -= caps[0] | caps[1]
-            yield ends[0], ends[1], float(body.radius)
-        else:
-            points.append(_corners(body) @ pose.rotation.T + pose.translation)
-    if points:
-        yield _enclosing_capsule(np.vstack(points))
-    for *middle, radius in sorted(alone):
-        yield np.array(middle), np.array(middle), radius
+def _holds(capsule: LinkCapsule, sphere: LinkCapsule) -> bool:
+    """Test whether a capsule holds another one of the link, which is a sphere, to 0.03 mm."""
+    a = np.array(capsule.a)
+    axis = np.array(capsule.b) - a
+    along = np.clip((np.array(sphere.a) - a) @ axis / max(float(axis @ axis), 1e-12), 0.0, 1.0)
+    away = float(np.linalg.norm(np.array(sphere.a) - a - along * axis))
+    return sphere.a == sphere.b and away + sphere.radius <= capsule.radius + 3e-5
 
 
-def _spheres_at(point: checks.Array, radius: float, spheres: set[Ball]) -> set[Ball]:
-    """Select the spheres of a radius about a point [m]."""
-    return {ball for ball in spheres if np.allclose((*point, radius), ball, atol=3e-5)}
+def _fit(shape: coal.CollisionGeometry) -> tuple[checks.Array, checks.Array, float]:
+    """Fit a capsule around a shape in its own frame [m]; return its ends (3,) and its radius."""
+    if isinstance(shape, coal.Sphere):
+        return np.zeros(3), np.zeros(3), float(shape.radius)
+    if isinstance(shape, coal.Cylinder | coal.Capsule):
+        half = np.array([0.0, 0.0, shape.halfLength])
+        return -half, half, float(shape.radius)
+    if hasattr(shape, "vertices"):
+        return _enclosing_capsule(np.array(shape.vertices(), dtype=np.float64))
+    half_extents = shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3
+    return _enclosing_capsule(Box((0.0, 0.0, 0.0), tuple(half_extents)).points)
 
 
 def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array, float]:
-    """Fit a capsule of small volume around points (k, 3) [m]; return its ends and its radius.
+    """Fit a capsule around points (k, 3) [m] along the principal axis that makes it least.
 
-    The axis begins along each principal direction in turn and is then moved by Nelder and Mead's
-    simplex method; for an axis and a radius the shortest segment is known in closed form, so the
-    capsule holds all points whatever the method reached. The ends of a sphere are equal.
+    For an axis and a radius the shortest segment is known in closed form. The ends of a sphere are
+    equal.
     """
-    from scipy.optimize import minimize  # slow to import
-
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    axes = np.linalg.svd(points - middle, full_matrices=False)[2]
-
-    def volume(x: checks.Array) -> float:
-        a, b, radius = _capsule_along(points, x)
-        return float(np.pi * radius**2 * (np.linalg.norm(b - a) + 4.0 / 3.0 * radius))
-
-    found = []
-    for axis in axes:
-        start = np.concatenate([middle, axis, [1.0]])
-        scale = np.array([0.01, 0.01, 0.01, 0.1, 0.1, 0.1, 0.02])
-        simplex = np.vstack([start, start + np.diag(scale)])
-        options = {"initial_simplex": simplex, "maxfev": 4000, "xatol": 1e-6, "fatol": 1e-9}
-        found.append(minimize(volume, start, (), "Nelder-Mead", options=options))
-    best = min(found, key=lambda result: float(result.fun))
-    return _capsule_along(points, best.x)
-
-
-def _capsule_along(
-    points: checks.Array, x: checks.Array
-) -> tuple[checks.Array, checks.Array, float]:
-    """Capsule along an axis: x holds a point, a direction and the radius over the least one."""
-    origin = x[:3]
-    axis = x[3:6] / np.linalg.norm(x[3:6])
-    along = (points - origin) @ axis
-    across = np.linalg.norm(points - origin - along[:, np.newaxis] * axis, axis=1)
-    radius = float(across.max() * max(x[6], 1.0)) + 1e-9
-    cap = np.sqrt(radius**2 - across**2)
-    low = float((along + cap).min())
-    high = float((along - cap).max())
-    if low > high:  # any point between them is the middle of a sphere that holds all
-        low = high = 0.5 * (low + high)
-    return origin + low * axis, origin + high * axis, radius
-
-
-def _corners(shape: coal.CollisionGeometry) -> checks.Array:
-    """List points whose convex hull holds a shape, (k, 3) [m]."""
-    if isinstance(shape, coal.Cylinder):
-        turns = np.linspace(0.0, 2.0 * np.pi, 64, endpoint=False)
-        rim = shape.radius / np.cos(np.pi / 64) * np.column_stack([np.cos(turns), np.sin(turns)])
-        heights = np.repeat([-shape.halfLength, shape.halfLength], 64)[:, np.newaxis]
-        return np.hstack([np.vstack([rim, rim]), heights])
-    if isinstance(shape, coal.Capsule):
-        return _corners(coal.Cylinder(shape.radius, 2.0 * (shape.halfLength + shape.radius)))
-    if hasattr(shape, "vertices"):
-        return np.array(shape.vertices(), dtype=np.float64)
-    half = shape.halfSide if isinstance(shape, coal.Box) else [shape.aabb_radius] * 3
-    return Box(center=(0.0, 0.0, 0.0), half_extents=tuple(half)).points
+    least = np.inf
+    for axis in np.linalg.svd(points - middle, full_matrices=False)[2]:
+        along = (points - middle) @ axis
+        across = np.linalg.norm(points - middle - along[:, np.newaxis] * axis, axis=1)
+        radius = float(across.max()) + 1e-9
+        cap = np.sqrt(radius**2 - across**2)
+        low = float((along + cap).min())
+        high = float((along - cap).max())
+        if low > high:  # any point between them is the middle of a sphere that holds all
+            low = high = 0.5 * (low + high)
+        volume = radius**2 * (high - low + 4.0 / 3.0 * radius)
+        if volume < least:
+            least = volume
+            best = (middle + low * axis, middle + high * axis, radius)
+    return best
 
 
 def _rounded(point: checks.Vector3) -> list[float]:

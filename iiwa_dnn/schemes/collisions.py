@@ -30,7 +30,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.collision import unwatched_links
+from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
 from iiwa_dnn.schemes.distances import difference, dot, point_of
 from iiwa_dnn.schemes.parts import Limit
@@ -280,7 +280,8 @@ def unwatched_by(scheme: object, robot: Robot) -> tuple[str, ...]:
 def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
     """Return a record's settings ``collisions``: least distance, obstacles, pairs, unwatched links.
 
-    If the scheme does not avoid collisions, there are none.
+    ``left_out`` has the pairs of links that no row watches, each with the reason, as in
+    `CollisionModel`. If the scheme does not avoid collisions, there are none of all these.
     """
     part = avoidance_of(scheme)
     if part is None:
@@ -290,6 +291,7 @@ def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
         "distance": part.distance,
         "obstacles": obstacles,
         "pairs": part.scene(robot).pairs,
+        "left_out": collision_model(robot).left_out if part.self_collision else (),
         "unwatched": unwatched_links(robot),
     }
     return {"collisions": stated}

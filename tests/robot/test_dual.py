@@ -15,7 +15,6 @@ from iiwa_dnn.references import Heart, Line
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.robot import Configuration, load_robot, urdf
-from iiwa_dnn.robot.collision import collision_file, collision_model, make_collision_model
 from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
@@ -108,16 +107,3 @@ def test_a_missing_and_a_nested_include_are_named(tmp_path: Path) -> None:
     inner.write_text(f'<robot name="r">{joint}<include file="outer.urdf"/></robot>')
     with pytest.raises(FileError, match="includes others"):
         load_robot(outer)
-
-
-def test_the_file_of_collisions_is_what_the_urdf_says() -> None:
-    robot = load_robot("iiwa7_dual")
-    kept = collision_model(robot)
-    assert collision_file(robot).exists()
-    made = make_collision_model(robot, samples=200)  # of 10,000 for the file
-    assert [each.link for each in kept.capsules] == [each.link for each in made.capsules]
-    for ours, theirs in zip(kept.capsules, made.capsules, strict=True):
-        found = [*ours.a, *ours.b, ours.radius]
-        np.testing.assert_allclose(found, [*theirs.a, *theirs.b, theirs.radius], atol=2.5e-6)
-    # With fewer postures more pairs seem never to meet; none that meets is left out.
-    assert set(kept.left_out) <= set(made.left_out)
