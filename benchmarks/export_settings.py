@@ -62,7 +62,7 @@ def two_arms() -> Made:
     robot = iiwa_dnn.load_robot("iiwa7_dual")
     q0 = robot.start_posture()
     start = iiwa_dnn.Configuration(robot, q0)
-    tips = [name for name in robot.frame_names if name.endswith("flange")]
+    tips = ["left_iiwa7_flange", "right_iiwa7_flange"]
     base = DoubleIndicator()
     tasks = [replace(task, frame=name) for name in tips for task in base.tasks]
     paths = {name: iiwa_dnn.Heart().anchored(start.frame(name)) for name in tips}

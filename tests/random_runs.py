@@ -173,7 +173,7 @@ def main() -> int:
         worst = max(worst, beyond(record, options(number)["robot"]))
         counts[record.settings["status"].partition(" at ")[0]] += 1
         incidents = compute_metrics(record).get("incidents", {})
-        for name in ("clipped", "fallback", "slow", "relax", "stop"):
+        for name in ("clipped", "slow", "relax", "stop"):
             steps = incidents.get(f"{name}_steps", 0)
             counts[f"steps: {name}"] += steps
             counts[f"runs with a step: {name}"] += steps > 0

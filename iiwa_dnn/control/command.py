@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import types
 
-from iiwa_dnn.control.policies import Action, Resolution
+from iiwa_dnn.control.policies import Action, ProgramKind, Resolution
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
@@ -20,8 +20,10 @@ FIGURES = 5
 """Numbers that judge an answer: iterations, network time, primal and dual residual, gap."""
 PLACEMENT = 12
 """Numbers of a frame's placement, as `Kinematics.placements` has them."""
-DECISION = 3
-"""Numbers of a decision: action, share of the period, status."""
+DECISION = 4
+"""Numbers of a decision: action, share of the period, status, kind of the program."""
+BOUNDS = 2
+"""Rows of the command's bounds: lower and upper ones."""
 PAST = 3
 """Rows of what a program was built at: joint positions, last command and the one before."""
 
@@ -41,8 +43,10 @@ class RowViews(NamedTuple):
         past: Joint positions that the program was built at [rad], last command and the one before
             it [rad/s], (3, dof).
         dq: Command [rad/s], (dof,).
-        decision: Action, share of the period by which the reference's clock advances, and number of
-            the answer's status in `STATUSES`, (3,).
+        decision: Action, share of the period by which the reference's clock advances, number of
+            the answer's status in `STATUSES`, and `ProgramKind` of the program, (4,).
+        bounds: Bounds of the step that the command keeps [rad/s], (2, dof). Those of the program
+            are others where limits of acceleration or jerk hold the command back.
         blocking: Where there is an action: for each variable 1 if its upper bound stood in the way,
             -1 if its lower one did, else 0, and for each inequality row 1 or 0, (n + m,).
         targets: Targets of the tracked frames, (k, 18).
@@ -55,12 +59,15 @@ class RowViews(NamedTuple):
     past: Matrix
     dq: Vector
     decision: Vector
+    bounds: Matrix
     blocking: Vector
     targets: Matrix
 
 
 _V = VECTOR
-ROW_VIEWS = types.BaseTuple.from_types((_V, _V, _V, _V, MATRIX, _V, _V, _V, MATRIX), RowViews)
+ROW_VIEWS = types.BaseTuple.from_types(
+    (_V, _V, _V, _V, MATRIX, _V, _V, MATRIX, _V, MATRIX), RowViews
+)
 """numba's type of `RowViews`, for a `Signature`."""
 
 
@@ -73,7 +80,8 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     at_past = at_placement + PLACEMENT
     at_dq = at_past + PAST * dof
     at_decision = at_dq + dof
-    at_blocking = at_decision + DECISION
+    at_bounds = at_decision + DECISION
+    at_blocking = at_bounds + BOUNDS * dof
     at_targets = at_blocking + n + m
     return RowViews(
         row[:at_point],
@@ -82,7 +90,8 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
         row[at_placement:at_past],
         row[at_past:at_dq].reshape(PAST, dof),
         row[at_dq:at_decision],
-        row[at_decision:at_blocking],
+        row[at_decision:at_bounds],
+        row[at_bounds:at_blocking].reshape(BOUNDS, dof),
         row[at_blocking:at_targets],
         row[at_targets:].reshape((row.size - at_targets) // TARGET_SIZE, TARGET_SIZE),
     )
@@ -114,6 +123,7 @@ class RowLayout:
             "past": PAST * dof,
             "dq": dof,
             "decision": DECISION,
+            "bounds": BOUNDS * dof,
             "blocking": n + m,
             "targets": TARGET_SIZE * frames,
         }
@@ -147,7 +157,9 @@ class RowLayout:
         self.view(row, "program")[:] = qp.data
         self.view(row, "point")[:] = solution.point
         self.view(row, "figures")[:] = figures
-        self.view(row, "decision")[:] = (Action.NONE, 1.0, STATUSES.index(solution.status))
+        status = STATUSES.index(solution.status)
+        self.view(row, "decision")[:] = (Action.NONE, 1.0, status, ProgramKind.OWN)
+        self.view(row, "bounds").reshape(BOUNDS, -1)[:] = (qp.lb[: self.dof], qp.ub[: self.dof])
 
     def bound_multipliers(self, rows: Matrix, tol: float) -> Matrix:
         """Return the multipliers of the joints' active bounds, (..., dof), as `Solution.z_box`.
@@ -174,6 +186,28 @@ class RowLayout:
         G, h = np.split(self.view(rows, "program")[..., at_G:at_A], [m * n], axis=-1)
         values = np.einsum("...ji,...i->...j", G.reshape(*h.shape, n), point[..., :n])
         return _active(point[..., n + p : n + p + m], h - values, tol)
+
+    def excess(self, rows: Matrix) -> Vector:
+        """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
+
+        Of a command that nothing holds back from the answer, the excess over the inequality rows
+        counts too.
+
+        Args:
+            rows: Rows of the commands, (k, width).
+        """
+        n, m, p = self.sizes
+        dq = self.view(rows, "dq")
+        lower, upper = np.split(self.view(rows, "bounds"), 2, axis=1)
+        excess = np.maximum(lower - dq, dq - upper).max(axis=1, initial=0.0)
+        _, at_G, at_A, _ = offsets(n, m, p)
+        G, h = np.split(self.view(rows, "program")[:, at_G:at_A], [m * n], axis=1)
+        values = np.einsum(
+            "kji,ki->kj", G.reshape(len(rows), m, n), self.view(rows, "point")[:, :n]
+        )
+        of_rows = (values - h).max(axis=1, initial=0.0)
+        free = self.view(rows, "decision")[:, 3] < ProgramKind.HELD
+        return np.where(free, np.maximum(excess, of_rows), excess)
 
 
 def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
@@ -217,18 +251,36 @@ class Command:
         if self.action is Action.NONE:
             return None
         n = self._layout.sizes[0]
-        qp = self.qp
         blocking = self._layout.view(self.row, "blocking").astype(np.int8)
         sides = blocking[:n]
         rows = blocking[n:]
         names = self._layout.names
-        against = () if names is None else tuple(names.in_words(qp, sides, rows, self.past))
-        return Resolution(self.action, qp, self.solution, self.fraction, sides, rows, against)
+        against: tuple[str, ...] = ()
+        if names is not None:
+            against = tuple(names.in_words(self.bounds, sides, rows, self.past))
+        return Resolution(self.action, self.qp, self.solution, self.fraction, sides, rows, against)
 
     @property
     def qp(self) -> QP:
-        """The program that was answered."""
+        """The program that was answered; `kind` says how it differs from the step's own."""
         return QP.from_data(self._layout.view(self.row, "program"), self._layout.sizes)
+
+    @property
+    def kind(self) -> ProgramKind:
+        """Kind of the program that was answered."""
+        return ProgramKind(int(self._layout.view(self.row, "decision")[3]))
+
+    @property
+    def bounds(self) -> Matrix:
+        """Lower and upper bounds of the command [rad/s], those of the step, (2, n), a view."""
+        return self._layout.view(self.row, "bounds").reshape(BOUNDS, -1)
+
+    @property
+    def limits(self) -> QP:
+        """The program that was answered, with the bounds of the step: what the command keeps."""
+        qp = QP.from_data(self._layout.view(self.row, "program").copy(), self._layout.sizes)
+        qp.lb[: self.dq.size], qp.ub[: self.dq.size] = self.bounds
+        return qp
 
     @property
     def past(self) -> Matrix:
@@ -247,7 +299,7 @@ class Command:
 
     @property
     def solution(self) -> Solution:
-        """The answer to `qp`: the network's, or the one that a relaxed program led to."""
+        """The network's answer to `qp`; where the command is held back, it is on the way there."""
         layout = self._layout
         iterations, time, *residuals = layout.view(self.row, "figures").tolist()
         point = layout.view(self.row, "point")
@@ -258,10 +310,8 @@ class Command:
     def ok(self) -> bool:
         """True if the command does all that the tasks ask."""
         solution = self.solution
-        return self.action <= Action.FALLBACK and solution.status in (
-            Status.SOLVED,
-            Status.ADVANCED,
-        )
+        solved = solution.status in (Status.SOLVED, Status.ADVANCED)
+        return self.action is Action.NONE and solved
 
     @property
     def limited(self) -> bool:
@@ -273,7 +323,7 @@ class Command:
         found = self.resolution
         if found is None or self._layout.names is None or found.rows.any():
             return False
-        codes = np.abs(self._layout.names.codes(found.qp, found.sides, self.past))
+        codes = np.abs(self._layout.names.codes(self.bounds, found.sides, self.past))
         return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
 
     def __getstate__(self) -> tuple[Any, ...]:
@@ -295,7 +345,6 @@ class Command:
 
 _WORDS = {
     Action.NONE: "solved",
-    Action.FALLBACK: "solved at a second attempt",
     Action.SLOW: "no solution: slower along the path",
     Action.RELAX: "no solution: as near to the task as the limits allow",
     Action.STOP: "no solution: stopped",

@@ -221,7 +221,7 @@ class Controller:
         program.kinematics.update(joints)
         if begin == ANSWER:
             self._write_program(step, row, joints, t)
-        asks = not state.yields and state.halted is None
+        asks = state.halted is None
         network = self._warm_state(step) if asks else None
         if network is not None:
             clock = (t, state.delay)
@@ -258,6 +258,7 @@ class Controller:
         qp = QP.from_data(data, layout.sizes)
         if not asks:
             layout.view(row, "decision")[:] = 0.0  # the network was not asked
+            layout.view(row, "figures")[:] = 0.0
             return self._yield(step, row)
         if self.mode == "converged":
             solution = solver.solve(qp)
@@ -315,9 +316,8 @@ class Controller:
             network,
             step.yielding,
             int(action),
-            state.yields and goes_on,
+            not goes_on,
         )
-        state.yields = goes_on and taken in (Action.SLOW, Action.RELAX, Action.STOP)
         if halted is not None:
             layout.view(row, "blocking")[:] = halted
         return Command(row, layout, Action(taken))

@@ -1,19 +1,19 @@
 r"""Policies for a step whose program has no solution, or one that the network did not find.
 
 A program without a solution asks for a task velocity b that no joint velocity within the limits
-gives. Every policy that goes on replaces b by one that can be had and leaves bounds and inequality
-rows alone, so no limit is relaxed, and the check gets a program of the usual shape:
+gives. A policy that goes on answers a relaxed program (`iiwa_dnn.control.relaxed`), which keeps the
+bounds and the inequality rows. It is handed out, recorded and checked as it was answered
+(`ProgramKind`).
 
 ``slow``
-    :math:`b' = s\,b` with the largest feasible :math:`s \in [0, 1]` (`iiwa_dnn.control.relaxed`).
-    Feedforward and feedback are slowed alike, and the reference's clock has to advance by s dt:
-    then the arm goes along the same path, later. That is for a path: where the reference rests, a
-    direct way has no merit, and the task yields as with ``relax``. So it does where next to nothing
-    of the path can be had, in a singular pose or since a joint outside its limits has to come back;
-    the clock creeps on by a tenth there, so that the path leads out of it.
+    Along a path, the scaled program: the task velocity becomes s b with the largest feasible
+    :math:`s \in [0, 1]`, less a thousandth of it. The reference's clock advances by s dt, so the
+    arm goes along the same path, later. The task is softened where the reference rests, where s is
+    below a tenth, and where the joints race while the tip hardly moves, as in a singular pose.
+    Along a path the clock then advances by the share of the task velocity that is reached, at
+    least by a tenth, so that the path leads out of it.
 ``relax``
-    :math:`b' = A \dot q'` with :math:`\dot q'` the point within the limits that violates the task
-    rows least, damped near singular poses. The clock runs on.
+    The softened program: the task rows are violated least, damped. The clock runs on.
 ``stop``
     No velocity; the run ends.
 
@@ -21,9 +21,9 @@ The multipliers of the relaxed programs name the bounds and rows that stand in t
 asks for more than all joints together can give is followed as far as they can. If the limits
 contradict each other nevertheless, the arm stops.
 
-With limits on acceleration or jerk, ``slow`` and ``relax`` approach the task's velocity on a
-straight line, the clock of ``slow`` by the share of it that is reached, and ``stop`` brakes until
-the arm stands (`iiwa_dnn.control.yielding`).
+With limits on acceleration or jerk the relaxed programs have the bounds of position and velocity
+alone, and the command is a point on the way to their answer, within the bounds of the step;
+``stop`` brakes until the arm stands (`iiwa_dnn.control.yielding`).
 
 Sources: J. M. Hollerbach, "Dynamic scaling of manipulator trajectories", Journal of Dynamic
 Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A. De Luca, O. Khatib,
@@ -49,8 +49,6 @@ class Action(IntEnum):
 
     NONE = 0
     """The network's answer was taken."""
-    FALLBACK = 1
-    """The network did not settle from its last state, but did on the way of a relaxed program."""
     SLOW = 2
     """A part of the task velocity."""
     RELAX = 3
@@ -59,6 +57,22 @@ class Action(IntEnum):
     """No velocity."""
     EULER = 5
     """A later stage of midpoint or RK4 had no solution: an Euler step was taken."""
+
+
+class ProgramKind(IntEnum):
+    """Program of a step that is handed out, recorded and checked; its code in a record."""
+
+    OWN = 0
+    """The step's own, as the scheme builds it."""
+    SCALED = 1
+    """The scaled program, A x = s b (`iiwa_dnn.control.relaxed`)."""
+    SOFTENED = 2
+    """The softened program, with the task in its cost."""
+    HELD = 3
+    """One of these, whose answer the command goes towards: acceleration, jerk or braking hold it
+    back, and it is within the step's own bounds and rows."""
+    STOPPED = 4
+    """The step's own program, which has no answer: the command brakes."""
 
 
 class Resolution(NamedTuple):

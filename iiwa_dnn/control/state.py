@@ -21,12 +21,11 @@ class ControllerState:
         following: The same for the next step, (5, n).
         delay: Time by which the reference's clock is behind [s].
         begun: Whether a first step was taken.
-        yields: Whether the task yielded at the last step, or the arm stopped.
         halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
             step brakes; None: it did not.
     """
 
-    __slots__ = ("begun", "delay", "following", "halted", "past", "yields")
+    __slots__ = ("begun", "delay", "following", "halted", "past")
 
     def __init__(self, dof: int) -> None:
         """Start at rest."""
@@ -39,7 +38,6 @@ class ControllerState:
         """Forget the commands and the clock."""
         self.past[LAST:] = 0.0
         self.delay = 0.0
-        self.yields = False
         self.halted: Vector | None = None
 
     def send(self, dq: Vector) -> None:

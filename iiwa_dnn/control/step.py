@@ -193,6 +193,9 @@ def control_step(
         sample_targets(arrays, t - delay, views.targets)
     if begin <= WRITE:
         assemble(step_views(arrays, past, views.targets, t), arrays, qp)
+    for i in range(dof):
+        views.bounds[0, i] = qp.lb[i]
+        views.bounds[1, i] = qp.ub[i]
     own = constants[table[network, 4] : table[network, 5]]
     address = table[network, 1]
     rates = table[network, 2]
@@ -206,6 +209,7 @@ def control_step(
     views.decision[0] = 0.0
     views.decision[1] = 1.0
     views.decision[2] = status_of(primal, dual, gap, own, state)
+    views.decision[3] = 0.0
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
     if views.decision[2] >= NOT_SETTLED:

@@ -98,12 +98,12 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "systems": _systems(controller),
         "fields": _fields(lengths),
         "past_size": lengths["past"],
-        "size": _DOUBLE * (sum(lengths.values()) + 1),
+        "size": _DOUBLE * sum(lengths.values()),
         "actions": _actions(),
         "policy": _action(controller).value,
         "cold": f"    double cold[{3 * n + m + p}] = {{0}};\n" * (not is_warm),
         "state": "c->state" if is_warm else "cold",
-        "goes_on": str(controller.mode == "converged").lower(),
+        "brakes": str(controller.mode != "converged").lower(),
         "guard": _GUARD * bool(step.yielding.stop),
         "point_size": 2 * n + m + p,
         "active_size": n + m,
@@ -220,7 +220,7 @@ def _translate_step(
     own = [_array("state", lengths["state"]), clock, integer(ANSWER)]
     translator.function(control_step, [row, arrays, _array("q", dof), past, following, *own])
     n, m, p = program.sizes
-    policy = [integer(_action(controller)), Value(BOOL, "yields")]
+    policy = [integer(_action(controller)), Value(BOOL, "brakes")]
     own = [_array("state", 3 * n + m + p), yielding, *policy]
     translator.function(yield_step, [row, arrays, past, following, *own])
     data = _array("data", program.data_size)

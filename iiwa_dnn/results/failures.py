@@ -108,12 +108,7 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
         return []
     first = incidents["first"]
     at = f", the first at step {first['step']} (t = {first['time_s']:.6g} s)"
-    fell_back = first["action"] == "fallback"
     reasons = []
-    if incidents["fallback_steps"]:
-        steps = _count(incidents["fallback_steps"])
-        unsettled = "answered at a second attempt: the network did not settle"
-        reasons.append(f"{steps} {unsettled}{at if fell_back else ''}")
     done = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
     if any(done.values()):
         counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items() if steps)
@@ -122,7 +117,7 @@ def _policies(metrics: Mapping[str, Any], record: Record | None) -> list[str]:
         at += f", against {against}" if against else ""
         often = "most often " if sum(done.values()) > 1 else ""
         reasons.append(
-            f"{steps} without a solution ({counts}){'' if fell_back else at}; "
+            f"{steps} without a solution ({counts}){at}; "
             f"{often}in the way: {_blocking(metrics)}{_far_start(record)}"
         )
     return [*reasons, *_slowed(metrics), *_noise(metrics)]

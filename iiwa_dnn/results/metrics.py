@@ -29,7 +29,7 @@ BOUNDS = "bounds"
 """Name of what judges a command beside its step's own bounds and rows."""
 
 _SLOW, _RELAX, _STOP = 2, 3, 4
-ACTIONS = {1: "fallback", _SLOW: "slow", _RELAX: "relax", _STOP: "stop", 5: "euler"}
+ACTIONS = {_SLOW: "slow", _RELAX: "relax", _STOP: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5

@@ -186,7 +186,8 @@ class Record:
     excess: Annotated[
         FloatArray | None,
         Column(
-            "Largest excess of each command over the bounds and inequality rows of its own step",
+            "Largest excess of each command over the bounds of its own step, and, unless it is "
+            "held back, over its inequality rows",
             ("N",),
         ),
     ] = None

@@ -79,5 +79,7 @@ class ForeignProgram(StepProgram):
         data[:] = qp.data
 
     def settings(self) -> dict[str, object]:
-        """Return what a run's settings say of the scheme's rows: its name."""
-        return {"rows": [], "bounding": [type(self.scheme).__name__]}
+        """Return what a run's settings say of the scheme's rows: its name, and their numbers."""
+        name = type(self.scheme).__name__
+        rows = [{"part": name, "row": j + 1} for j in range(self.sizes[1])]
+        return {"rows": rows, "bounding": [name]}

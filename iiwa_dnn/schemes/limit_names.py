@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.naming import describe, in_the_way
-from iiwa_dnn.qp import QP, Matrix
+from iiwa_dnn.qp import Matrix
 from iiwa_dnn.schemes.motion_limits import joint_bounds
 from iiwa_dnn.schemes.program import StepProgram
 
@@ -34,15 +34,15 @@ class LimitNames:
         if motion is not None:
             self._limits = motion.constants(program.robot).reshape(self._limits.shape)
 
-    def in_words(self, qp: QP, sides: Signs, rows: Signs, past: Matrix) -> list[str]:
+    def in_words(self, bounds: Matrix, sides: Signs, rows: Signs, past: Matrix) -> list[str]:
         """Name bounds and rows of a program; arguments as `codes`, and (m,) not 0 for a row."""
-        return [*map(describe, in_the_way(self._settings, self.codes(qp, sides, past), rows))]
+        return [*map(describe, in_the_way(self._settings, self.codes(bounds, sides, past), rows))]
 
-    def codes(self, qp: QP, sides: Signs, past: Matrix) -> NDArray[np.int8]:
+    def codes(self, bounds: Matrix, sides: Signs, past: Matrix) -> NDArray[np.int8]:
         """Give the bounds on some sides of a program's joints their codes.
 
         Args:
-            qp: The program.
+            bounds: Lower and upper bounds of the joints [rad/s], (2, n).
             sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
             past: Joint positions [rad], last command and the one before [rad/s], (3, n).
 
@@ -51,8 +51,8 @@ class LimitNames:
         """
         found = np.zeros(past.shape[1], np.int8)
         for i in np.flatnonzero(sides[: found.size]):
-            crossed = qp.lb[i] > qp.ub[i]  # such bounds are others' than the robot's
-            value = qp.ub[i] if sides[i] > 0.0 else qp.lb[i]
+            crossed = bounds[0, i] > bounds[1, i]  # such bounds are others' than the robot's
+            value = bounds[1, i] if sides[i] > 0.0 else bounds[0, i]
             sign = 1.0 if sides[i] > 0.0 else -1.0
             kind = POSITION if crossed else bound_kind(value, sign, past, self._limits, i, self._dt)
             found[i] = int(sign) * kind

@@ -130,7 +130,7 @@ class Loop:
         self, k: int, t: float, command: Command, velocity: Vector
     ) -> tuple[Vector, NDArray[np.int8]]:
         """Return a velocity after noise and filter, and the joints that were clipped."""
-        qp = command.qp
+        qp = command.limits
         if self._misled:
             qp = self.controller.program_at(self.q, command.targets, t)
         return self._chain.act(k, velocity, qp, self.controller)

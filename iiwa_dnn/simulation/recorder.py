@@ -98,9 +98,11 @@ class Recorder:
         for name, values in (
             ("bound_multiplier", self.layout.bound_multipliers(first, tol)),
             ("row_multiplier", self.layout.row_multipliers(first, tol)),
+            ("kind", self.layout.view(first, "decision")[:, 3]),
+            ("excess", self.layout.excess(first)),
         ):
             if values.any():
-                self._array(name, m=values.shape[1])[steps] = values
+                self._array(name, m=self.layout.sizes[1])[steps] = values
         tells_kinds = self._controller.program.rate_limits is not None
         for k, outcome in enumerate(outcomes, steps.start):
             self._add_incident(k, outcome)
@@ -170,7 +172,7 @@ class Recorder:
         if resolution is None:
             return
         self._array("fraction")[k] = resolution.fraction
-        blocking = self._names.codes(resolution.qp, resolution.sides, command.past)
+        blocking = self._names.codes(command.bounds, resolution.sides, command.past)
         self._array("blocking")[k] = blocking
         if resolution.rows.any():
             self._array("blocking_rows", m=resolution.rows.size)[k] = resolution.rows
@@ -180,7 +182,8 @@ class Recorder:
         tol = self._controller.solver.tol
         multipliers = self.layout.bound_multipliers(command.row, tol)
         if multipliers.any():
-            kinds = self._names.codes(command.qp, multipliers, command.past)
+            qp = command.qp
+            kinds = self._names.codes(np.array([qp.lb, qp.ub]), multipliers, command.past)
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:

@@ -17,13 +17,12 @@ from iiwa_dnn.qp import QP
 def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
     """What a controller knows of how its network settles."""
     return Yielding(
-        np.zeros(0),
-        np.zeros(0),
-        np.zeros(0),
-        np.array([tol, budget, 1e8]),
-        np.zeros((0, 2), np.int64),
-        1e-3,
-        ANSWER.address(settle),
+        weights=np.zeros(0),
+        limits=np.zeros(0),
+        settings=np.array([tol, budget, 1e8]),
+        scenes=np.zeros((0, 2), np.int64),
+        dt=1e-3,
+        answer=ANSWER.address(settle),
     )
 
 

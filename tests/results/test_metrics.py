@@ -485,17 +485,6 @@ def test_each_kind_of_bound_has_its_own_multipliers():
     ]
 
 
-def test_the_first_step_is_said_of_the_reason_that_it_belongs_to():
-    action = np.array([0, 0, 1, 0, 0, 4, 0, 0, 0, 0])  # a fallback first, then a stop
-    record = make_record(action=action, fraction=np.ones(10))
-    assert failures(record) == [
-        "1 step answered at a second attempt: the network did not settle, the first at step 2 "
-        "(t = 0.2 s)",
-        "1 step without a solution (1 stopped); in the way: no bound, a singular pose",
-        "9 own programs checked, 1 stopped, with nothing to check",
-    ]
-
-
 def test_the_largest_turn_counts_and_time_from_the_first_sample():
     turn = rotation_about([0.0, 0.0, 1.0], np.linspace(0.0, 0.5, 11))
     metrics = compute_metrics(make_record(rotation=turn, t=5.0 + 0.1 * np.arange(11)))

@@ -39,6 +39,11 @@ class Decided(Command):
     def resolution(self) -> Resolution | None:
         return self.decision
 
+    @property
+    def bounds(self) -> np.ndarray:
+        qp = self.qp if self.decision is None else self.decision.qp
+        return np.array([qp.lb, qp.ub])
+
 
 def outcome(resolution: Resolution | None = None, **facts: Any) -> Outcome:
     command = Decided(CONTROLLER.compute(np.array(PAPER_Q0), 0.1).row, CONTROLLER.layout)

@@ -14,8 +14,8 @@
 #define AT_DECISION @at_decision@
 #define AT_DQ @at_dq@
 #define POLICY @policy@
-/* Whether a task that yielded goes on to do so until it has a solution. */
-#define GOES_ON @goes_on@
+/* Whether a network that diverged brings the arm to rest, whatever has a solution. */
+#define BRAKES @brakes@
 #define ANSWER 2
 
 /* The size that the header states. */
@@ -67,7 +67,6 @@ int controller_step(struct controller *c, const double *q, const double *target,
     const struct yielding yielding = controller_yielding();
     const double t = c->steps * CONTROLLER_DT;
     const struct pair clock = {{t, c->delay}};
-    bool solved = false;
     int action = 0;
     kinematics(q, c->jacobian, c->placements@inertia@);
     for (int i = 0; i < 18 * CONTROLLER_FRAMES; i++) {
@@ -77,18 +76,11 @@ int controller_step(struct controller *c, const double *q, const double *target,
         c->past[i] = q[i];
     }
 @move@    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
-    if (c->yields) {
-        for (int i = 0; i < 3; i++) {
-            c->row[AT_DECISION + i] = 0.0;
-        }
-    } else {
-        solved = control_step(c->row, &arrays, q, c->past, c->following, c->state, clock, ANSWER)@guard@;
-    }
+    const bool solved = control_step(
+        c->row, &arrays, q, c->past, c->following, c->state, clock, ANSWER)@guard@;
     if (!solved) {
-@cold@        action = yield_step(c->row, &arrays, c->past, c->following, @state@, &yielding, POLICY,
-            c->yields != 0);
-        c->yields = GOES_ON
-            && (action == CONTROLLER_SLOW || action == CONTROLLER_RELAX || action == CONTROLLER_STOP);
+@cold@        action = yield_step(
+            c->row, &arrays, c->past, c->following, @state@, &yielding, POLICY, BRAKES);
     }
     if (action != 0) {
         c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);

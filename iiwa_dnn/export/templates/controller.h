@@ -22,8 +22,6 @@ extern "C" {
 /* All memory of a controller; its fields are the controller's own. */
 struct controller {
 @fields@
-    int yields;                /* whether the task yielded at the last step */
-    int unused;                /* keeps the size the same everywhere */
 };
 
 /* Begin at rest. */
