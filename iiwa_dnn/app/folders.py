@@ -114,7 +114,7 @@ def _values(options: RunOptions) -> dict[str, Any]:
         if field.name in _NOT_KEPT or value is None or value == ():
             continue
         names_file = field.name in ("robot", "reference") and (
-            os.sep in value or value.endswith((".urdf", ".xacro", ".xml", ".csv"))
+            os.sep in value or value.endswith((".urdf", ".xacro", ".csv"))
         )
         if isinstance(value, Path) or names_file:
             value = str(Path(value).resolve())

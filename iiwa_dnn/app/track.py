@@ -126,9 +126,9 @@ def beyond_data_sheet(options: TrackOptions, q: Matrix) -> str:
 
     Empty if they do not, or if limits were asked for.
     """
-    sheet = load_robot(
-        options.robot, tip=options.tip, locked=options.lock, tool=options.tool or None
-    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it is the robot of the run, which is printed already
+        sheet = load_options(options)
     if options.joint_limit is not None or limited(sheet) is sheet:
         return ""
     problem = sheet.outside(q.max(axis=0)) or sheet.outside(q.min(axis=0))
@@ -315,12 +315,24 @@ def path(options: TrackOptions) -> Reference:
     return make(options)
 
 
+def load_options(options: TrackOptions) -> Robot:
+    """Return the robot that the options name."""
+    return load_robot(
+        options.robot,
+        tip=options.tip,
+        locked=options.lock,
+        tool=options.tool or None,
+        frames=options.frames,
+    )
+
+
 def arm(options: TrackOptions) -> tuple[Robot, Vector]:
     """Return the robot with its limits, and its start posture [rad], (n,)."""
-    robot = load_robot(
-        options.robot, tip=options.tip, locked=options.lock, tool=options.tool or None
-    )
+    robot = load_options(options)
     q0 = robot.start_posture()
+    if not options.q0 and not robot.has_known_start:
+        line = f"no start posture is known of {robot.name!r}: its joints begin near the middle"
+        print(f"{line} of their ranges; --q0 chooses another", file=sys.stderr)
     speed = checks.positive("speed", options.speed) * robot.dq_max
     robot = limited(robot, options.joint_limit).with_limits(velocity=speed)
     if not options.q0:

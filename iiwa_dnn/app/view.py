@@ -46,7 +46,8 @@ def _open(options: ViewOptions) -> Page:
     if not tool:  # else the record's tip may be that tool
         tip = tip or record.settings.get("tip")
     name = options.robot or robot_of(record, kept)
-    robot = load_robot(name, tip=tip, locked=options.lock or kept.get("lock", ()), tool=tool)
+    locked = options.lock or kept.get("lock", ())
+    robot = load_robot(name, tip=tip, locked=locked, tool=tool, frames=kept.get("frames", ()))
     if robot.dof != record.dof:
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, options.robot)

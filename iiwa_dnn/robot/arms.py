@@ -23,14 +23,12 @@ class Arm:
     Attributes:
         file: The URDF's path in the package's folder of robots.
         tip: Frame that follows references.
-        start: Posture away from limits and singular postures [rad], (n,); empty: none is chosen.
-        mobile: Whether the robot stands on a base that moves in the plane.
+        start: Posture away from limits and singular postures [rad], (n,).
     """
 
     file: str
     tip: str
-    start: tuple[float, ...] = ()
-    mobile: bool = False
+    start: tuple[float, ...]
 
     @property
     def path(self) -> Path:
@@ -49,42 +47,82 @@ _TALOS = "talos_data/robots/talos_reduced.urdf"
 _BAXTER = "baxter_description/urdf/baxter.urdf"
 # Stretched farther out, Baxter's motors do not hold its arms: a real one has springs.
 _BENT = (0.0, -1.0, 0.0, 1.9, 0.0, 0.67, 0.0)
-_TIAGO = "tiago_description/robots/tiago.urdf"
-_LIFT_AND_ARM = (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6)
+_WRIST = (0.0, 0.0, 0.0)
+_UR = (
+    0.8699832445515518,
+    -0.8770505783483138,
+    1.8744372978808101,
+    3.6254130429258336,
+    1.3989536049048539,
+    1.1344362167697817,
+)
 
 ARMS = {
     "baxter_left": Arm(_BAXTER, "left_gripper", _BENT),
     "baxter_right": Arm(_BAXTER, "right_gripper", _BENT),
-    "kinova": Arm("kinova_description/robots/kinova.urdf", "j2s6s200_end_effector"),
+    "kinova": Arm(
+        "kinova_description/robots/kinova.urdf",
+        "j2s6s200_end_effector",
+        (
+            3.222700497924974,
+            4.445022339799348,
+            1.5051939052441634,
+            2.7417816865589515,
+            4.653311456404989,
+            3.4472835393894563,
+        ),
+    ),
     "panda": Arm(
         "panda_description/urdf/panda.urdf",
         "panda_hand_tcp",
         (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     ),
-    "talos_left": Arm(_TALOS, "gripper_left_base_link"),
+    "talos_left": Arm(
+        _TALOS,
+        "gripper_left_base_link",
+        (0.0, 0.261799387799, -0.5235987755960001, 1.439896632895, 0.0, -1.178097245095, *_WRIST),
+    ),
     "talos_left_arm": Arm(
         "talos_data/robots/talos_left_arm.urdf",
         "gripper_left_base_link",
         (1.3, -0.9, -1.8, 0.2, -0.3, 0.1),
     ),
-    "talos_right": Arm(_TALOS, "gripper_right_base_link"),
-    "tiago": Arm(_TIAGO, "arm_tool_link", _LIFT_AND_ARM),
-    "tiago_mobile": Arm(_TIAGO, "arm_tool_link", (0.0, 0.0, 0.0, *_LIFT_AND_ARM), mobile=True),
-    "ur3": Arm("ur_description/urdf/ur3_robot.urdf", "tool0"),
+    "talos_right": Arm(
+        _TALOS,
+        "gripper_right_base_link",
+        (0.0, 0.261799387799, 0.5235987755959999, -1.439896632895, 0.0, -1.178097245095, *_WRIST),
+    ),
+    "tiago": Arm(
+        "tiago_description/robots/tiago.urdf",
+        "arm_tool_link",
+        (0.1, 1.8, -0.7, -0.9, 0.8, 0.7, -0.6, -0.6),
+    ),
+    "ur3": Arm("ur_description/urdf/ur3_robot.urdf", "tool0", _UR),
     "ur5": Arm("ur_description/urdf/ur5_robot.urdf", "tool0", (0.0, -1.2, 1.6, -1.97, -1.57, 0.0)),
-    "ur10": Arm("ur_description/urdf/ur10_robot.urdf", "tool0"),
+    "ur10": Arm("ur_description/urdf/ur10_robot.urdf", "tool0", _UR),
     "xarm7": Arm(
         "xarm_description/urdf/xarm7.urdf", "link_eef", (0.0, -0.25, 0.0, 0.9, 0.0, 1.15, 0.0)
     ),
-    "z1": Arm("z1_description/urdf/z1.urdf", "gripperStator"),
+    "z1": Arm(
+        "z1_description/urdf/z1.urdf",
+        "gripperStator",
+        (0.0, 1.4835298641951802, -1.4398966328953218, 0.0, 0.0, 0.0),
+    ),
 }
 """By name; all joints that do not move the tip are held still."""
+
+TIPS = {
+    "fr3": ("link8",),
+    "iiwa7": ("iiwa7_flange",),
+    "iiwa7_dual": ("left_iiwa7_flange", "right_iiwa7_flange"),
+}
+"""Tips of the package's own arms: the first follows references, joints that move one are free."""
 
 STARTS = {
     "iiwa7": (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0),  # the paper's theta(0), section V
     "fr3": (0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785),
     "iiwa7_dual": (0.0, 0.6, 0.0, -1.4, 0.0, 1.1, 0.0) * 2,
-    **{name: arm.start for name, arm in ARMS.items() if arm.start},
+    **{name: arm.start for name, arm in ARMS.items()},
 }
 """Known start postures by the robot's name [rad], each (n,)."""
 

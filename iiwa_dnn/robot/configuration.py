@@ -1,7 +1,5 @@
 """A configuration: joint positions together with the kinematics that belong to them."""
 
-from warnings import warn
-
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
@@ -106,12 +104,6 @@ class Configuration(FrameState):
         data = model.createData()
         jacobian = pin.jacobianCenterOfMass(model, data, self._q)
         return data.com[0].copy(), jacobian.reshape(3, -1)
-
-    @property
-    def centre_of_mass(self) -> tuple[Array, Array]:
-        """Old name of `center_of_mass`, deprecated."""
-        warn("centre_of_mass is now center_of_mass", DeprecationWarning, stacklevel=2)
-        return self.center_of_mass
 
     def frame(self, name: str) -> FrameState:
         """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.

@@ -82,6 +82,8 @@ def robot_from_dh(
         joint = model.addJoint(joint, kind, before, f"joint_{i}")
         model.addJointFrame(joint)
         model.addFrame(pin.Frame(f"link_{i}", joint, behind, pin.FrameType.BODY))
-    unlimited = np.full(len(rows), np.inf)
-    robot = Robot(name, model, f"link_{len(rows)}", -unlimited, unlimited, unlimited)
+    unlimited = np.full((5, len(rows)), np.inf)
+    unlimited[0] = -np.inf
+    ramps = np.array([[0.0], [np.inf]]) * np.ones(len(rows))
+    robot = Robot(name, model, f"link_{len(rows)}", unlimited, ramps)
     return robot.with_limits(lower, upper, velocity)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -15,17 +15,11 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.robot.arms import STARTS
 
-SINGULAR = 0.05
-"""Smallest singular value of the tip's Jacobian below which a posture is no start."""
+_LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
+"""Rows of `Robot.limits`, and the arguments of `Robot.with_limits`."""
 
-_LIMITS = {
-    "q_lower": "lower",
-    "q_upper": "upper",
-    "dq_max": "velocity",
-    "ddq_max": "acceleration",
-    "dddq_max": "jerk",
-}
-"""Limits of a robot, and the arguments of `Robot.with_limits` that set them."""
+_BENT = 0.15
+"""Distance of an unknown arm's start from the middle of its joints, in ranges of the joints."""
 
 
 class Mimic(NamedTuple):
@@ -47,22 +41,18 @@ class Robot:
         name: Name of the robot, from its URDF.
         model: The Pinocchio model; each of its n joints has one coordinate. Treat as read-only.
         tip: Name of the frame that follows references.
-        q_lower: Lower joint position limits [rad], (n,); -inf where there is none.
-        q_upper: Upper joint position limits [rad], (n,); inf where there is none.
-        dq_max: Joint velocity limits [rad/s], (n,); inf where there is none.
-        locked: Names of the URDF's joints that were frozen on loading.
-        path: The URDF file, where the robot came from one; it is read once, on loading.
-        q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
-        ddq_max: Joint acceleration limits [rad/s^2], (n,); inf where there is none.
-        dddq_max: Joint jerk limits [rad/s^3], (n,); inf where there is none.
-        mobile: Whether the first three joints are a mobile base, which the file does not have.
-        mimics: Joints between base and tip that follow others; schemes hold them to it.
-        urdf: Text of the URDF as it was read: includes, xacro and MJCF expanded.
+        limits: Lower and upper joint positions [rad], velocities [rad/s], accelerations
+            [rad/s^2] and jerks [rad/s^3], (5, n); infinite where there is no limit. For compiled
+            code, so not protected; `q_lower` and so on are its rows, read-only.
         ramps: Offset o [rad/s] and deceleration D [rad/s^2] of velocity limits that shrink to
             sqrt(2 D d) - o at a distance d from a position limit, (2, n); D is inf where a joint
             has none.
+        locked: Names of the URDF's joints that were frozen on loading.
+        q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
+        mimics: Joints between base and tip that follow others; schemes hold them to it.
+        path: The URDF file, where the robot came from one; it is read once, on loading.
+        urdf: Text of the URDF as it was read: xacro expanded.
         tip_id: Pinocchio's index of the tip frame.
-        limits: ``q_lower``, ``q_upper``, ``dq_max``, (3, n), for compiled code; not protected.
 
     Raises:
         NotFoundError: If the model has no frame ``tip``.
@@ -72,43 +62,55 @@ class Robot:
     name: str
     model: pin.Model
     tip: str
-    q_lower: checks.Array
-    q_upper: checks.Array
-    dq_max: checks.Array
+    limits: checks.Array
+    ramps: checks.Array
     locked: tuple[str, ...] = ()
-    path: Path | None = None
     q_locked: tuple[float, ...] = ()
-    ddq_max: checks.Array = field(default_factory=lambda: np.array(np.inf))
-    dddq_max: checks.Array = field(default_factory=lambda: np.array(np.inf))
-    mobile: bool = False
     mimics: tuple[Mimic, ...] = ()
+    path: Path | None = None
     urdf: str | None = None
-    ramps: checks.Array = field(default_factory=lambda: np.array([[0.0], [np.inf]]))
     tip_id: int = field(init=False)
-    limits: checks.Array = field(init=False)
 
     def __post_init__(self) -> None:
-        tip_id = self.frame_id(self.tip)
-        if self.model.frames[tip_id].parentJoint == 0:
+        object.__setattr__(self, "tip_id", self.frame_id(self.tip))
+        if self.model.frames[self.tip_id].parentJoint == 0:
             raise InvalidInputError("tip", f"no joint moves frame {self.tip!r}", self.tip)
-        object.__setattr__(self, "tip_id", tip_id)
-        for name in _LIMITS:
-            object.__setattr__(self, name, _limit(name, getattr(self, name), self.dof))
-        ramps: checks.Array = np.array(np.broadcast_to(self.ramps, (2, self.dof)), dtype=float)
-        if not ((ramps[0] >= 0.0) & (ramps[1] > 0.0)).all():
+        if not ((self.ramps[0] >= 0.0) & (self.ramps[1] > 0.0)).all():
             problem = "must have offsets of at least 0 and decelerations above 0"
             raise InvalidInputError("ramps", problem, self.ramps)
-        ramps.setflags(write=False)
-        object.__setattr__(self, "ramps", ramps)
-        object.__setattr__(self, "limits", np.stack([self.q_lower, self.q_upper, self.dq_max]))
-        for i in np.flatnonzero(self.q_lower >= self.q_upper):
-            lower, upper = self.limits[:2, i]
-            problem = f"joint {i + 1}: lower limit {lower:g} is not below upper limit {upper:g}"
-            raise InvalidInputError("q_lower", problem, (self.q_lower, self.q_upper))
-        for name in ("dq_max", "ddq_max", "dddq_max"):
-            limit = getattr(self, name)
-            for i in np.flatnonzero(limit <= 0.0):
-                raise InvalidInputError(name, f"joint {i + 1}: {limit[i]:g} is not above 0", limit)
+        for joint, (lower, upper, *rates) in zip(self.joint_names, self.limits.T, strict=True):
+            if not lower < upper:
+                problem = f"joint {joint!r}: lower limit {lower:g} is not below {upper:g}"
+                raise InvalidInputError("lower", problem, self.limits)
+            for name, rate in zip(_LIMITS[2:], rates, strict=True):
+                if not rate > 0.0:
+                    problem = f"joint {joint!r}: {rate:g} is not above 0"
+                    raise InvalidInputError(name, problem, self.limits)
+
+    @property
+    def q_lower(self) -> checks.Array:
+        """Lower joint position limits [rad], (n,); -inf where there is none."""
+        return checks.read_only(self.limits[0])
+
+    @property
+    def q_upper(self) -> checks.Array:
+        """Upper joint position limits [rad], (n,); inf where there is none."""
+        return checks.read_only(self.limits[1])
+
+    @property
+    def dq_max(self) -> checks.Array:
+        """Joint velocity limits [rad/s], (n,); inf where there is none."""
+        return checks.read_only(self.limits[2])
+
+    @property
+    def ddq_max(self) -> checks.Array:
+        """Joint acceleration limits [rad/s^2], (n,); inf where there is none."""
+        return checks.read_only(self.limits[3])
+
+    @property
+    def dddq_max(self) -> checks.Array:
+        """Joint jerk limits [rad/s^3], (n,); inf where there is none."""
+        return checks.read_only(self.limits[4])
 
     @property
     def dof(self) -> int:
@@ -123,16 +125,7 @@ class Robot:
     @property
     def frame_names(self) -> tuple[str, ...]:
         """Names of all frames, each once: the links, then the joints."""
-        return tuple(self._frame_ids)
-
-    @cached_property
-    def _frame_ids(self) -> dict[str, int]:
-        """Pinocchio's index of each frame: the link's, where a joint has the same name."""
-        frames = list(enumerate(self.model.frames))[1:]
-        ids: dict[str, int] = {}
-        for index, frame in sorted(frames, key=lambda each: each[1].type != pin.FrameType.BODY):
-            ids.setdefault(frame.name, index)
-        return ids
+        return frame_names(self.model)
 
     @cached_property
     def moves(self) -> checks.Array:
@@ -151,10 +144,7 @@ class Robot:
         Raises:
             NotFoundError: If there is no such frame; the error lists those of similar names.
         """
-        index = self._frame_ids.get(str(name))
-        if index is None:
-            raise NotFoundError("frame", str(name), self.frame_names)
-        return index
+        return frame_id(self.model, name)
 
     def with_limits(
         self,
@@ -177,14 +167,16 @@ class Robot:
             InvalidInputError: If a limit is not a number, has a wrong length, is not below its
                 upper counterpart or, for a rate, is not above zero.
         """
-        values = zip(_LIMITS, (lower, upper, velocity, acceleration, jerk), strict=True)
-        changed: dict[str, Any] = {name: value for name, value in values if value is not None}
-        try:
-            return replace(self, **changed)
-        except InvalidInputError as error:
-            crossed = error.argument == "q_lower" and lower is None
-            argument = "upper" if crossed else _LIMITS[error.argument]
-            raise InvalidInputError(argument, error.problem, error.value) from None
+        limits = self.limits.copy()
+        given = (lower, upper, velocity, acceleration, jerk)
+        for name, row, value in zip(_LIMITS, limits, given, strict=True):
+            if value is not None:
+                try:
+                    row[:] = value
+                except (TypeError, ValueError) as error:
+                    problem = f"must be one number or {self.dof}"
+                    raise InvalidInputError(name, problem, value) from error
+        return replace(self, limits=limits)
 
     def outside(self, q: ArrayLike) -> str:
         """Name the first joint of q (n,) [rad] that is off its limits, in words; "" if none is.
@@ -219,29 +211,27 @@ class Robot:
         model.addFrame(pin.Frame(name, tip.parentJoint, self.tip_id, pose, pin.FrameType.OP_FRAME))
         return replace(self, model=model, tip=name)
 
+    @property
+    def has_known_start(self) -> bool:
+        """True if `start_posture` is known of the robot's name and number of joints."""
+        return len(STARTS.get(self.name, ())) == self.dof and not self.mimics
+
     def start_posture(self) -> checks.Array:
-        """Choose joint positions (n,) [rad] to start from, inside the limits and not singular.
+        """Return joint positions (n,) [rad] to start from, inside the limits.
 
-        A robot of a known name and number of joints starts from its known posture
-        (`iiwa_dnn.robot.arms.STARTS`), if that is inside its limits. Any other starts from the
-        middle of its joints' ranges, if the smallest singular value of the tip's Jacobian is at
-        least `SINGULAR` there; else from that of 200 postures, drawn with a fixed seed from the
-        inner 60 % of the ranges, where it is largest. Fewer than six joints are judged by the rows
-        of position. Singular values that are 0 in every posture, as a planar arm has, do not count.
-
-        Source of the criterion: C. A. Klein, B. E. Blaho, "Dexterity measures for the design and
-        control of kinematically redundant manipulators", Int. J. Robotics Research 6(2), 1987. It
-        mixes [m/rad] with [rad/rad] here, and collisions are not considered.
+        If a start is known (`iiwa_dnn.robot.arms.STARTS`), it is that one, but for joints outside
+        their limits there: they start a twentieth of their range inside the nearer limit. The
+        joints of any other robot begin bent to either side in turn, 0.15 of their ranges from the
+        middle, where it may all the same be singular or in a collision.
         """
-        known = np.array(STARTS.get(self.name, ()))
-        fits = known.size == self.dof and not self.mimics
-        if fits and (self.q_lower < known).all() and (known < self.q_upper).all():
-            return known
-        drawn = np.random.default_rng(0).uniform(0.2, 0.8, (200, self.dof))
-        postures = self._inside(np.vstack([np.full(self.dof, 0.5), drawn]))
-        smallest = self._smallest_singular_values(postures)
-        best = 0 if smallest[0] >= SINGULAR else int(smallest.argmax())
-        return np.array(postures[best])
+        if not self.has_known_start:
+            bent = np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT)
+            posture: checks.Array = self._inside(bent[np.newaxis])[0]
+            return posture
+        known = np.array(STARTS[self.name])
+        inside = (self.q_lower < known) & (known < self.q_upper)
+        low, high = self._inside(np.array([[0.05], [0.95]]) * np.ones(self.dof))
+        return np.where(inside, known, np.clip(known, low, high))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
         """Draw joint positions inside the limits, evenly, (count, n) [rad]."""
@@ -263,31 +253,28 @@ class Robot:
             postures[:, j] = np.clip(position, lower[j], upper[j])
         return postures
 
-    def _smallest_singular_values(self, postures: checks.Array) -> checks.Array:
-        """Compute the smallest singular value of the tip's Jacobian in each posture (k, n), (k,).
-
-        If it is 0 in every posture, as a planar arm's is, the next larger one counts; if all are,
-        the result is infinite.
-        """
-        data = self.model.createData()
-        jacobians = [
-            pin.computeFrameJacobian(self.model, data, q, self.tip_id, pin.LOCAL_WORLD_ALIGNED)
-            for q in postures
-        ]
-        rows = 6 if self.dof >= 6 else 3
-        judged = np.reshape(jacobians, (-1, 6, self.dof))[:, :rows]
-        values = np.linalg.svd(judged, compute_uv=False)
-        values = values[:, values.max(axis=0) > 1e-9]
-        smallest: checks.Array = values.min(axis=1, initial=np.inf)
-        return smallest
-
     def __repr__(self) -> str:
         locked = f", locked: {', '.join(self.locked)}" if self.locked else ""
         return f"<Robot {self.name}: {self.dof} joints, tip {self.tip}{locked}>"
 
-    def __reduce__(self) -> tuple[object, ...]:
-        # numpy forgets on pickling that an array is read-only; the constructor does not.
-        return Robot, tuple(getattr(self, f.name) for f in fields(self) if f.init)
+
+def frame_names(model: pin.Model) -> tuple[str, ...]:
+    """List the names of a model's frames, each once: the links, then the joints."""
+    frames = sorted(list(model.frames)[1:], key=lambda each: each.type != pin.FrameType.BODY)
+    return tuple(dict.fromkeys(frame.name for frame in frames))
+
+
+def frame_id(model: pin.Model, name: str) -> int:
+    """Return Pinocchio's index of a frame: the link's, where a joint has the same name.
+
+    Raises:
+        NotFoundError: If there is no such frame; the error lists those of similar names.
+    """
+    found = [i for i, frame in enumerate(model.frames) if i and frame.name == name]
+    if not found:
+        raise NotFoundError("frame", str(name), frame_names(model))
+    links = [i for i in found if model.frames[i].type == pin.FrameType.BODY]
+    return (links or found)[0]
 
 
 def file_of(robot: Robot) -> Path:
@@ -303,15 +290,3 @@ def urdf_of(robot: Robot) -> str:
     if robot.urdf is None:
         raise InvalidInputError("robot", "must be loaded from a URDF file", robot)
     return robot.urdf
-
-
-def _limit(argument: str, value: ArrayLike, size: int) -> checks.Array:
-    """Return one limit per joint, read-only, from a number or one per joint."""
-    try:
-        array = np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), (size,)))
-    except (TypeError, ValueError) as error:
-        raise InvalidInputError(argument, f"must be one number or {size}", value) from error
-    if np.isnan(array).any():
-        raise InvalidInputError(argument, "must not be NaN", value)
-    array.setflags(write=False)
-    return array

@@ -29,7 +29,9 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self._settings = program.settings()
         self._dt = dt
-        self._limits = np.vstack([program.robot.limits, np.full((3, program.robot.dof), np.inf)])
+        self._limits = np.vstack(
+            [program.robot.limits[:3], np.full((3, program.robot.dof), np.inf)]
+        )
         motion = program.rate_limits
         if motion is not None:
             self._limits = motion.constants(program.robot).reshape(self._limits.shape)

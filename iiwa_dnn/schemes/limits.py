@@ -75,5 +75,5 @@ class JointLimits(Limit):
         checks.positive("gain", self.gain)
 
     def constants(self, robot: Robot) -> Vector:
-        """Return the gain and the rows of `Robot.limits` and of `Robot.ramps`, (1 + 5 n,)."""
-        return np.concatenate([[self.gain], robot.limits.ravel(), robot.ramps.ravel()])
+        """Return the gain and the first rows of `Robot.limits`, and `Robot.ramps`, (1 + 5 n,)."""
+        return np.concatenate([[self.gain], robot.limits[:3].ravel(), robot.ramps.ravel()])

@@ -185,7 +185,7 @@ class MotionLimits(Limit):
             row = rates[int(isinstance(limit, JerkLimits))]
             np.minimum(row, limit.of(robot), out=row)
         braking, room = braking_room(robot.ramps, rates[0])
-        lower, upper, fastest = robot.limits
+        lower, upper, fastest = robot.limits[:3]
         rows = [lower + room, upper - room, fastest, *rates, braking]
         constants: Vector = np.concatenate(rows)
         check_ranges(constants, np.inf)

@@ -42,7 +42,7 @@ def odd_robot(folder: Path) -> iiwa_dnn.Robot:
     ]
     path = folder / "odd.urdf"
     path.write_text(f'<robot name="odd">{"".join(links + joints)}</robot>', encoding="utf-8")
-    return iiwa_dnn.load_robot(path, tip="tool")
+    return iiwa_dnn.load_robot(path, tip="tool", frames=["camera"])
 
 
 def compare(robot: iiwa_dnn.Robot, frames: list[str], folder: Path) -> None:

@@ -90,7 +90,7 @@ def test_limits_names_and_pickling() -> None:
     assert (robot.name, robot.tip, robot.dof) == ("six", "link_6", 6)
     assert robot.frame_names[:2] == ("base", "link_1")
     assert robot.joint_names[-1] == "joint_6"
-    np.testing.assert_array_equal(robot.limits, [[-np.inf] * 6, [1, 2, 3, 4, 5, 6], [0.5] * 6])
+    np.testing.assert_array_equal(robot.limits[:3], [[-np.inf] * 6, [1, 2, 3, 4, 5, 6], [0.5] * 6])
     again, q = pickle.loads(pickle.dumps(robot)), np.arange(6.0)
     np.testing.assert_array_equal(Configuration(again, q).pose, Configuration(robot, q).pose)
 

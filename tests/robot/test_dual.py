@@ -1,20 +1,17 @@
-"""Two arms from one URDF, by <include>."""
+"""Two arms in one URDF."""
 
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
-import pytest
 
 from helpers_kinematics import dh_pose
-from iiwa_dnn.errors import FileError
 from iiwa_dnn.references import Heart, Line
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.robot import Configuration, load_robot, urdf
+from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
@@ -33,7 +30,7 @@ COSTS = [KineticEnergy(weight=0.2), CyclicMotion(weight=0.8)]
 
 
 def test_each_arm_is_the_single_one_moved_aside() -> None:
-    robot, single = load_robot("iiwa7_dual", verify=True), load_robot("iiwa7")
+    robot, single = load_robot("iiwa7_dual"), load_robot("iiwa7")
     assert robot.dof == 14
     np.testing.assert_array_equal(robot.q_upper, np.tile(single.q_upper, 2))
     q = np.random.default_rng(5).uniform(-1.0, 1.0, 14)
@@ -83,10 +80,7 @@ def test_two_arms_that_are_driven_into_each_other_do_not_touch() -> None:
     scheme = Scheme(COSTS, tasks, [JointLimits(), CollisionAvoidance(self_collision=True)])
     record = simulate(robot, scheme, paths, start.q, dt=2e-3, duration=1.2)
     assert record.path_completed < 0.9  # the paths yield
-    assert robot.path is not None
-    bodies = pin.buildGeomFromUrdfString(
-        robot.model, urdf.text_of(urdf.read(robot.path)), pin.GeometryType.COLLISION
-    )
+    bodies = pin.buildGeomFromUrdfString(robot.model, robot.urdf, pin.GeometryType.COLLISION)
     names = [body.name for body in bodies.geometryObjects]
     left = [i for i, name in enumerate(names) if name.startswith("left")]
     right = [i for i, name in enumerate(names) if name.startswith("right")]
@@ -96,14 +90,3 @@ def test_two_arms_that_are_driven_into_each_other_do_not_touch() -> None:
     for q in record.q[::20]:
         pin.computeDistances(robot.model, data, bodies, judge, q)
         assert min(result.min_distance for result in judge.distanceResults) > 0.0199
-
-
-def test_a_missing_and_a_nested_include_are_named(tmp_path: Path) -> None:
-    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    outer, inner = tmp_path / "outer.urdf", tmp_path / "inner.urdf"
-    outer.write_text(f'<robot name="r">{joint}<include file="inner.urdf"/></robot>')
-    with pytest.raises(FileError, match=r"inner\.urdf"):
-        load_robot(outer)
-    inner.write_text(f'<robot name="r">{joint}<include file="outer.urdf"/></robot>')
-    with pytest.raises(FileError, match="includes others"):
-        load_robot(outer)

@@ -1,31 +1,22 @@
-"""Robots in xacro and MJCF, on a mobile base, and with meshes."""
+"""Robots in xacro, with meshes, from a Pinocchio model, with joints that do not move the tip."""
 
 from __future__ import annotations
 
 import sys
+import warnings
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
 
-from iiwa_dnn import (
-    Configuration,
-    CrossCheck,
-    DoubleIndicator,
-    Line,
-    compute_metrics,
-    failures,
-    load_robot,
-    simulate,
-)
-from iiwa_dnn.errors import FileError, MissingDependencyError
+import iiwa_dnn as d
+from helpers_kinematics import example_urdf
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.robot.shapes import visual_shapes
 
+FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 XACRO = """<?xml version="1.0"?>
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="three">
   <xacro:property name="length" value="0.3"/>
@@ -43,28 +34,6 @@ XACRO = """<?xml version="1.0"?>
   <xacro:segment n="3" parent="link_2"/>
 </robot>
 """
-MJCF = """<mujoco model="arm">
-  <compiler angle="degree"/>
-  <default> <joint range="-120 120" limited="true"/> </default>
-  <worldbody>
-    <body name="base" pos="0 0 0.1"> <geom type="cylinder" size="0.05 0.1"/>
-      <body name="upper" pos="0 0 0.1" euler="10 0 20">
-        <joint name="yaw" axis="0 0 1"/> <joint name="pitch" axis="0 1 0" pos="0 0.02 0.1"/>
-        <geom type="capsule" fromto="0 0 0 0.3 0 0.2" size="0.04"/>
-        <body name="fore" pos="0.3 0 0.2">
-          <joint name="elbow" axis="0 1 0.1"/>
-          <geom type="box" size="0.1 0.02 0.02" pos="0.1 0 0"/>
-          <body name="hand" pos="0.2 0 0" quat="0.9 0.1 0.2 0.3">
-            <joint name="slide" type="slide" axis="1 0 0" range="0 0.1"/>
-            <geom type="sphere" size="0.03"/>
-          </body>
-        </body>
-      </body>
-    </body>
-  </worldbody>
-  <actuator> <motor joint="elbow" forcerange="-30 30"/> </actuator>
-</mujoco>
-"""
 
 
 def written(folder: Path, name: str, text: str) -> Path:
@@ -74,93 +43,89 @@ def written(folder: Path, name: str, text: str) -> Path:
 
 
 def test_a_xacro_file_is_expanded(tmp_path: Path) -> None:
-    robot = load_robot(str(written(tmp_path, "three.xacro", XACRO)))
+    robot = d.load_robot(str(written(tmp_path, "three.xacro", XACRO)))
     assert robot.joint_names == ("joint_1", "joint_2", "joint_3")
-    reached = Configuration(robot, [0.4, -0.1, 0.0]).position
+    reached = d.Configuration(robot, [0.4, -0.1, 0.0]).position
     bent = 0.3 * np.array([np.cos(0.4) + np.cos(0.3), np.sin(0.4) + np.sin(0.3), 0.0])
     np.testing.assert_allclose(reached, bent, atol=1e-15)
     damaged = written(tmp_path, "damaged.xacro", XACRO.replace("${length if", "${lenght if"))
-    with pytest.raises(FileError, match=r"xacro cannot expand it: .*lenght"):
-        load_robot(damaged)
+    with pytest.raises(d.FileError, match=r"xacro cannot expand it: .*lenght"):
+        d.load_robot(damaged)
 
 
 def test_without_xacro_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xacro", None)
-    with pytest.raises(MissingDependencyError, match="xacro"):
-        load_robot(written(tmp_path, "three.xacro", XACRO))
+    with pytest.raises(d.MissingDependencyError, match="xacro"):
+        d.load_robot(written(tmp_path, "three.xacro", XACRO))
 
 
-def test_an_mjcf_arm_is_the_one_that_mujoco_and_pinocchio_read(tmp_path: Path) -> None:
-    path = written(tmp_path, "arm.xml", MJCF)
-    robot = load_robot(path)
-    assert (robot.tip, robot.joint_names) == ("hand", ("yaw", "pitch", "elbow", "slide"))
-    np.testing.assert_allclose(robot.q_upper, [*[np.radians(120.0)] * 3, 0.1])
-    assert np.isinf(robot.dq_max).all()
-    assert robot.model.effortLimit.tolist() == [0.0, 0.0, 30.0, 0.0]
-    model, other = mujoco.MjModel.from_xml_path(str(path)), pin.buildModelFromMJCF(str(path))
-    physics = compile_model(robot, 1e-3)
-    rng, data, ours = np.random.default_rng(3), mujoco.MjData(model), mujoco.MjData(physics)
-    for q in rng.uniform(robot.q_lower, robot.q_upper, (5, 4)):
-        conf = Configuration(robot, q)
-        data.qpos[:] = ours.qpos[:] = q
-        mujoco.mj_forward(model, data)
-        mujoco.mj_forward(physics, ours)
-        np.testing.assert_allclose(conf.position, data.body("hand").xpos, atol=1e-14)
-        np.testing.assert_allclose(conf.rotation.ravel(), data.body("hand").xmat, atol=1e-14)
-        np.testing.assert_allclose(ours.body("hand").xpos, conf.position, atol=1e-14)
-        # The links of no length between two joints of a body weigh a milligram each.
-        gravity = pin.computeGeneralizedGravity(other, other.createData(), q)
-        np.testing.assert_allclose(data.qfrc_bias, gravity, atol=1e-9)
-        np.testing.assert_allclose(ours.qfrc_bias, gravity, atol=1e-4)
-    assert [shape.kind for shape in visual_shapes(robot)] == [
-        "cylinder",
-        "cylinder",
-        "box",
-        "sphere",
-    ]
+def chain(*links: tuple[str, str]) -> str:
+    """A URDF of revolute joints `j_CHILD` about z, 0.3 m from their parents."""
+    names = dict.fromkeys(name for pair in links for name in pair)
+    text = "".join(f'<link name="{name}"/>' for name in names)
+    for parent, child in links:
+        text += (
+            f'<joint name="j_{child}" type="revolute"><parent link="{parent}"/>'
+            f'<child link="{child}"/><origin xyz="0.3 0 0"/><axis xyz="0 0 1"/>'
+            '<limit lower="-2" upper="2" effort="1" velocity="1"/></joint>'
+        )
+    return f'<robot name="chain">{text}</robot>'
 
 
-@pytest.mark.parametrize(
-    ("change", "problem"),
-    [
-        (
-            ('type="slide" axis="1 0 0" range="0 0.1"', 'type="ball" limited="false" range="0 0"'),
-            "no hinge",
-        ),
-        (('name="yaw"', 'name="yaw" ref="30"'), "begins at"),
-        (('type="sphere"', 'type="sfere"'), "MuJoCo refuses it"),
-    ],
-)
-def test_an_mjcf_file_that_does_not_fit_is_told(
-    change: tuple[str, str], problem: str, tmp_path: Path
-) -> None:
-    with pytest.raises(FileError, match=problem):
-        load_robot(written(tmp_path, "arm.xml", MJCF.replace(*change)))
+def test_a_joint_that_does_not_move_the_tip_is_held_still_and_it_is_said(tmp_path: Path) -> None:
+    path = written(tmp_path, "two.urdf", chain(("base", "a"), ("a", "left"), ("a", "right")))
+    with pytest.raises(d.InvalidInputError, match="several ends: left, right"):
+        d.load_robot(path)
+    with pytest.warns(UserWarning, match="^held still, since they do not move left: j_right at 0$"):
+        robot = d.load_robot(path, tip="left")
+    assert robot.joint_names == ("j_a", "j_left")
+    assert robot.locked == ("j_right",)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # what was asked for is not said
+        assert d.load_robot(path, tip="left", locked="j_right").dof == 2
+        both = d.load_robot(path, tip="left", frames=["right"])
+    assert both.joint_names == ("j_a", "j_left", "j_right")
+    with pytest.raises(d.NotFoundError, match="no frame 'rihgt'"):
+        d.load_robot(path, tip="left", frames=["rihgt"])
 
 
-def test_a_mobile_base_moves_in_the_plane() -> None:
-    fixed, mobile = load_robot("iiwa7"), load_robot("iiwa7", mobile=True)
-    assert mobile.joint_names == ("base_x", "base_y", "base_yaw", *fixed.joint_names)
-    assert np.isinf(mobile.q_upper[:3]).all()
-    assert mobile.dq_max[:3].tolist() == [1.0, 1.0, 1.0]
-    q = np.array(fixed.start_posture())
-    turn = pin.rpy.rpyToMatrix(0.0, 0.0, 0.7)
-    moved, stood = Configuration(mobile, [0.5, -0.3, 0.7, *q]), Configuration(fixed, q)
-    np.testing.assert_allclose(moved.position, turn @ stood.position + [0.5, -0.3, 0.0], atol=1e-14)
-    np.testing.assert_allclose(moved.rotation, turn @ stood.rotation, atol=1e-14)
-    assert compile_model(mobile, 1e-3).nq == 10
-    assert len(visual_shapes(mobile)) == len(visual_shapes(fixed))
+def test_the_fingers_of_a_panda_are_held_still_unless_one_is_the_tip() -> None:
+    path = example_urdf("panda_description/urdf/panda.urdf")
+    with pytest.warns(UserWarning, match="panda_hand_tcp: panda_finger_joint1 at 0, panda_finger"):
+        robot = d.load_robot(path, tip="panda_hand_tcp")
+    assert (robot.name, robot.dof, robot.locked) == ("panda", 7, FINGERS)
+    with pytest.raises(d.InvalidInputError, match=r"several ends: .*panda_hand_tcp") as caught:
+        d.load_robot(path)
+    assert caught.value.argument == "tip"
+    # The finger that the tip's follows leads it, so it stays free although it moves no tip.
+    first, second = FINGERS
+    fingers = d.load_robot(path, tip="panda_rightfinger")
+    assert (fingers.dof, fingers.mimics) == (9, ((second, first, 1.0, 0.0),))
+    with pytest.raises(d.InvalidInputError, match=f"{second!r} follows {first!r}"):
+        d.load_robot(path, tip="panda_rightfinger", locked=[first])
 
 
-def test_base_and_arm_follow_a_path_that_the_arm_alone_does_not_reach() -> None:
-    robot = load_robot("iiwa7", mobile=True)
-    start = Configuration(robot, [0.0, 0.0, 0.0, *load_robot("iiwa7").start_posture()])
-    line = Line(offset=(1.5, 1.0, 0.0), period=10.0).anchored(start)
-    check = CrossCheck(("proxqp",))
-    record = simulate(robot, DoubleIndicator(), line, start.q, dt=5e-3, duration=5.0, check=check)
-    assert failures(record) == []
-    assert compute_metrics(record)["max_position_error_m"] < 1e-3
-    assert np.linalg.norm(record.q[-1, :2]) > 0.5
+@pytest.mark.parametrize("unlimited", [True, False])
+def test_a_pinocchio_model_is_a_robot_too(unlimited: bool) -> None:
+    ours = d.load_robot("iiwa7")
+    model = ours.model.copy()
+    if unlimited:
+        model.upperPositionLimit[2] = np.finfo(float).max  # Pinocchio's own way to say none
+    robot = d.load_robot(model)
+    assert (robot.name, robot.tip, robot.path) == ("iiwa7", "iiwa7_flange", None)
+    q = ours.start_posture()
+    np.testing.assert_array_equal(d.Configuration(robot, q).pose, d.Configuration(ours, q).pose)
+    expected = ours.limits.copy()
+    if unlimited:
+        expected[1, 2] = np.inf
+    np.testing.assert_array_equal(robot.limits, expected)
+    with pytest.warns(UserWarning, match="do not move iiwa7_link_5: iiwa7_joint_6 at 0"):
+        assert d.load_robot(model, tip="iiwa7_link_5").dof == 5
+    arm = pin.buildSampleModelManipulator()
+    reached = d.load_robot(arm, tip="effector_body")
+    np.testing.assert_array_equal(reached.q_upper, arm.upperPositionLimit)
+    with pytest.raises(d.InvalidInputError, match="must come from a URDF file"):
+        visual_shapes(robot)
 
 
 def test_moments_of_inertia_that_no_body_has_are_raised() -> None:
@@ -187,12 +152,12 @@ def test_meshes_are_read_and_missing_ones_are_not_missed(tmp_path: Path) -> None
       <geometry> <mesh filename="package://meshes/corner.stl" scale="0.1 0.1 0.2"/> </geometry>
       </visual> </link> <joint name="joint" type="continuous"> <parent link="base"/>
       <child link="link"/> <origin xyz="0 0 0.4"/> <axis xyz="0 0 1"/> </joint> </robot>"""
-    (shape,) = visual_shapes(load_robot(written(tmp_path, "one.urdf", text)))
+    (shape,) = visual_shapes(d.load_robot(written(tmp_path, "one.urdf", text)))
     assert shape.kind == "mesh"
     assert shape.mesh is not None
     corners, faces = shape.mesh
     assert faces.shape == (4, 3)
     np.testing.assert_allclose(np.ptp(corners[faces].reshape(-1, 3), axis=0), [0.1, 0.1, 0.2])
     missing = text.replace("corner.stl", "nothing.stl")
-    (stick,) = visual_shapes(load_robot(written(tmp_path, "none.urdf", missing)))
+    (stick,) = visual_shapes(d.load_robot(written(tmp_path, "none.urdf", missing)))
     assert stick.kind == "cylinder"
