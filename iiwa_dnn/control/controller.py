@@ -204,10 +204,10 @@ class Controller:
         target: Target | Mapping[str, Target] | None,
     ) -> Command:
         step = self._derived
-        if step is None or step.version != self.solver.version:
+        state = self._state
+        if step is None or step.version != self.solver.version or not state.begun:
             step = self._prepare(q, t, target is None)
         layout = step.layout
-        state = self._state
         joints: Any = q
         if not _is_plain(q, layout.dof):
             joints = checks.finite_array("q", q, (layout.dof,))
@@ -437,13 +437,14 @@ class Controller:
         self._state.reset()
         self._derived = None
 
-    def warm_up(self, q: ArrayLike | None = None, t: float = 0.0) -> None:
+    def warm_up(self, q: ArrayLike | None = None, t: float | None = None) -> None:
         """Compile all that a step needs, so that the first one is as quick as the others.
 
         Args:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
                 has none; None: the first step lays the program out for them, in milliseconds.
-            t: Time of the first step [s].
+            t: Time of the first step [s], at which a warning says where the reference begins; None:
+                the first step warns.
         """
         twin = copy.copy(self)
         twin._state.begun = True  # warnings are for the first step
@@ -460,8 +461,13 @@ class Controller:
             far = {name: Target(at.position + 99.0, at.rotation) for name, at in frames.items()}
             twin.step(home, 0.0, far)
             twin.step(home, 0.0, far)
-        if q is not None:
-            self._prepare(q, t, self.reference is not None)
+        if q is None:
+            return
+        state = self._state
+        begun = state.begun
+        state.begun = begun or t is None
+        self._prepare(q, 0.0 if t is None else t, self.reference is not None)
+        state.begun = begun or t is not None
 
     def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
         """Return the targets of a time of the reference's clock [s], (k, 18), or those given.

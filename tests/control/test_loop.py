@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -110,10 +112,28 @@ def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
     np.testing.assert_array_equal(loop(warm, 30), loop(cold, 30))
     assert warm.control_step is laid_out
     assert cold.control_step is not laid_out
-    with pytest.warns(UserWarning, match="the reference begins"):
-        Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT).warm_up(PAPER_Q0)
     with pytest.raises(InvalidInputError, match=r"^q\b"):
         warm.warm_up(PAPER_Q0[:6])
+
+
+def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
+    """A run that is taken up later begins where the path is then, wherever it began."""
+    controller = Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT)
+    q = np.array(PAPER_Q0)
+    half = round(1.0 / DT)  # 7.6 cm from where the path began
+    for k in range(half):
+        q = q + DT * controller.step(q, k * DT).dq
+    again = Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        again.warm_up(q)
+        again.step(q, half * DT)
+    elsewhere = Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT)
+    elsewhere.warm_up(PAPER_Q0)
+    with pytest.warns(UserWarning, match="the reference begins"):
+        elsewhere.step(PAPER_Q0, 0.0)
+    with pytest.warns(UserWarning, match="the reference begins"):
+        Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT).warm_up(PAPER_Q0, 0.0)
 
 
 def test_a_bad_reading_is_named_and_loses_nothing() -> None:
