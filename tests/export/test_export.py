@@ -17,6 +17,8 @@ import iiwa_dnn
 from benchmarks.export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
+from iiwa_dnn.control.command import RowLayout
+from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
@@ -143,6 +145,8 @@ def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str],
     sampled = []
     given = []
     commands = []
+    rows = []
+    layout = controller.layout
     reaches_limits = name in REACHING
     yields = name.startswith(("without", "yielding", "braking"))
     for k in range(STEPS.get(name, 500)):
@@ -153,6 +157,7 @@ def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str],
         dq, action = exported.step(theirs, targets)
         actions.append((action, command.action))
         commands.append((dq, command.dq))
+        rows.append((np.frombuffer(exported._memory)[: layout.width].copy(), command.row))
         solution = command.solution
         active += bool((np.abs(solution.z_box) > 1e-9).any() or (solution.z > 1e-9).any())
         ours = ours + dt * command.dq
@@ -168,6 +173,25 @@ def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str],
         assert active > 50
     if yields:
         assert len(set(actions)) > 1
+        _check_programs(np.array(rows), layout)
+
+
+def _check_programs(rows: np.ndarray, layout: RowLayout) -> None:
+    """Check that C hands out Python's programs (k, 2, width), and that its commands answer them."""
+    in_c, in_python = rows.swapaxes(0, 1)
+    for name in ("program", "decision", "bounds"):
+        theirs, ours = (layout.view(each, name) for each in (in_c, in_python))
+        np.testing.assert_allclose(theirs, ours, rtol=1e-7, atol=1e-7)
+    kinds = layout.view(in_c, "decision")[:, 3]
+    yielding = in_c[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.HELD)][:100]
+    programs = np.ascontiguousarray(layout.view(yielding, "program"))
+    commands = np.ascontiguousarray(layout.view(yielding, "dq"))
+    if layout.sizes[0] != layout.dof or not len(yielding):
+        return
+    check = iiwa_dnn.CrossCheck(("osqp",))
+    assert (check.check_block(programs, layout.sizes, commands).solution_gap <= 1e-6).all()
+    others = np.random.default_rng(3).uniform(-0.1, 0.1, commands.shape)
+    assert not (check.check_block(programs, layout.sizes, others).solution_gap <= 1e-6).any()
 
 
 @pytest.fixture(scope="module")
