@@ -70,16 +70,12 @@ def two_arms() -> Made:
 
 
 def softly() -> Made:
-    """Return the heart with soft tasks of elbow, posture and centre of mass."""
-    return drawing(
-        with_parts(
-            (
-                iiwa_dnn.ElbowAngleTask(angle=0.3, weight=0.1),
-                iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.1}, weight=0.05),
-                iiwa_dnn.CenterOfMassTask(weight=0.01),
-            )
-        )
+    """Return the heart with soft tasks of a posture and of an axis."""
+    tasks = (
+        iiwa_dnn.PostureTask({"iiwa7_joint_1": 0.1}, weight=0.05),
+        iiwa_dnn.AxisTask(direction=(0.0, 0.0, -1.0), weight=0.01),
     )
+    return drawing(with_parts(tasks))
 
 
 def along_axis() -> Made:

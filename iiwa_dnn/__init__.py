@@ -1,8 +1,6 @@
 """Dynamic neural networks that resolve the redundancy of robot arms, checked at every step."""
 
 from importlib.metadata import version
-from typing import Any
-from warnings import warn
 
 from iiwa_dnn import export as export
 from iiwa_dnn.control.command import Command
@@ -57,13 +55,11 @@ from iiwa_dnn.schemes import (
     AxisTask,
     Box,
     Capsule,
-    CenterOfMassTask,
     CollisionAvoidance,
     ConvexMesh,
     Cost,
     CyclicMotion,
     DoubleIndicator,
-    ElbowAngleTask,
     HalfSpace,
     JerkLimits,
     JointAcceleration,
@@ -95,9 +91,9 @@ __version__ = version("iiwa-dnn")
 
 __all__ = [
     "QP", "AccelerationLimits", "ActivatedNetwork", "AdaptiveRungeKutta", "Agreement", "AxisTask",
-    "BatchSolution", "Box", "Capsule", "CenterOfMassTask", "Circle", "CollisionAvoidance",
+    "BatchSolution", "Box", "Capsule", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
-    "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork", "ElbowAngleTask",
+    "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork",
     "ExplicitEuler", "FileError", "GradientNetwork", "HalfSpace",
     "Heart", "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits",
     "JointAcceleration", "JointCouplingTask", "JointLimits", "JointTorque", "KineticEnergy",
@@ -111,14 +107,3 @@ __all__ = [
     "available_robots", "compute_metrics", "failures", "load_robot", "prove",
     "robot_from_dh", "simulate", "solve_batch", "solve_pose", "solve_problem",
 ]  # fmt: skip
-
-_RENAMED = {"CentreOfMassTask": "CenterOfMassTask", "RemoteCentreTask": "RemoteCenterTask"}
-"""Old public names and the new ones."""
-
-
-def __getattr__(name: str) -> Any:
-    """Return the object of a public name that has changed, with a DeprecationWarning."""
-    if name not in _RENAMED:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    warn(f"iiwa_dnn.{name} is now iiwa_dnn.{_RENAMED[name]}", DeprecationWarning, stacklevel=2)
-    return globals()[_RENAMED[name]]

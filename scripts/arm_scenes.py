@@ -62,7 +62,7 @@ def scene(name, dt):
         place = iiwa_dnn.Target(position, start.frame(frame).rotation)
         references[frame] = iiwa_dnn.Lissajous(**SWING).anchored(place)
     kinds = (iiwa_dnn.PositionTask, iiwa_dnn.OrientationTask)
-    tasks = [task(frame=f, weight=TASK, tracking="next") for f in references for task in kinds]
+    tasks = [task(frame=f, weight=TASK, gain=np.inf) for f in references for task in kinds]
     costs = [iiwa_dnn.CyclicMotion(weight=POSTURE, gain=1 / dt)]
     if centre == "velocity":
         costs = [JointVelocity()]
@@ -70,7 +70,7 @@ def scene(name, dt):
     return (
         robot,
         iiwa_dnn.Scheme(costs, tasks, [iiwa_dnn.JointLimits(gain=0.5 / dt)]),
-        references,
+        {frame: path.ahead(dt) for frame, path in references.items()},
         q0,
     )
 

@@ -22,12 +22,12 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
     scheme = iiwa_dnn.Scheme(
         costs=[iiwa_dnn.KineticEnergy(weight=0.2), iiwa_dnn.CyclicMotion(weight=0.8)],
         tasks=[
-            iiwa_dnn.PositionTask(tracking="next"),
-            iiwa_dnn.RemoteCenterTask(point, tracking="next"),
+            iiwa_dnn.PositionTask(gain=np.inf),
+            iiwa_dnn.RemoteCenterTask(point, gain=np.inf),
         ],
         limits=[iiwa_dnn.JointLimits()],
     )
-    heart = iiwa_dnn.Heart(scale=2e-3, period=duration).anchored(start)
+    heart = iiwa_dnn.Heart(scale=2e-3, period=duration).anchored(start).ahead(dt)
     record = iiwa_dnn.simulate(robot, scheme, heart, START, dt=dt)
     axes = record.rotation[:, :, 2]
     apart = point - record.position

@@ -27,12 +27,11 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
     robot = iiwa_dnn.load_robot("iiwa7_dual")
     q0 = robot.start_posture()
     start = iiwa_dnn.Configuration(robot, q0)
-    hearts = {
-        name: iiwa_dnn.Heart(scale=3e-3).anchored(start.frame(name)) for name in (LEFT, RIGHT)
-    }
+    heart = iiwa_dnn.Heart(scale=3e-3)
+    hearts = {name: heart.anchored(start.frame(name)).ahead(dt) for name in (LEFT, RIGHT)}
 
     poses = [
-        task(frame=name, tracking="next")
+        task(frame=name, gain=np.inf)
         for name in hearts
         for task in (iiwa_dnn.PositionTask, iiwa_dnn.OrientationTask)
     ]
@@ -41,8 +40,8 @@ def main(duration: tyro.conf.Positional[float] = 10.0, dt: tyro.conf.Positional[
     right = metrics["frames"][RIGHT]["max_position_error_m"]
     print(f"two hearts: left {metrics['max_position_error_m']:.3g} m, right {right:.3g} m")
 
-    grasp = iiwa_dnn.RelativePoseTask(RIGHT, base=LEFT, tracking="next")
-    carry = scheme(iiwa_dnn.PoseTask(tracking="next"), grasp)
+    grasp = iiwa_dnn.RelativePoseTask(RIGHT, base=LEFT, gain=np.inf)
+    carry = scheme(iiwa_dnn.PoseTask(gain=np.inf), grasp)
     one = iiwa_dnn.simulate(robot, carry, hearts[LEFT], q0, dt=dt, duration=duration)
     postures = [iiwa_dnn.Configuration(robot, q) for q in one.q[::10]]
     seen = [np.linalg.inv(at.frame(LEFT).pose) @ at.frame(RIGHT).pose for at in postures]

@@ -16,7 +16,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, JointLimits, OrientationTask, Scheme, tasks
+from iiwa_dnn.schemes import DoubleIndicator, JointLimits, OrientationTask, Scheme, block_form
 from iiwa_dnn.simulation import simulate
 
 UNCHECKED = CrossCheck(())
@@ -105,5 +105,5 @@ def block_vector(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
 def block_map(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
     """W(R), (4, 3): the rate of `block_vector` is W(R) times the angular velocity."""
     result = np.empty((4, 3))
-    tasks.block_map(np.ascontiguousarray(rotation), result)
+    block_form.block_map(np.ascontiguousarray(rotation), result)
     return result

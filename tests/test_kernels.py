@@ -5,7 +5,8 @@ import pinocchio as pin
 import pytest
 import scipy.linalg
 
-from iiwa_dnn.schemes import tasks
+from iiwa_dnn.references.rotations import rotation_log
+from iiwa_dnn.schemes.block_form import project_on_range
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-14, 1e-8, 1e-3, 1.0, 2.5, np.pi - 1e-3, np.pi - 1e-7])
@@ -15,7 +16,7 @@ def test_rotation_log_is_pinocchios(angle: float) -> None:
     for axis in axes:
         vector = angle * axis / np.linalg.norm(axis)
         result = np.empty(3)
-        tasks.rotation_log(pin.exp3(vector), result)
+        rotation_log(pin.exp3(vector), result)
         # Near a half turn the angle is known from the matrix to 1e-8 only, by anyone.
         np.testing.assert_allclose(result, vector, rtol=0, atol=1e-13 if angle < 3.0 else 1e-8)
         np.testing.assert_allclose(result, pin.log3(pin.exp3(vector)), rtol=0, atol=1e-7)
@@ -24,7 +25,7 @@ def test_rotation_log_is_pinocchios(angle: float) -> None:
 def test_rotation_log_of_a_half_turn() -> None:
     for axis in np.eye(3):
         result = np.empty(3)
-        tasks.rotation_log(2.0 * np.outer(axis, axis) - np.eye(3), result)
+        rotation_log(2.0 * np.outer(axis, axis) - np.eye(3), result)
         np.testing.assert_allclose(np.abs(result), np.pi * axis, rtol=0, atol=1e-12)
 
 
@@ -36,5 +37,5 @@ def test_projection_on_the_range_is_numpys(rank: int) -> None:
         vector = rng.standard_normal(4)
         basis = scipy.linalg.orth(columns, rcond=1e-9) if rank else np.zeros((4, 1))
         expected = basis @ (basis.T @ vector)
-        tasks.project_on_range(columns, vector)
+        project_on_range(columns, vector)
         np.testing.assert_allclose(vector, expected, rtol=0, atol=1e-10)

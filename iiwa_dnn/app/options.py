@@ -16,7 +16,7 @@ from iiwa_dnn.references import Heart
 from iiwa_dnn.references.turning import TILT
 from iiwa_dnn.references.waypoints import SPEED
 from iiwa_dnn.schemes.costs import Kinetic
-from iiwa_dnn.schemes.parts import Tracking
+from iiwa_dnn.schemes.double_indicator import Tracking
 from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion

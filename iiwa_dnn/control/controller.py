@@ -26,17 +26,17 @@ from iiwa_dnn.control.paths import (
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import LAST, ControllerState, Q
-from iiwa_dnn.control.step import ANSWER, SAMPLE, WRITE, ControlStep
+from iiwa_dnn.control.step import SAMPLE, WRITE, ControlStep
 from iiwa_dnn.control.yielding import guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
-from iiwa_dnn.references import Target
+from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.base import targets_of
-from iiwa_dnn.schemes.foreign import ForeignProgram
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.foreign import composed
+from iiwa_dnn.schemes.program import StepProgram, write_program
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
@@ -215,12 +215,11 @@ class Controller:
         begin = step.begin
         if begin != SAMPLE or target is not None:
             layout.targets(row)[:] = self.targets(t - state.delay, target)
-            begin = max(begin, WRITE)
+            begin = WRITE
         program = step.program
-        program.move(t)
         program.kinematics.update(joints)
-        if begin == ANSWER:
-            self._write_program(step, row, joints, t)
+        if program.refreshed:
+            program.refresh(joints, state.past[LAST], layout.targets(row), t, self.dt)
         asks = state.halted is None
         network = self._warm_state(step) if asks else None
         if network is not None:
@@ -232,14 +231,6 @@ class Controller:
             return self._yield(step, row)
         state.past[Q] = joints
         return self._compute_in_python(step, row, t, begin, asks)
-
-    def _write_program(self, step: ControlStep, row: Vector, q: Vector, t: float) -> None:
-        """Write the program of a step of which Python code writes a part; the row has targets."""
-        layout = step.layout
-        past = self._state.past
-        past[Q] = q
-        data = layout.view(row, "program")
-        step.program.write(data, layout.targets(row), past[: LAST + 2], self.dt, t)
 
     def _compute_in_python(
         self, step: ControlStep, row: Vector, t: float, begin: int, asks: bool
@@ -253,8 +244,7 @@ class Controller:
             layout.targets(row)[:] = self.targets(t - state.delay)
         targets = layout.targets(row)
         data = layout.view(row, "program")
-        if begin != ANSWER:
-            program.write(data, targets, state.past[: LAST + 2], self.dt, t)
+        write_program(data, step.arrays, state.past, targets, float(t))
         qp = QP.from_data(data, layout.sizes)
         if not asks:
             layout.view(row, "decision")[:] = 0.0  # the network was not asked
@@ -344,12 +334,11 @@ class Controller:
         step = self._derived
         if step is None or step.version != self.solver.version:
             duration = 0.0 if self.mode == "converged" else self.dt
-            if getattr(type(self.scheme), "build_qp", None) is Scheme.build_qp:
-                program = self.scheme.program(self.robot)
-            else:
-                program = ForeignProgram(self.robot, self.scheme, self._state.past[Q])
-            references = by_frame(self.reference, self.robot.tip)
-            step = ControlStep(program, references, self.solver, self.dt, duration == 0.0)
+            scheme = self.scheme
+            if getattr(type(scheme), "build_qp", None) is not Scheme.build_qp:
+                scheme = composed(scheme, self.robot, self._state.past[Q])
+            program = scheme.program(self.robot)
+            step = ControlStep(program, self._seen() or {}, self.solver, self.dt, duration == 0.0)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
         return step
@@ -479,12 +468,20 @@ class Controller:
         frames = program.target_frames
         if target is not None:
             return np.array(targets_of(self.robot.tip, frames, target))
-        paths = paths_of(self.reference, self.robot.tip, frames)
-        found = np.array([path.base for path in paths.values()])
-        for (name, path), row in zip(paths.items(), found, strict=True):
-            seen = path.ahead(self.dt) if name in program.ahead else path
-            seen.move(t, row)
+        paths = paths_of(self._seen(), self.robot.tip, frames).values()
+        found = np.array([path.base for path in paths])
+        for path, row in zip(paths, found, strict=True):
+            path.move(t, row)
         return found
+
+    def _seen(self) -> Mapping[str, Reference] | None:
+        """Return the references by frame name, a period ahead if the scheme asks for it."""
+        if self.reference is None:
+            return None
+        given = by_frame(self.reference, self.robot.tip)
+        if not getattr(self.scheme, "ahead", False):
+            return given
+        return {name: path.ahead(self.dt) for name, path in given.items()}
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""
@@ -498,7 +495,6 @@ class Controller:
         past = self._state.past[: LAST + 2].copy()
         past[Q] = q
         data = np.empty(program.data_size)
-        program.move(t)
         program.kinematics.update(q)
         program.write(data, targets, past, self.dt, t)
         return QP.from_data(data, program.sizes)

@@ -86,8 +86,7 @@ def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
     gain = 0.0
     for block in program.blocks:
         if isinstance(block.part, GainTask) and block.part.row_weight > 0.0:
-            _, own, tracks_next = block.part.constants(robot)[:3]
-            gain = max(gain, min(own, rate) if tracks_next else own)
+            gain = max(gain, min(block.part.gain, rate))
     if gain > largest * (1.0 + 1e-9):
         message = (
             f"a gain of {gain:.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with these "

@@ -190,11 +190,10 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     slowed = robot.with_limits(velocity=_STEP)
     if isinstance(avoidance, CollisionAvoidance):
         pairs = len(avoidance.scene(slowed).pairs)
-        limits.append(replace(avoidance, gain=1.0, activation=None, nearest=pairs))
+        limits.append(replace(avoidance, gain=1.0, nearest=pairs))
     program = StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
     for start, _ in program.constants_of(CollisionAvoidance):
         program.constants[start + BRAKED] = 1.0  # nothing moves between two iterations
-    program.move(0.0)
     return program
 
 

@@ -31,6 +31,7 @@ from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
 from iiwa_dnn.qp.layout import compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
+from iiwa_dnn.references.base import Ahead
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.schemes.motion_limits import check_ranges
@@ -83,15 +84,14 @@ class ControlStep:
             converged: Whether the network settles at every step.
         """
         self.program = program
+        self._dt = dt
         self.version = solver.version
         frames = program.target_frames
         names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
         self.samples = self._add_paths(references)
-        self.begin = SAMPLE if self.samples else WRITE
-        if not program.is_compiled:
-            self.begin = ANSWER
+        self.begin = SAMPLE if self.samples and not program.reads_targets else WRITE
         self.arrays = program.arrays(dt)
         if program.rate_limits is not None:
             check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
@@ -122,13 +122,15 @@ class ControlStep:
     def _add_paths(self, references: Mapping[str, Reference]) -> bool:
         """Add an entry for each reference; return whether all of them are compiled."""
         frames = self.program.target_frames
-        paths = [references[name] for name in frames if name in references]
+        seen = [references[name] for name in frames if name in references]
+        paths = [path.along if isinstance(path, Ahead) else path for path in seen]
         if len(paths) < len(frames) or not all(path.compiled for path in paths):
             return False
-        for name, path in zip(frames, paths, strict=True):
+        if any(isinstance(path, Ahead) and path.dt != self._dt for path in seen):
+            return False
+        for path, other in zip(paths, seen, strict=True):
             constants = np.concatenate([path.base, path.constants])
-            ahead = int(name in self.program.ahead)
-            self.program.append(PATH.address(path.compiled), constants, ahead)
+            self.program.append(PATH.address(path.compiled), constants, int(path is not other))
         return True
 
     def _entry(self) -> Any:

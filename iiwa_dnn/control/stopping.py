@@ -35,9 +35,9 @@ from iiwa_dnn.control.relaxed import YIELDING, Yielding
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
 from iiwa_dnn.qp.layout import Triple, compiled
-from iiwa_dnn.schemes.collisions import rate_along
 from iiwa_dnn.schemes.distances import difference, dot, point_of
 from iiwa_dnn.schemes.scene import contact_of, pair_of, place_ends, scene_views
+from iiwa_dnn.schemes.tasks import rate_along
 
 LONGEST = 1e6
 """Periods after which a motion counts as endless."""

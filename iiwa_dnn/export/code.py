@@ -26,7 +26,6 @@ from iiwa_dnn.qp.layout import Sizes, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import prove_point
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.foreign import ForeignProgram
 from iiwa_dnn.schemes.program import StepProgram, write_program
 from iiwa_dnn.schemes.scene import shift_points
 from iiwa_dnn.schemes.step import TARGET_SIZE
@@ -123,13 +122,11 @@ def code_of(controller: Controller) -> dict[str, Any]:
 def check(controller: Controller, step: ControlStep) -> None:
     """Raise an InvalidInputError that names what of a controller is not compiled."""
     program = step.program
-    for block in getattr(program, "numpy_blocks", ()):
-        name = type(block.part).__name__
-        raise InvalidInputError("scheme", f"{name} is written with numpy, which is not exported")
-    if isinstance(program, ForeignProgram):
-        raise InvalidInputError("scheme", "is no Scheme of parts that are compiled")
-    for part, _ in program.moving:
-        _check_motion(part)
+    for block in program.refreshed:
+        if block.part.copies:
+            problem = f"{type(block.part).__name__} is written with numpy, which is not exported"
+            raise InvalidInputError("scheme", problem)
+        _check_motion(block.part)
     network = controller.solver.network
     if type(network).initial_state is not Network.initial_state:
         problem = f"{type(network).__name__} starts from a state of its own, which is not exported"
@@ -158,14 +155,12 @@ def _motions(program: StepProgram) -> list[tuple[int, Vector, Vector]]:
         For each the index of its first point among the constants of all parts, its points at time
         0 [m], (k, 3), and its velocity [m/s], (3,).
     """
-    starts = iter(program.constants_of(CollisionAvoidance))
     found = []
-    for block in program.compiled_blocks:
+    for block in program.blocks:
         if isinstance(block.part, CollisionAvoidance):
-            start, _ = next(starts)
             for obstacle, own in block.part.scene(program.robot).moving:
                 velocity = np.array(obstacle.velocity)
-                found.append((start + own.start, obstacle.points, velocity))
+                found.append((block.start + own.start, obstacle.points, velocity))
     return found
 
 

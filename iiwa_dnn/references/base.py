@@ -137,21 +137,25 @@ class Ahead(Reference):
 
     def __init__(self, along: Reference, dt: float) -> None:
         """Look at a path one period of dt [s] ahead."""
-        self._along = along
-        self._dt = dt
+        self.along = along
+        self.dt = dt
         self.base = along.base
 
     @property
     def period(self) -> float:
         """Time after which the path repeats [s]."""
-        return self._along.period
+        return self.along.period
 
     def move(self, t: float, target: Array) -> None:
         """Take a target to time t [s]; see `Reference.move`."""
         then = target.copy()
-        self._along.move(t, target)
-        self._along.move(t + self._dt, then)
-        set_mean_twist(target, then, self._dt)
+        self.along.move(t, target)
+        self.along.move(t + self.dt, then)
+        set_mean_twist(target, then, self.dt)
+
+    def settings(self) -> dict[str, Any]:
+        """Return those of the path that is seen ahead."""
+        return self.along.settings()
 
 
 def _plain(value: Any) -> Any:

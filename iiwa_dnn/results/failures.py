@@ -220,8 +220,8 @@ def _gain(settings: Mapping[str, Any]) -> float:
     for task in scheme.get("tasks", [scheme]):
         gain = task.get("gain", task.get("position_gain", 0.0))
         if task.get("tracking") == "next":
-            gain = min(task.get("next_gain") or rate, rate)
-        gains.append(float(gain))
+            gain = task.get("next_gain") or rate
+        gains.append(min(float(gain), rate))
     return max(gains)
 
 

@@ -21,15 +21,7 @@ from iiwa_dnn.schemes.double_indicator import (
     DoubleIndicator as DoubleIndicator,
     PseudoInverse as PseudoInverse,
 )
-from iiwa_dnn.schemes.frame_tasks import (
-    AxisTask as AxisTask,
-    PoseTask as PoseTask,
-    RelativePoseTask as RelativePoseTask,
-    RemoteCenterTask as RemoteCenterTask,
-)
 from iiwa_dnn.schemes.joint_tasks import (
-    CenterOfMassTask as CenterOfMassTask,
-    ElbowAngleTask as ElbowAngleTask,
     JointCouplingTask as JointCouplingTask,
     PostureTask as PostureTask,
 )
@@ -40,5 +32,12 @@ from iiwa_dnn.schemes.motion_limits import (
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.step import Step as Step
-from iiwa_dnn.schemes.tasks import OrientationTask as OrientationTask, PositionTask as PositionTask
+from iiwa_dnn.schemes.tasks import (
+    AxisTask as AxisTask,
+    OrientationTask as OrientationTask,
+    PoseTask as PoseTask,
+    PositionTask as PositionTask,
+    RelativePoseTask as RelativePoseTask,
+    RemoteCenterTask as RemoteCenterTask,
+)
 from iiwa_dnn.schemes.tip_speed import TipSpeedLimit as TipSpeedLimit

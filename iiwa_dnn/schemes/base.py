@@ -29,12 +29,15 @@ class Scheme:
         tasks: Equality rows, or soft tasks.
         limits: Bounds and inequality rows.
         slack: Number of slack variables.
+        ahead: Whether a control loop shows it its references one period ahead
+            (`Reference.ahead`).
     """
 
     costs: tuple[Cost, ...]
     tasks: tuple[Task, ...]
     limits: tuple[Limit, ...]
     slack: int = 0
+    ahead: bool = False
 
     def __init__(
         self,
@@ -106,8 +109,7 @@ class Scheme:
         Args:
             conf: Configuration of the robot, n joints.
             target: Target of the tip; with tasks of other frames, a target by frame name.
-            dt: Control period [s], which tasks that track the next target need; `target` is then
-                one of `Reference.ahead`.
+            dt: Control period [s], which a gain of inf stands for.
             dq: Joint velocities [rad/s], (n,), or the last command; None: zero.
 
         Returns:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Any
 
@@ -28,7 +28,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import Triple, compiled
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
@@ -45,7 +45,8 @@ from iiwa_dnn.schemes.scene import (
     place_ends,
     scene_views,
 )
-from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.step import Step, StepViews
+from iiwa_dnn.schemes.tasks import rate_along
 
 
 @compiled
@@ -113,19 +114,6 @@ def _write_gradient(
 
 
 @compiled
-def rate_along(jacobian: Matrix, j: int, point: Triple, normal: Triple) -> float:
-    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad]."""
-    x, y, z = point
-    wx = jacobian[j, 3]
-    wy = jacobian[j, 4]
-    wz = jacobian[j, 5]
-    value: float = normal[0] * (jacobian[j, 0] + wy * z - wz * y)
-    value += normal[1] * (jacobian[j, 1] + wz * x - wx * z)
-    value += normal[2] * (jacobian[j, 2] + wx * y - wy * x)
-    return value
-
-
-@compiled
 def _taken_distance(pair: PairConstants, contact: Contact, ends: Matrix, dt: float) -> float:
     """Bound the distance of a pair that a step of dt [s] can take although its row holds [m]."""
     speed = pair.speed
@@ -149,18 +137,13 @@ def _taken_distance(pair: PairConstants, contact: Contact, ends: Matrix, dt: flo
 def _approach_limit(
     damper: Damper, pair: PairConstants, contact: Contact, taken: float, rate: float
 ) -> float:
-    """Limit the rate at which a pair's distance may shrink [m/s]; inf if the row is idle."""
-    strays = pair.obstacle_speed
+    """Limit the rate at which a pair's distance may shrink [m/s]."""
     gain = min(damper.gain, rate)
     slack = contact.distance - damper.least - taken
     approach = gain * slack
     if slack < 0.0 and rate < np.inf:
         approach = rate * max(slack, -taken) + gain * min(slack + taken, 0.0)
-    # Idle from the activation on, but never where one step could reach the least distance.
-    idle = max(damper.activation, damper.least + taken + 1.0 / rate * (pair.speed + strays))
-    if damper.activation > 0.0 and contact.distance > idle:
-        return np.inf
-    return approach - strays
+    return approach - pair.obstacle_speed
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +159,6 @@ class CollisionAvoidance(Limit):
         obstacles: The obstacles.
         self_collision: Whether pairs of links are watched too.
         distance: Least distance [m], above 0.
-        activation: Distance from which on a row is idle [m]; None: where no velocity within the
-            limits could break it, so that a row becomes active without a jump.
         gain: Largest rate at which a distance shrinks towards `distance` [1/s], above 0.
         nearest: Most rows; with more pairs, those that are nearest to being active have them.
     """
@@ -186,11 +167,8 @@ class CollisionAvoidance(Limit):
     obstacles: Sequence[Obstacle] = ()
     self_collision: bool = True
     distance: float = 0.02
-    activation: float | None = None
     gain: float = 20.0
     nearest: int = 24
-    moves: bool = field(default=False, init=False, repr=False)
-    elastic: bool = field(default=True, init=False, repr=False)
 
     def __post_init__(self) -> None:
         one = isinstance(self.obstacles, Obstacle) or not isinstance(self.obstacles, Iterable)
@@ -200,13 +178,9 @@ class CollisionAvoidance(Limit):
                 problem = f"number {number} must be a Sphere, Capsule, Box, ConvexMesh or HalfSpace"
                 raise InvalidInputError("obstacles", f"{problem}, not {obstacle!r}", obstacle)
         self._set(obstacles=obstacles)
-        self._set(moves=any(obstacle.moves for obstacle in self.obstacles))
         checks.positive("distance", self.distance)
         checks.positive("gain", self.gain)
         checks.integer("nearest", self.nearest, 1)
-        if self.activation is not None and not self.activation > self.distance:
-            problem = f"must be above the distance of {self.distance:g} m"
-            raise InvalidInputError("activation", problem, self.activation)
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> CollisionAvoidance:
@@ -235,7 +209,7 @@ class CollisionAvoidance(Limit):
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:
         """Return bodies and pairs for a robot; raises what `make_scene` does."""
-        damper = Damper(self.distance, self.gain, self.activation or 0.0)
+        damper = Damper(self.distance, self.gain)
         return make_scene(robot, self.obstacles, self.self_collision, damper)
 
     def row_count(self, robot: Robot) -> int:
@@ -256,9 +230,14 @@ class CollisionAvoidance(Limit):
         """Return `Scene.constants`, (k,)."""
         return self.scene(robot).constants
 
-    def move(self, robot: Robot, constants: Vector, t: float) -> None:
-        """Put the moving obstacles where they are at a time [s]."""
-        self.scene(robot).move(constants, t)
+    @property
+    def refreshes(self) -> bool:
+        """Test whether an obstacle moves."""
+        return any(obstacle.moves for obstacle in self.obstacles)
+
+    def refresh(self, step: Step, constants: Vector) -> None:
+        """Put the moving obstacles where they are at a step's time."""
+        self.scene(step.robot).move(constants, step.t)
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""

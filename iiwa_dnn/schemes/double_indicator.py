@@ -19,7 +19,7 @@ alone. Source: equations (6) and (7) of the paper.
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, fields, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -31,8 +31,11 @@ from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import KINETICS, CyclicMotion, Kinetic, KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.parts import Limit, Tracking
+from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
+
+Tracking = Literal["paper", "next"]
+TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
 
 RANK_TOLERANCE = 1e-10
 """Singular values below this share of the largest count as zero: the block's rows are dependent."""
@@ -55,8 +58,8 @@ class DoubleIndicator(Scheme):
             `simulate` and `Controller` anchor it where they begin.
         extra_limits: Limits beside the joints' positions and velocities, for example
             `AccelerationLimits` and `JerkLimits`.
-        tracking: ``"paper"``, or ``"next"``: rows towards the next target
-            (`iiwa_dnn.schemes.tasks`), in place of the two gains.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target, `next_gain` in place of
+            the two gains (`iiwa_dnn.schemes.tasks`).
         next_gain: Gain of ``"next"`` [1/s]; None stands for 1 / dt.
     """
 
@@ -72,6 +75,11 @@ class DoubleIndicator(Scheme):
     tracking: Tracking = "paper"
     next_gain: float | None = None
 
+    @property
+    def ahead(self) -> bool:  # type: ignore[override]
+        """Test whether the rows ask for the next target."""
+        return self.tracking == "next"
+
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
@@ -80,12 +88,18 @@ class DoubleIndicator(Scheme):
         for name in ("drift_gain", "position_gain", "orientation_gain"):
             checks.not_negative(name, getattr(self, name))
         checks.positive("limit_gain", self.limit_gain)
+        checks.one_of("tracking", self.tracking, TRACKINGS)
+        if self.next_gain is not None:
+            checks.not_negative("next_gain", self.next_gain)
         cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
         if isinstance(self.extra_limits, Limit):
             problem = f"must be a tuple of limits, not {self.extra_limits!r}"
             raise InvalidInputError("extra_limits", problem, self.extra_limits)
-        tasks = tip_tasks(self)
+        gains = (self.position_gain, self.orientation_gain)
+        if self.ahead:
+            gains = (np.inf if self.next_gain is None else self.next_gain,) * 2
+        tasks = tip_tasks(*gains, self.orientation)
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)
@@ -117,21 +131,18 @@ class PseudoInverse(Scheme):
         position_gain: Feedback gain [1/s].
         orientation_gain: Feedback gain [1/s].
         orientation: ``"so3"``, ``"block"`` or ``"none"``.
-        tracking: ``"paper"``, or ``"next"``: rows towards the next target.
-        next_gain: Gain of ``"next"`` [1/s]; None stands for 1 / dt.
     """
 
     position_gain: float = 10.2
     orientation_gain: float = 10.2
     orientation: Orientation = "so3"
-    tracking: Tracking = "paper"
-    next_gain: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("position_gain", "orientation_gain"):
             checks.not_negative(name, getattr(self, name))
         checks.one_of("orientation", self.orientation, ORIENTATIONS)
-        self._compose([KineticEnergy()], tip_tasks(self), [])
+        tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
+        self._compose([KineticEnergy()], tasks, [])
 
     def velocity(self, conf: Configuration, target: Target) -> Vector:
         """Compute the closed form A^+ b [rad/s], (n,), by numpy's singular value decomposition."""
@@ -144,11 +155,11 @@ class PseudoInverse(Scheme):
         return {"name": "pseudo-inverse", **asdict(self)}
 
 
-def tip_tasks(scheme: DoubleIndicator | PseudoInverse) -> list[PositionTask | OrientationTask]:
+def tip_tasks(
+    position_gain: float, orientation_gain: float, orientation: Orientation
+) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
-    how: dict[str, Any] = {"tracking": scheme.tracking, "next_gain": scheme.next_gain}
-    position = PositionTask(gain=scheme.position_gain, **how)
-    if scheme.orientation == "none":
+    position = PositionTask(gain=position_gain)
+    if orientation == "none":
         return [position]
-    form = scheme.orientation
-    return [position, OrientationTask(gain=scheme.orientation_gain, form=form, **how)]
+    return [position, OrientationTask(gain=orientation_gain, form=orientation)]

@@ -1,85 +1,88 @@
-"""The step program of a scheme that is any object with a `build_qp` of its own."""
+"""Schemes that are any object with a `build_qp` of its own, as parts that copy its programs."""
 
 from typing import Any
-
-import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.base import Scheme
+from iiwa_dnn.schemes.parts import Cost, Limit, Task
+from iiwa_dnn.schemes.step import Step
 
 
-class ForeignProgram(StepProgram):
-    """A scheme that builds its programs in its own way, behind the methods of a `StepProgram`."""
+class _Builder:
+    """Programs of an object with `build_qp`, one for each step."""
 
-    def __init__(self, robot: Robot, scheme: Any, q: Vector) -> None:
-        """Ask the scheme for one program, at joint positions q (n,) [rad], to know its sizes.
+    def __init__(self, scheme: Any) -> None:
+        self._scheme = scheme
+        self._step: Step | None = None
+        self._qp: QP
 
-        Raises:
-            InvalidInputError: The program has another number of variables than the scheme states.
-        """
-        self.robot = robot
-        self.scheme = scheme
-        self.target_frames = (robot.tip,)
-        self.blocks = ()
-        self.kinematics = Kinematics(robot)
-        conf = Configuration(robot, q)
-        qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
-        self.sizes = checks.instance("build_qp", qp, QP).sizes
-        slack = getattr(scheme, "slack", 0)
-        n = self.sizes[0]
-        if n != robot.dof + slack:
-            problem = f"built a program in {n} variables for {robot.dof} joints and {slack} slacks"
-            raise InvalidInputError("scheme", problem, scheme)
-        self._encode()
+    def program(self, step: Step) -> QP:
+        if step is not self._step:
+            self._qp = self._scheme.build_qp(Configuration(step.robot, step.q), step.target())
+            self._step = step
+        return self._qp
 
-    is_compiled = False
-    ahead = frozenset()
-    rate_limits = None
 
-    @property
-    def row_weights(self) -> Vector:
-        """Weight of each equality row where a policy lets the tasks yield, (p,): all alike."""
-        return np.ones(self.sizes[2])
+class BuiltCost(Cost):
+    """Cost of the programs that an object builds."""
 
-    @property
-    def elastic(self) -> Vector:
-        """1 for each inequality row of an elastic limit, (m,): none is."""
-        return np.zeros(self.sizes[1])
+    def __init__(self, builder: _Builder) -> None:
+        self._builder = builder
 
-    def write(
-        self,
-        data: Vector,
-        targets: Matrix,
-        past: Matrix,
-        dt: float,
-        t: float = 0.0,
-    ) -> None:
-        """Write the whole program of one step.
+    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return P (n, n) and q (n,)."""
+        qp = self._builder.program(step)
+        return qp.P, qp.q
 
-        Args:
-            data: The program, `QP.data`, (size,), overwritten.
-            targets: Target of the tip, (1, 18).
-            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
-            dt: Control period [s].
-            t: Time [s].
 
-        Raises:
-            InvalidInputError: The program has other sizes than the first one.
-        """
-        conf = Configuration(self.robot, past[0])
-        qp = self.scheme.build_qp(conf, Target.from_data(targets[0]))
-        if qp.sizes != self.sizes:
-            problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
-            raise InvalidInputError("scheme", problem)
-        data[:] = qp.data
+class BuiltRows(Task):
+    """Equality rows of the programs that an object builds."""
 
-    def settings(self) -> dict[str, object]:
-        """Return what a run's settings say of the scheme's rows: its name, and their numbers."""
-        name = type(self.scheme).__name__
-        rows = [{"part": name, "row": j + 1} for j in range(self.sizes[1])]
-        return {"rows": rows, "bounding": [name]}
+    def __init__(self, builder: _Builder, rows: int) -> None:
+        self._builder = builder
+        self.rows = rows
+
+    def equations(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return A (rows, n) and b (rows,)."""
+        qp = self._builder.program(step)
+        return qp.A, qp.b
+
+
+class BuiltLimits(Limit):
+    """Inequality rows and bounds of the programs that an object builds."""
+
+    def __init__(self, builder: _Builder, rows: int) -> None:
+        self._builder = builder
+        self.rows = rows
+
+    def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
+        """Return G (rows, n) and h (rows,)."""
+        qp = self._builder.program(step)
+        return qp.G, qp.h
+
+    def bounds(self, step: Step) -> tuple[Vector, Vector]:
+        """Return lb (n,) and ub (n,)."""
+        qp = self._builder.program(step)
+        return qp.lb, qp.ub
+
+
+def composed(scheme: Any, robot: Robot, q: Vector) -> Scheme:
+    """Compose the scheme of an object with `build_qp`, from its program at joint positions q (n,).
+
+    Raises:
+        InvalidInputError: The program has another number of variables than the object states.
+    """
+    conf = Configuration(robot, q)
+    qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
+    n, m, p = checks.instance("build_qp", qp, QP).sizes
+    slack = getattr(scheme, "slack", 0)
+    if n != robot.dof + slack:
+        problem = f"built a program in {n} variables for {robot.dof} joints and {slack} slacks"
+        raise InvalidInputError("scheme", problem, scheme)
+    builder = _Builder(scheme)
+    limits = [BuiltLimits(builder, m)]
+    return Scheme([BuiltCost(builder)], [BuiltRows(builder, p)], limits, slack)

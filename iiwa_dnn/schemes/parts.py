@@ -1,8 +1,7 @@
 """Parts of a program: costs, tasks and limits, each a block of rows.
 
 A part names the compiled function that writes its rows, its `kernel`, and gives the constants which
-that function reads; or it overrides one method, written with numpy. All kernels of a kind have one
-signature:
+that function reads. All kernels of a kind have one signature:
 
     cost   kernel(step, constants, P, q)                adds to P (n, n) and q (n,)
     task   kernel(step, constants, target, A, b)        writes A (rows, n) and b (rows,)
@@ -11,23 +10,26 @@ signature:
 
 `step` is a `StepViews`, `target` (18,) the `Target.data` of the frame that the task tracks. The
 rows come in as zeros, h as zeros, and n counts the joints and then the scheme's slack variables.
+
+A part may override a method in numpy instead. It is asked before each step, and the kernel of its
+kind copies the answer, which are its constants.
 """
 
+import math
 from dataclasses import fields
-from typing import Any, ClassVar, Literal, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numba import types
 
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import Signature
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
-
-Tracking = Literal["paper", "next"]
-TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
 
 V = types.float64[::1]
 M = types.float64[:, ::1]
@@ -36,6 +38,15 @@ STEP_TYPE = types.NamedTuple((types.float64, types.float64, V, V, V, M, M, M, M,
 COST = Signature(types.void, STEP_TYPE, V, M, V)
 TASK = Signature(types.void, STEP_TYPE, V, V, M, V)
 LIMIT = Signature(types.void, STEP_TYPE, V, M, V, V, V)
+
+_IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
+"""Infinite values that an answer may hold, by its name."""
+
+_UNBOUNDED = {"lb": -np.inf, "ub": np.inf}
+"""Values of variables that an answer leaves out, by its name; others are zero."""
+
+_ROUNDING = 1e-9
+"""Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
 
 
 class Part:
@@ -46,17 +57,26 @@ class Part:
     Attributes:
         kernel: Compiled function that writes the rows; None for a part written with numpy.
         rows: Number of rows; none for a cost.
+        copies: Whether methods in numpy give the rows; set by each class that has such a method,
+            or a kernel.
+        signature: Types of the kernels of this kind.
+        copy: Kernel that copies the answers of those methods.
     """
 
     kernel: Any = None
     rows: int = 0
-    _plain: ClassVar[tuple[str, ...]] = ()  # methods that the kernel stands in for
+    copies: ClassVar[bool] = False
+    signature: Signature
+    copy: Any
+    _methods: ClassVar[dict[str, tuple[str, str]]] = {}
 
-    @property
-    def is_compiled(self) -> bool:
-        """Test whether the kernel writes the rows; a subclass's own numpy method goes first."""
-        inherited = (_owner(type(self), name) in _KINDS for name in self._plain)
-        return self.kernel is not None and all(inherited)
+    def __init_subclass__(cls, **options: Any) -> None:
+        """Note whether the class gives its rows by methods in numpy or by a kernel."""
+        super().__init_subclass__(**options)
+        if any(name in vars(cls) for name in cls._methods):
+            cls.copies = True
+        elif "kernel" in vars(cls):
+            cls.copies = False
 
     def constants(self, robot: Robot) -> Vector:
         """Return the numbers that the kernel reads, (k,).
@@ -65,6 +85,17 @@ class Part:
             InvalidInputError: A parameter does not fit the robot.
         """
         return np.zeros(0)
+
+    def refresh(self, step: Step, constants: Vector) -> None:
+        """Bring the constants of the kernel, (k,), up to date before a step."""
+
+    @property
+    def refreshes(self) -> bool:
+        """Test whether constants of the kernel change along a run."""
+        return self.copies or type(self).refresh is not Part.refresh
+
+    def _check(self, arrays: dict[str, Matrix]) -> None:
+        """Raise InvalidInputError unless the arrays of an answer go together."""
 
     def frame_name(self, robot: Robot) -> str:
         """Return the name of the frame that the part is about, the tip's by default."""
@@ -94,16 +125,118 @@ class Part:
         names = [field.name for field in parts if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
-    def _kernel_or_raise(self, method: str) -> Any:
+    def _evaluated(self, step: Step, *names: str) -> list[Matrix]:
+        """Return the arrays that the kernel writes at an instant."""
         if self.kernel is None:
-            raise TypeError(f"{type(self).__name__} has no kernel and does not override {method}")
-        return self.kernel
+            methods = " or ".join(self._methods)
+            raise TypeError(f"{type(self).__name__} has no kernel and does not override {methods}")
+        robot = step.robot
+        constants = self.constants(robot).copy()
+        self.refresh(step, constants)
+        views = step.views(self.frame_name(robot))
+        sizes = (robot.dof, self.row_count(robot))
+        arrays = [np.full(_shape(name, *sizes), _UNBOUNDED.get(name, 0.0)) for name in names]
+        targets = [views.targets[0]] if isinstance(self, Task) else []
+        self.kernel(views, constants, *targets, *arrays)
+        return arrays
+
+
+def answer_size(part: Part, n: int, rows: int) -> int:
+    """Return the length of `answer_of`."""
+    names = [name for pair in part._methods.values() for name in pair]
+    return sum(math.prod(_shape(name, n, rows)) for name in names)
+
+
+def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
+    """Return what a part's methods in numpy answer, as the kernel `copy` reads it, (k,).
+
+    Args:
+        part: The part.
+        step: The instant that they are asked about.
+        n: Number of the scheme's variables; an answer may leave the slack variables out.
+        rows: Number of the part's rows.
+
+    Raises:
+        InvalidInputError: An answer is no pair of arrays, has a wrong shape, is not finite
+            where it has to be, is a P that is not convex, or bounds that cross.
+    """
+    arrays: dict[str, Matrix] = {}
+    for method, names in part._methods.items():
+        arrays |= _checked(part, getattr(part, method)(step), names, step, (n, rows))
+    part._check(arrays)
+    return np.concatenate([array.ravel() for array in arrays.values()])
+
+
+def _checked(
+    part: Part, answer: Any, names: tuple[str, str], step: Step, sizes: tuple[int, int]
+) -> dict[str, Matrix]:
+    """Return both arrays of an answer by name, with all n variables; sizes are (n, rows)."""
+    try:
+        pair = [np.atleast_1d(np.asarray(x, dtype=np.float64)) for x in answer]
+        given = dict(zip(names, pair, strict=True))
+    except (TypeError, ValueError) as error:
+        problem = f"must return two arrays, {' and '.join(names)}, not {answer!r:.80}"
+        raise InvalidInputError(type(part).__name__, problem, answer) from error
+    n, rows = sizes
+    for name, array in given.items():
+        width = step.robot.dof if array.shape[-1] == step.robot.dof else n
+        shape = _shape(name, width, rows)
+        if array.shape != shape:
+            problem = f"{name} has shape {array.shape}, not {shape}"
+            raise InvalidInputError(type(part).__name__, problem, array)
+        if not (np.isfinite(array) | (array == _IDLE.get(name, 0.0))).all():
+            problem = f"{name} holds {'NaN' if np.isnan(array).any() else 'an infinite number'}"
+            raise InvalidInputError(type(part).__name__, problem, array)
+        given[name] = np.full(_shape(name, n, rows), _UNBOUNDED.get(name, 0.0))
+        given[name][tuple(map(slice, shape))] = array
+    return given
+
+
+def _shape(name: str, n: int, rows: int) -> tuple[int, ...]:
+    """Return the shape of an array of a part's program with n variables, by its name."""
+    shapes = {"P": (n, n), "A": (rows, n), "G": (rows, n), "b": (rows,), "h": (rows,)}
+    return shapes.get(name, (n,))
+
+
+@compiled
+def copy_cost(step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
+    """Add P and q from the constants."""
+    n = q.size
+    for i in range(n):
+        q[i] += constants[n * n + i]
+        for k in range(n):
+            P[i, k] += constants[n * i + k]
+
+
+@compiled
+def copy_task(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write A and b from the constants."""
+    n = A.shape[1]
+    for j in range(b.size):
+        b[j] = constants[n * b.size + j]
+        for i in range(n):
+            A[j, i] = constants[n * j + i]
+
+
+@compiled
+def copy_limit(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Write G and h, and tighten lb and ub, from the constants."""
+    copy_task(step, constants, h, G, h)
+    n = lb.size
+    first = h.size * (n + 1)
+    for i in range(n):
+        lb[i] = max(lb[i], constants[first + i])
+        ub[i] = min(ub[i], constants[first + n + i])
 
 
 class Cost(Part):
     """A term of the cost, 1/2 x^T P x + q^T x."""
 
-    _plain = ("quadratic",)
+    signature = COST
+    copy = staticmethod(copy_cost)
+    _methods: ClassVar[dict[str, tuple[str, str]]] = {"quadratic": ("P", "q")}
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n), symmetric positive semidefinite, and q (n,), to be added to the cost.
@@ -111,12 +244,17 @@ class Cost(Part):
         n counts the scheme's variables, the joints and then its slack variables, or the joints
         alone: slack variables may be left out of any part.
         """
-        kernel = self._kernel_or_raise("quadratic")
-        robot = step.robot
-        P = np.zeros((robot.dof, robot.dof))
-        q = np.zeros(robot.dof)
-        kernel(step.views(self.frame_name(robot)), self.constants(robot), P, q)
+        P, q = self._evaluated(step, "P", "q")
         return P, q
+
+    def _check(self, arrays: dict[str, Matrix]) -> None:
+        P = arrays["P"]
+        forgiven = _ROUNDING * np.abs(P).max()
+        if np.abs(P - P.T).max() > forgiven:
+            raise InvalidInputError(type(self).__name__, "P is not symmetric", P)
+        if (least := np.linalg.eigvalsh(P)[0]) < -forgiven:
+            problem = f"P is not convex, its least eigenvalue is {least:.3g}"
+            raise InvalidInputError(type(self).__name__, problem, P)
 
 
 class Task(Part):
@@ -127,25 +265,18 @@ class Task(Part):
         row_weight: Weight of a missing unit of its rows beside a missing 1 m/s where a policy lets
             the task yield (`iiwa_dnn.control.policies`); 0: they are a limit and hold.
         weight: None for hard rows, else the weight of the soft task.
-        tracking: ``"paper"``: the target of a step is that of its time, with the exact twist there.
-            ``"next"``: its twist is the mean one over the coming period, so that b of a frame's
-            rows may ask for the next target (`iiwa_dnn.schemes.tasks`).
     """
 
-    _plain = ("equations",)
+    signature = TASK
+    copy = staticmethod(copy_task)
+    _methods: ClassVar[dict[str, tuple[str, str]]] = {"equations": ("A", "b")}
     tracks: bool = True
     row_weight: float = 1.0
     weight: float | None = None
-    tracking: Tracking = "paper"
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        kernel = self._kernel_or_raise("equations")
-        robot = step.robot
-        A = np.zeros((self.row_count(robot), robot.dof))
-        b = np.zeros(len(A))
-        views = step.views(self.frame_name(robot))
-        kernel(views, self.constants(robot), views.targets[0], A, b)
+        A, b = self._evaluated(step, "A", "b")
         return A, b
 
 
@@ -153,52 +284,36 @@ class Limit(Part):
     """Bounds lb <= x <= ub, inequality rows G x <= h, or both.
 
     The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
-
-    Attributes:
-        moves: Whether constants of the kernel change along a run, by `move`.
-        elastic: Whether a row that asks for more than all joints together can give is followed as
-            far as they can; otherwise the arm stops.
     """
 
-    _plain = ("inequalities", "bounds")
-    moves: bool = False
-    elastic: bool = False
-
-    def move(self, robot: Robot, constants: Vector, t: float) -> None:
-        """Bring the constants of the kernel, (k,), to a time [s]."""
+    signature = LIMIT
+    copy = staticmethod(copy_limit)
+    _methods: ClassVar[dict[str, tuple[str, str]]] = {
+        "inequalities": ("G", "h"),
+        "bounds": ("lb", "ub"),
+    }
 
     def row_names(self, robot: Robot) -> list[str]:
         """Return names of the inequality rows, in words; none where their numbers will do."""
         return []
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return G (rows, n) and h (rows,); asked where `rows` is above 0."""
-        self._kernel_or_raise("inequalities")
-        G, h, _, _ = self._evaluated(step)
+        """Return G (rows, n) and h (rows,); without rows of one's own there are none."""
+        if self.kernel is None and not self.row_count(step.robot):
+            return np.zeros((0, step.robot.dof)), np.zeros(0)
+        G, h, _, _ = self._evaluated(step, "G", "h", "lb", "ub")
         return G, h
 
-    def bounds(self, step: Step) -> tuple[Vector, Vector] | None:
-        """Return lb (n,) and ub (n,), or None; the bounds of all limits are intersected."""
+    def bounds(self, step: Step) -> tuple[Vector, Vector]:
+        """Return lb (n,) and ub (n,), infinite by default; those of all limits are intersected."""
         if self.kernel is None:
-            return None
-        _, _, lb, ub = self._evaluated(step)
+            return np.full(step.robot.dof, -np.inf), np.full(step.robot.dof, np.inf)
+        _, _, lb, ub = self._evaluated(step, "G", "h", "lb", "ub")
         return lb, ub
 
-    def _evaluated(self, step: Step) -> tuple[Matrix, Vector, Vector, Vector]:
-        robot = step.robot
-        constants = self.constants(robot).copy()
-        self.move(robot, constants, step.t)
-        G = np.zeros((self.row_count(robot), robot.dof))
-        h = np.zeros(len(G))
-        lb = np.full(robot.dof, -np.inf)
-        ub = np.full(robot.dof, np.inf)
-        self.kernel(step.views(self.frame_name(robot)), constants, G, h, lb, ub)
-        return G, h, lb, ub
-
-
-_KINDS = (Cost, Task, Limit)
-
-
-def _owner(cls: type, name: str) -> type:
-    """Return the class that defines a method."""
-    return next(base for base in cls.__mro__ if name in vars(base))
+    def _check(self, arrays: dict[str, Matrix]) -> None:
+        lower = arrays["lb"]
+        upper = arrays["ub"]
+        if (lower > upper).any():
+            problem = f"lb is above ub: {lower} and {upper}"
+            raise InvalidInputError(type(self).__name__, problem, (lower, upper))

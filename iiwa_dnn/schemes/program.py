@@ -1,32 +1,38 @@
 """The step program: a scheme laid out for a robot, once, as named views.
 
 `StepProgram` states which rows belong to which part. `assemble` writes all rows in one compiled
-call, each part by its own kernel; parts written in numpy are asked afterwards
-(`iiwa_dnn.schemes.filling`). This is the only file that knows where a constant lies.
+call, each part by its own kernel; what a part's kernel reads is brought up to date before it
+(`StepProgram.refresh`). This is the only file that knows where a constant lies.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.checks import read_only
-from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.compiling import Signature, borrowed
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.layout import QPViews, compiled, inlined, qp_views
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.filling import fill
 from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
-from iiwa_dnn.schemes.parts import COST, LIMIT, TASK, Cost, Limit, Part, Task
+from iiwa_dnn.schemes.parts import (
+    COST,
+    LIMIT,
+    TASK,
+    Limit,
+    Part,
+    Task,
+    answer_of,
+    answer_size,
+)
 from iiwa_dnn.schemes.scene import BRAKED
 from iiwa_dnn.schemes.step import Step, StepViews
 
@@ -34,7 +40,7 @@ if TYPE_CHECKING:
     from iiwa_dnn.schemes.base import Scheme
 
 Table = NDArray[np.int64]
-"""What compiled code reads of a step program: the head, then a row of `_Entry` for each part."""
+"""What compiled code reads of a step program: the sizes, then the numbers of each `Block`."""
 
 
 class ProgramArrays(NamedTuple):
@@ -59,22 +65,25 @@ class ProgramArrays(NamedTuple):
     rate: float
 
 
-class _Head(NamedTuple):
-    """First row of a table."""
-
-    n: int
-    m: int
-    p: int
-    dof: int
-    parts: int
-    tip: int
-    unused: int = 0
-    unused_too: int = 0
+COSTS, TASKS, SOFT_TASKS, LIMITS = range(4)
+"""Kinds of blocks, in the order in which they stand."""
 
 
-class _Entry(NamedTuple):
-    """Row of a table for one part with a kernel."""
+class Block(NamedTuple):
+    """Rows of one part; from `kind` on, a row of the table.
 
+    Attributes:
+        part: The part.
+        kind: `COSTS`, `TASKS`, `SOFT_TASKS` or `LIMITS`.
+        address: Address of its kernel.
+        first: Its first row among the program's equality or inequality rows.
+        rows: Number of its rows; none for a cost.
+        start: Beginning of its constants; those of a soft task are followed by its weight.
+        stop: Their end.
+        target: Index of the target of its frame.
+    """
+
+    part: Part
     kind: int
     address: int
     first: int
@@ -82,24 +91,6 @@ class _Entry(NamedTuple):
     start: int
     stop: int
     target: int
-    unused: int = 0
-
-
-_COST, _TASK, _SOFT, _LIMIT = range(4)
-
-
-class Block(NamedTuple):
-    """Rows of one part.
-
-    Attributes:
-        part: The part.
-        first: Its first row among the program's equality or inequality rows.
-        rows: Number of its rows; none for a cost.
-    """
-
-    part: Part
-    first: int
-    rows: int
 
 
 class StepProgram:
@@ -108,12 +99,14 @@ class StepProgram:
     Attributes:
         robot: The robot.
         scheme: The scheme.
-        blocks: The parts in the order costs, tasks, limits.
+        blocks: The parts in the order costs, hard tasks, soft tasks, limits.
         sizes: ``(n, m, p)`` of the programs.
         target_frames: Names of the frames that tasks track, in the order of the targets; the
             tip's if no task tracks one.
+        refreshed: Blocks of the parts whose constants change along a run.
         kinematics: The robot's, overwritten by each step.
-        table: What compiled code reads of the layout, (1 + parts, 8).
+        table: What compiled code reads of the layout, (1 + parts, 7): in its first row
+            ``n, m, p``, the number of joints, that of parts, and the first target's frame.
         constants: Numbers that compiled code reads, (k,).
     """
 
@@ -126,108 +119,77 @@ class StepProgram:
         """
         self.robot = robot
         self.scheme = scheme
-        tasks: list[Task] = [*scheme.tasks, *couplings(robot)]
-        _check_rows(robot, scheme.limits)
+        tasks = [*scheme.tasks, *couplings(robot)]
+        limits = merged(scheme.limits)
+        last = limits[-1] if limits else None
+        self.rate_limits = last if isinstance(last, MotionLimits) else None
         self.target_frames = _tracked(robot, tasks)
         hard = [task for task in tasks if task.weight is None]
         soft = [task for task in tasks if task.weight is not None]
-        rows_of_tasks = _stacked(robot, hard)
-        rows_of_limits = _stacked(robot, merged(scheme.limits))
-        self.blocks = (
-            *(Block(cost, 0, 0) for cost in scheme.costs),
-            *rows_of_tasks,
-            *(Block(task, 0, task.row_count(robot)) for task in soft),
-            *rows_of_limits,
-        )
-        m = sum(block.rows for block in rows_of_limits)
-        p = sum(block.rows for block in rows_of_tasks)
-        self.sizes = (robot.dof + scheme.slack, m, p)
-        further = [name for block in self.blocks for name in block.part.extra_frames(robot)]
-        own_frames = [block.part.frame_name(robot) for block in self.compiled_blocks]
-        frames = dict.fromkeys([robot.tip, *self.target_frames, *own_frames, *further])
-        self.kinematics = Kinematics(robot, frames, self.needs_inertia)
-        self._unseen = True  # the answers of parts written in numpy
-        self._encode()
-
-    def _encode(self) -> None:
-        """Write the table and the constants."""
-        robot = self.robot
-        n, m, p = self.sizes
-        arrays: list[Vector] = [np.zeros(0)]
-        stop = 0
-        entries = []
-        for block in self.compiled_blocks:
-            part = block.part
-            own = part.constants(robot)
-            start = stop
-            stop += own.size
-            arrays.append(own)
-            name = part.frame_name(robot)
-            target = self.target_frames.index(name) if name in self.target_frames else 0
-            kind, signature = _kind(part)
-            address = signature.address(part.kernel)
-            entry = _Entry(kind, address, block.first, block.rows, start, stop, target)
-            entries.append(entry)
-            if isinstance(part, Task) and part.weight is not None:
-                arrays.append(np.array([part.weight]))  # follows the task's own constants
-                stop += 1
+        n = robot.dof + scheme.slack
+        self.blocks: list[Block] = []
+        self.constants: Vector = np.zeros(0)
+        rows = [
+            self._add(kind, parts, n)
+            for kind, parts in enumerate((scheme.costs, hard, soft, limits))
+        ]
+        self.sizes = (n, rows[LIMITS], rows[TASKS])
         tip = robot.frame_id(self.target_frames[0])
-        first = _Head(n, m, p, robot.dof, len(entries), tip)
-        self.table: Table = np.array([first, *entries], dtype=np.int64)
-        self.constants: Vector = np.concatenate(arrays)
+        head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
+        self.table: Table = np.array([head, *(block[1:] for block in self.blocks)], dtype=np.int64)
+        self.refreshed = [block for block in self.blocks if block.part.refreshes]
+        own = [part.frame_name(robot) for part in self.parts if not part.copies]
+        further = [name for part in self.parts for name in part.extra_frames(robot)]
+        frames = dict.fromkeys([robot.tip, *self.target_frames, *own, *further])
+        self.kinematics = Kinematics(robot, frames, self.needs_inertia)
         if self.rate_limits is not None:
             for start, _ in self.constants_of(CollisionAvoidance):
                 self.constants[start + BRAKED] = 1.0
 
-    @cached_property
-    def compiled_blocks(self) -> tuple[Block, ...]:
-        """Blocks of the parts with a kernel."""
-        return tuple(block for block in self.blocks if block.part.is_compiled)
+    def _add(self, kind: int, parts: Sequence[Part], n: int) -> int:
+        """Add the blocks of the parts of a kind in programs of n variables; count their rows."""
+        robot = self.robot
+        first = 0
+        for part in parts:
+            rows = part.row_count(robot)
+            own: Vector = part.constants(robot)
+            if part.copies:
+                own = np.zeros(answer_size(part, n, rows))
+            name = part.frame_name(robot)
+            target = self.target_frames.index(name) if name in self.target_frames else 0
+            start = self.constants.size
+            stop = start + own.size
+            address = part.signature.address(part.copy if part.copies else part.kernel)
+            self.blocks.append(Block(part, kind, address, first, rows, start, stop, target))
+            weight = [part.weight] if kind == SOFT_TASKS and isinstance(part, Task) else []
+            self.constants = np.concatenate([self.constants, own, np.array(weight)])
+            first += rows
+        return first
 
-    @cached_property
-    def numpy_blocks(self) -> tuple[Block, ...]:
-        """Blocks of the parts that are written in numpy."""
-        return tuple(block for block in self.blocks if not block.part.is_compiled)
-
-    @cached_property
-    def moving(self) -> list[tuple[Limit, Vector]]:
-        """Limits with constants that change along a run, each with its constants, (k,)."""
-        entries = self.table[1:].tolist()
-        return [
-            (block.part, self.constants[entry[4] : entry[5]])
-            for block, entry in zip(self.compiled_blocks, entries, strict=False)
-            if isinstance(block.part, Limit) and block.part.moves
-        ]
+    @property
+    def parts(self) -> list[Part]:
+        """The parts, in the order of the blocks."""
+        return [block.part for block in self.blocks]
 
     def constants_of(self, kind: type[Part]) -> list[tuple[int, int]]:
         """Return beginning and end in `constants` of those of each part of a kind."""
-        blocks = self.compiled_blocks
-        entries = self.table[1 : 1 + len(blocks)].tolist()
-        pairs = zip(blocks, entries, strict=True)
-        return [(entry[4], entry[5]) for block, entry in pairs if isinstance(block.part, kind)]
+        return [(block.start, block.stop) for block in self.blocks if isinstance(block.part, kind)]
 
     @property
-    def is_compiled(self) -> bool:
-        """Test whether compiled code alone writes the programs."""
-        return not self.numpy_blocks
+    def reads_targets(self) -> bool:
+        """Test whether `refresh` has to know the targets; obstacles that move do not."""
+        return any(not isinstance(block.part, CollisionAvoidance) for block in self.refreshed)
 
     @property
     def needs_inertia(self) -> bool:
         """Test whether a cost takes the inertia matrix."""
-        energies = (block.part for block in self.blocks if isinstance(block.part, KineticEnergy))
+        energies = [part for part in self.parts if isinstance(part, KineticEnergy)]
         return any(energy.kinetic == "inertia" for energy in energies)
-
-    @cached_property
-    def rate_limits(self) -> MotionLimits | None:
-        """The acceleration and jerk limits, if there are any."""
-        last = self.blocks[-1].part if self.blocks else None
-        return last if isinstance(last, MotionLimits) else None
 
     @property
     def tasks(self) -> list[Task]:
         """Hard tasks, in the order of the equality rows."""
-        parts = [block.part for block in self.blocks]
-        return [part for part in parts if isinstance(part, Task) and part.weight is None]
+        return [part for part in self.parts if isinstance(part, Task) and part.weight is None]
 
     @property
     def row_weights(self) -> Vector:
@@ -236,24 +198,9 @@ class StepProgram:
         return np.repeat([task.row_weight for task in self.tasks], counts)
 
     @property
-    def elastic(self) -> Vector:
-        """1 for each inequality row of an elastic limit, else 0, (m,)."""
-        found = np.zeros(self.sizes[1])
-        for block in self.blocks:
-            if isinstance(block.part, Limit) and block.part.elastic:
-                found[block.first : block.first + block.rows] = 1.0
-        return found
-
-    @cached_property
-    def ahead(self) -> frozenset[str]:
-        """Names of the frames whose tasks track the next target."""
-        ahead = [task for task in self.scheme.tasks if task.tracks and task.tracking == "next"]
-        return frozenset(task.frame_name(self.robot) for task in ahead)
-
-    @property
     def needs_period(self) -> bool:
-        """Test whether a program needs a control period."""
-        return any(task.tracking == "next" for task in self.scheme.tasks)
+        """Test whether a program needs a control period: a gain stands for its inverse."""
+        return any(getattr(part, "gain", 0.0) == np.inf for part in self.parts)
 
     @property
     def placement(self) -> Vector:
@@ -276,7 +223,7 @@ class StepProgram:
             second: A further integer, in the third column.
         """
         start = self.constants.size
-        entry = _Entry(0, address, second, 0, start, start + constants.size, 0)
+        entry = (0, address, second, 0, start, start + constants.size, 0)
         self.table = np.vstack([self.table, np.array([entry], dtype=np.int64)])
         self.constants = np.concatenate([self.constants, constants])
 
@@ -293,19 +240,33 @@ class StepProgram:
             1.0 / dt if dt < np.inf else np.inf,
         )
 
-    def move(self, t: float) -> None:
-        """Bring the constants that change along a run to a time [s]."""
-        for part, constants in self.moving:
-            part.move(self.robot, constants, t)
-
-    def write(
-        self,
-        data: Vector,
-        targets: Matrix,
-        past: Matrix,
-        dt: float,
-        t: float = 0.0,
+    def refresh(
+        self, q: Vector, last: Vector, targets: Matrix, t: float, dt: float = np.inf
     ) -> None:
+        """Bring the constants that change along a run up to date, for one step.
+
+        Args:
+            q: Joint positions [rad], (dof,), at which the kinematics are.
+            last: Last command [rad/s], (dof,).
+            targets: Targets of the tracked frames, (k, 18).
+            t: Time [s].
+            dt: Control period [s]; inf outside of a loop.
+
+        Raises:
+            InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
+        """
+        if not self.refreshed:
+            return
+        by_name = dict(zip(self.target_frames, targets, strict=True))
+        step = Step.from_kinematics(self.kinematics, by_name, t, dt, read_only(q), read_only(last))
+        for block in self.refreshed:
+            own = self.constants[block.start : block.stop]
+            if block.part.copies:
+                own[:] = answer_of(block.part, step, self.sizes[0], block.rows)
+            else:
+                block.part.refresh(step, own)
+
+    def write(self, data: Vector, targets: Matrix, past: Matrix, dt: float, t: float = 0.0) -> None:
         """Write the whole program of one step, at the joint positions of `kinematics`.
 
         Args:
@@ -318,25 +279,17 @@ class StepProgram:
         Raises:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
+        self.refresh(past[0], past[1], targets, t, dt)
         write_program(data, self.arrays(dt), past, targets, float(t))
-        qp = QP.from_data(data, self.sizes)
-        if self.numpy_blocks:
-            by_name = dict(zip(self.target_frames, targets, strict=True))
-            q = read_only(past[0])
-            dq = read_only(past[1])
-            step = Step.from_kinematics(self.kinematics, by_name, t, dt, q, dq)
-            fill(self.numpy_blocks, qp, step, self.rate_limits is not None, self._unseen)
-            self._unseen = False
 
     def row_names(self) -> list[dict[str, object]]:
         """Return for each inequality row its part, its number in it from 1, and its name if any."""
         found: list[dict[str, object]] = []
-        for block in self.blocks:
-            if isinstance(block.part, Limit):
-                names = block.part.row_names(self.robot)
-                for i in range(block.rows):
-                    about = {"about": names[i]} if names else {}
-                    found.append({"part": type(block.part).__name__, "row": i + 1} | about)
+        for part, kind, _, _, rows, *_ in self.blocks:
+            names = part.row_names(self.robot) if isinstance(part, Limit) else []
+            for i in range(rows if kind == LIMITS else 0):
+                about = {"about": names[i]} if names else {}
+                found.append({"part": type(part).__name__, "row": i + 1} | about)
         return found
 
     def settings(self) -> dict[str, object]:
@@ -345,14 +298,13 @@ class StepProgram:
         ``bounding`` names the limits with bounds, unless `JointLimits` alone; ``own_tasks`` the
         tasks that are not the package's.
         """
-        scheme = self.scheme
         bounding = [
             type(limit).__name__
-            for limit in scheme.limits
+            for limit in self.scheme.limits
             if type(limit).bounds is not Limit.bounds
-            or (limit.is_compiled and not limit.row_count(self.robot))
+            or not (limit.copies or limit.row_count(self.robot))
         ]
-        kinds = [type(task) for task in scheme.tasks]
+        kinds = [type(task) for task in self.scheme.tasks]
         own = [kind.__name__ for kind in kinds if not kind.__module__.startswith("iiwa_dnn.")]
         found: dict[str, object] = {"rows": self.row_names()}
         if bounding != ["JointLimits"]:
@@ -362,46 +314,10 @@ class StepProgram:
         return found
 
 
-def _check_rows(robot: Robot, limits: Sequence[Limit]) -> None:
-    """Raise InvalidInputError if a limit has inequalities but no rows."""
-    for limit in limits:
-        own = type(limit).inequalities is not Limit.inequalities
-        if own and limit.row_count(robot) < 1:
-            raise InvalidInputError(type(limit).__name__, "has inequalities but no rows", limit)
-
-
-def _tracked(robot: Robot, tasks: list[Task]) -> tuple[str, ...]:
-    """Return the names of the tracked frames, the tip first; the tip's if there are none.
-
-    Raises:
-        InvalidInputError: Tasks of one frame track its targets in different ways.
-    """
-    pairs = {(task.frame_name(robot), task.tracking) for task in tasks if task.tracks}
+def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
+    """Return the names of the tracked frames, the tip first; the tip's if there are none."""
     names = dict.fromkeys(task.frame_name(robot) for task in tasks if task.tracks)
-    if len(pairs) > len(names):
-        problem = f"must be the same of all tasks of a frame: {sorted(pairs)}"
-        raise InvalidInputError("tracking", problem)
     return tuple(sorted(names, key=lambda name: name != robot.tip)) or (robot.tip,)
-
-
-def _stacked(robot: Robot, parts: list[Task] | list[Limit]) -> list[Block]:
-    """Return the blocks of parts whose rows stand one after the other."""
-    blocks = []
-    first = 0
-    for part in parts:
-        rows = part.row_count(robot)
-        blocks.append(Block(part, first, rows))
-        first += rows
-    return blocks
-
-
-def _kind(part: Part) -> tuple[int, Signature]:
-    """Return the kind of a part in the table, and the signature of its kernel."""
-    if isinstance(part, Cost):
-        return _COST, COST
-    if isinstance(part, Task):
-        return (_TASK if part.weight is None else _SOFT), TASK
-    return _LIMIT, LIMIT
 
 
 _enter_cost = COST.enter
@@ -471,12 +387,12 @@ def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
         rows = table[k, 3]
         own = constants[table[k, 4] : table[k, 5]]
         target = step.targets[table[k, 6]]
-        if kind == _COST:
+        if kind == COSTS:
             _enter_cost(address, step, own, qp.P, qp.q)
-        elif kind == _TASK:
+        elif kind == TASKS:
             A = qp.A[first : first + rows]
             _enter_task(address, step, own, target, A, qp.b[first : first + rows])
-        elif kind == _SOFT:
+        elif kind == SOFT_TASKS:
             A = np.zeros((rows, qp.q.size))
             b = np.zeros(rows)
             _enter_task(address, step, own, target, A, b)

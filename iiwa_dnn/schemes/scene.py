@@ -25,10 +25,10 @@ from iiwa_dnn.schemes.distances import (
 )
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
 
-_HEAD = 7
+_HEAD = 6
 """Constants of a scene before those of joints, shapes and pairs."""
 
-BRAKED = 3
+BRAKED = 2
 """Index of `Damper.braked` among the constants of a scene."""
 
 _PER_PAIR = 14
@@ -99,13 +99,11 @@ class Damper(NamedTuple):
     Attributes:
         least: Least distance [m].
         gain: Largest rate at which a distance shrinks towards it [1/s].
-        activation: Distance from which on a row is idle [m], or 0.
         braked: 1 where braking in time keeps the least distance, not the rows.
     """
 
     least: float
     gain: float
-    activation: float
     braked: float = 0.0
 
 
@@ -319,9 +317,9 @@ def _constants(
 @compiled
 def scene_views(constants: Vector, dof: int) -> SceneViews:
     """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
-    shapes = int(constants[4])
-    pairs = int(constants[5])
-    points = int(constants[6])
+    shapes = int(constants[3])
+    pairs = int(constants[4])
+    points = int(constants[5])
     at_frames = _HEAD + dof
     at_ends = at_frames + shapes
     at_pairs = at_ends + 6 * shapes
@@ -329,7 +327,7 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
     at_radii = at_moves + dof * pairs
     at_points = at_radii + dof * pairs
     return SceneViews(
-        Damper(constants[0], constants[1], constants[2], constants[BRAKED]),
+        Damper(constants[0], constants[1], constants[BRAKED]),
         constants[_HEAD:at_frames],
         constants[at_frames:at_ends],
         constants[at_ends:at_pairs].reshape(2 * shapes, 3),

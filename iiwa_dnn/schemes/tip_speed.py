@@ -24,16 +24,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.checks import Vector3
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.references.rotations import added, dot, scaled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.step import StepViews
-from iiwa_dnn.schemes.tasks import joint_velocity, vector_at
+from iiwa_dnn.schemes.tasks import rate_along, vector_at
 
 NEGLIGIBLE = 1e-6
 """Contribution of a joint to the speed that is rounding, as of one whose axis meets the tip [m]."""
+
+
+@compiled
+def speed_along(step: StepViews, frame: int, point: Vector3, axis: Vector3) -> float:
+    """Compute the velocity along an axis (3,) of a point [m] of a frame at the last command."""
+    speed = 0.0
+    for j in range(step.q.size):
+        speed += step.last[j] * step.moves[frame, j] * rate_along(step.jacobian, j, point, axis)
+    return speed
 
 
 @compiled
@@ -42,28 +51,25 @@ def tip_speed_bounds(
 ) -> None:
     """Tighten the bounds to those of `TipSpeedLimit`, whose constants these are."""
     frame = int(constants[0])
-    limit = constants[1]
     gain = min(constants[2], step.rate)
     point = vector_at(step.placements[frame], 9)
-    velocity = (0.0, 0.0, 0.0)
-    for j in range(step.q.size):
-        if step.moves[frame, j] != 0.0:
-            velocity = added(velocity, scaled(step.last[j], joint_velocity(step, j, point)))
-    speed = math.sqrt(dot(velocity, velocity))
+    x = speed_along(step, frame, point, (1.0, 0.0, 0.0))
+    y = speed_along(step, frame, point, (0.0, 1.0, 0.0))
+    z = speed_along(step, frame, point, (0.0, 0.0, 1.0))
+    speed = math.sqrt(x * x + y * y + z * z)
     if not (speed > 0.0 and step.rate < np.inf):
         return
+    direction = (x / speed, y / speed, z / speed)
+    along = np.empty(step.q.size)
     total = 0.0
     for j in range(step.q.size):
-        if step.moves[frame, j] != 0.0:
-            total += abs(dot(velocity, joint_velocity(step, j, point))) / speed
-    growth = gain / step.rate * (limit - speed) / total
+        along[j] = step.moves[frame, j] * rate_along(step.jacobian, j, point, direction)
+        total += abs(along[j])
+    growth = gain / step.rate * (constants[1] - speed) / total
     for j in range(step.q.size):
-        along = 0.0
-        if step.moves[frame, j] != 0.0:
-            along = dot(velocity, joint_velocity(step, j, point)) / speed
-        if along > NEGLIGIBLE:
+        if along[j] > NEGLIGIBLE:
             ub[j] = max(min(ub[j], step.last[j] + growth), lb[j])
-        elif along < -NEGLIGIBLE:
+        elif along[j] < -NEGLIGIBLE:
             lb[j] = min(max(lb[j], step.last[j] - growth), ub[j])
 
 

@@ -120,7 +120,7 @@ def simulate(
     controller.solver.reset()
     steps = count_steps(reference, dt, duration)
     _anchor(controller, start, refuses=not far_start)
-    ahead = bool(controller.program.ahead)
+    ahead = getattr(controller.scheme, "ahead", False)
     check_motion(motion, mode == "continuous" or not plant.exact, ahead)
     chain = SignalChain(
         noise, noise_at, filter_window, estimator, (steps, robot.dof), controller.dt, seed

@@ -48,7 +48,7 @@ class DisturbedLoop:
         start = Configuration(disturbance.robot, self.q)
         self._dt = dt
         self._reference = reference.anchored(start)
-        path = Ahead(self._reference, dt) if program.ahead else self._reference
+        path = Ahead(self._reference, dt) if program.scheme.ahead else self._reference
         self._targets = path.sample(dt * np.arange(steps)).data
 
     def step(self, k: int) -> tuple[float, float]:

@@ -174,7 +174,7 @@ def test_programs_of_two_shapes_are_refused_by_name() -> None:
     controller = Controller(paper_robot(), Capricious(home=PAPER_Q0))
     start = paper_start()
     controller.step(PAPER_Q0, 0.0, Target(start.position, start.rotation))
-    with pytest.raises(InvalidInputError, match="scheme"):
+    with pytest.raises(InvalidInputError, match=r"^BuiltRows: A has shape"):
         controller.step(PAPER_Q0, 0.0, Target(start.position + [0.0, 0.0, 0.5], start.rotation))
 
 

@@ -197,26 +197,24 @@ def test_targets_sampled_ahead_follow_a_changed_period_and_delay() -> None:
     np.testing.assert_allclose(early.dq, want, rtol=0, atol=1e-7)
 
 
-@pytest.mark.parametrize("tracking", ["paper", "next"])
+@pytest.mark.parametrize("gain", [10.2, np.inf])
 @pytest.mark.parametrize("compiled", [True, False])
-def test_targets_of_two_frames_are_sampled_ahead_too(tracking: Any, compiled: bool) -> None:
+def test_targets_of_two_frames_are_sampled_ahead_too(gain: float, compiled: bool) -> None:
     robot = load_robot("iiwa7_dual")
     start = Configuration(robot, robot.start_posture())
     left, right = "left_iiwa7_flange", "right_iiwa7_flange"
     still = MovingTarget(start.frame(right))  # which has no compiled form
     other: Reference = Circle().anchored(start.frame(right)) if compiled else still
     references = {right: other, left: Heart().anchored(start.frame(left))}
-    tasks = [PositionTask(frame=right, tracking=tracking), PoseTask(frame=left, tracking=tracking)]
+    tasks = [PositionTask(frame=right, gain=gain), PoseTask(frame=left, gain=gain)]
     scheme = Scheme([CyclicMotion()], tasks)
+    if gain == np.inf:
+        references = {name: reference.ahead(1e-3) for name, reference in references.items()}
     ahead = Controller(robot, scheme, references, dt=1e-3)
     one_by_one = Controller(robot, scheme, dt=1e-3)
     q = start.q
     for k in range(20):
-        seen = {
-            name: reference.ahead(1e-3) if tracking == "next" else reference
-            for name, reference in references.items()
-        }
-        given = {name: reference.at(k * 1e-3) for name, reference in seen.items()}
+        given = {name: reference.at(k * 1e-3) for name, reference in references.items()}
         dq = ahead.step(q, k * 1e-3).dq
         want = one_by_one.step(q, k * 1e-3, given).dq
         np.testing.assert_allclose(dq, want, rtol=0, atol=1e-9)

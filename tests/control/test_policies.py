@@ -13,7 +13,16 @@ from scipy.optimize import linprog
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import near_target, paper_robot, paper_start
-from iiwa_dnn import QP, Command, Configuration, Controller, DoubleIndicator, Target, robot_from_dh
+from iiwa_dnn import (
+    QP,
+    Command,
+    Configuration,
+    Controller,
+    DoubleIndicator,
+    InvalidInputError,
+    Target,
+    robot_from_dh,
+)
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
 from iiwa_dnn.control.relaxed import BUDGET
 from iiwa_dnn.control.yielding import ATTEMPTS
@@ -267,12 +276,11 @@ def test_the_clock_never_rests() -> None:
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
-def test_a_program_that_is_no_number_stops(bad: float) -> None:
+def test_a_program_that_is_no_number_is_refused(bad: float) -> None:
     qp = two_joints(1.0)
     qp.b[0] = bad
-    command = decide(qp, "slow")
-    assert command.action is Action.STOP
-    assert not command.dq.any()
+    with pytest.raises(InvalidInputError, match="b holds"):
+        decide(qp, "slow")
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax"])

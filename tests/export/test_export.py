@@ -370,9 +370,7 @@ def _among_guided() -> Controller:
 
 
 class _Closing(iiwa_dnn.JointLimits):
-    moves = True
-
-    def move(self, robot: iiwa_dnn.Robot, constants: np.ndarray, t: float) -> None:
+    def refresh(self, step: iiwa_dnn.Step, constants: np.ndarray) -> None:
         constants *= 0.99
 
 

@@ -6,19 +6,16 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 from helpers_simulation import paper_robot, paper_start
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.references import Target
-from iiwa_dnn.robot import Configuration, load_robot
+from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import (
     AxisTask,
-    CenterOfMassTask,
     CyclicMotion,
-    ElbowAngleTask,
     JointCouplingTask,
     JointLimits,
     KineticEnergy,
@@ -33,7 +30,6 @@ from iiwa_dnn.schemes import (
 from iiwa_dnn.schemes.costs import manipulability_gradient
 
 ROBOT = paper_robot()
-SIX = Configuration(load_robot("ur5"), np.zeros(6))
 START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
 AXIS = np.array([0.2, -0.5, 1.0])
 RAY = START.rotation.T @ (START.frame("iiwa7_link_2").position - START.position)
@@ -48,9 +44,6 @@ TASKS: dict[str, Any] = {
     "looking at a frame": RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
     "posture": PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
     "coupling": JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
-    "elbow": ElbowAngleTask(gain=1.0).anchored(START),
-    "elbow, other reference": ElbowAngleTask(reference=(1.0, 0.2, 0.0), gain=1.0).anchored(START),
-    "center of mass": CenterOfMassTask(axes="xz", gain=1.0).anchored(START),
 }
 
 
@@ -90,48 +83,6 @@ def test_hard_and_soft_tasks_bring_the_error_to_rest(name: str) -> None:
             assert solution.found
             q = q + 0.01 * solution.x
         assert np.abs(rows(task, q, target)[1]).max() < 1e-4 * first
-
-
-def test_the_elbow_angle_is_that_of_a_geometric_construction() -> None:
-    task = ElbowAngleTask()
-    points = [START.frame(f"iiwa7_joint_{k}").position for k in (2, 4, 6)]
-    w = (points[2] - points[0]) / np.linalg.norm(points[2] - points[0])
-    # The plane's normal and the reference plane's normal, the signed angle between them about w.
-    up = np.cross(w, [0.0, 0.0, 1.0])
-    plane = np.cross(w, points[1] - points[0])
-    angle = np.arctan2(w @ np.cross(up, plane), up @ plane)
-    assert task.angle_of(START) == pytest.approx(angle, abs=1e-12)
-
-
-def test_the_elbow_swings_while_the_tool_stays() -> None:
-    scheme = Scheme(
-        [KineticEnergy(weight=1.0)],
-        [PoseTask(gain=20.0), ElbowAngleTask(ElbowAngleTask().angle_of(START) + 0.3, gain=2.0)],
-        [JointLimits()],
-    )
-    target, solver, q = Target(START.position, START.rotation), DNNSolver(), START.q
-    for _ in range(400):
-        solution = solver.solve(scheme.build_qp(Configuration(ROBOT, q), target))
-        assert solution.found
-        q = q + 0.01 * solution.x
-    end = Configuration(ROBOT, q)
-    assert ElbowAngleTask().angle_of(end) - ElbowAngleTask().angle_of(START) == pytest.approx(
-        0.3, abs=1e-3
-    )
-    np.testing.assert_allclose(end.position, START.position, atol=1e-4)
-
-
-def test_center_of_mass_is_the_mean_over_the_links() -> None:
-    place, _ = START.center_of_mass
-    model, data = ROBOT.model, ROBOT.model.createData()
-    pin.forwardKinematics(model, data, START.q)
-    moved = [
-        (inertia.mass, data.oMi[i].act(inertia.lever))
-        for i, inertia in enumerate(model.inertias)
-        if i
-    ]
-    mass = sum(m for m, _ in moved)
-    np.testing.assert_allclose(place, sum(m * c for m, c in moved) / mass, atol=1e-12)
 
 
 def test_manipulability_gradient_is_that_of_finite_differences() -> None:
@@ -174,16 +125,11 @@ def test_parts_leave_slack_variables_out() -> None:
         (lambda: AxisTask(axis=(0.0, 0.0, 0.0)), "axis"),
         (lambda: PoseTask(gain=-1.0), "gain"),
         (lambda: PoseTask(weight=-1.0), "weight"),
-        (lambda: CenterOfMassTask(axes="xw"), "axes"),
         (lambda: RelativePoseTask("a", "b", ((1.0,),)), "pose"),
         (lambda: RemoteCenterTask((0.0, 1.0)), "point"),
         (lambda: PostureTask({"a": np.nan}), "joints"),
         (lambda: PostureTask([0.0] * 7), "joints"),  # type: ignore[arg-type]
         (lambda: Manipulability(weight=-1.0), "weight"),
-        (
-            lambda: ElbowAngleTask().angle_of(SIX),
-            "joints",
-        ),
     ],
 )
 def test_bad_parameters_are_named(make: Any, named: str) -> None:

@@ -86,6 +86,7 @@ def test_a_limit_of_ones_own(example: Example) -> None:
     text = example("own_parts.py", "10", "5e-3")
     assert 0.1999 <= number(r"smallest distance ([\d.]+) m", text) < 0.2001
     assert 100 < number(r"active in (\d+) of 2000", text) < 1000
+    assert number(r"turned by (\S+) rad", text) == pytest.approx(0.5, abs=1e-3)
     assert "failures []" in text
 
 
