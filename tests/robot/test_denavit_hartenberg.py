@@ -7,18 +7,11 @@ import pickle
 import numpy as np
 import pytest
 
-from helpers_kinematics import Array, dh_pose, finite_difference
+from helpers_kinematics import Array, dh_pose
 from iiwa_dnn import (
     Configuration,
-    CyclicMotion,
-    Heart,
-    JointLimits,
-    KineticEnergy,
-    PositionTask,
-    Scheme,
     load_robot,
     robot_from_dh,
-    simulate,
 )
 from iiwa_dnn.errors import InvalidInputError
 
@@ -55,18 +48,6 @@ def test_poses_are_the_product_of_the_printed_matrices(convention: str) -> None:
         np.testing.assert_array_equal(conf.pose, poses[-1])
 
 
-@pytest.mark.parametrize("convention", ["standard", "modified"])
-def test_jacobian_is_the_derivative_of_the_pose(convention: str) -> None:
-    robot = robot_from_dh(TABLE, convention=convention, prismatic=SLIDES)
-    q = RNG.uniform(-3.0, 3.0, 6)
-    conf = Configuration(robot, q)
-    derivative = finite_difference(lambda x: printed_product(x, convention)[-1], q)
-    np.testing.assert_allclose(conf.jacobian[:3], derivative[:3, 3], atol=1e-8)
-    spin = np.einsum("ijn,kj->ikn", derivative[:3, :3], conf.rotation)  # dR R^T
-    expected = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
-    np.testing.assert_allclose(conf.jacobian[3:], expected, atol=1e-8)
-
-
 def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
     urdf, robot = load_robot("iiwa7"), robot_from_dh(IIWA7, name="iiwa7")
     for q in RNG.uniform(-2.0, 2.0, (20, 7)):
@@ -74,15 +55,6 @@ def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
         np.testing.assert_allclose(conf.pose, other.pose, atol=1e-9)
         np.testing.assert_allclose(conf.jacobian, other.jacobian, atol=1e-9)
         np.testing.assert_allclose(conf.position, dh_pose(q)[0], atol=1e-14)
-
-
-def test_such_a_robot_draws_a_heart() -> None:
-    robot = robot_from_dh(IIWA7, lower=-2.5, upper=2.5, velocity=[1.5] * 7, name="iiwa7")
-    conf = Configuration(robot, robot.start_posture())
-    parts = [KineticEnergy(weight=0.2), CyclicMotion(weight=0.8)], [PositionTask()], [JointLimits()]
-    record = simulate(robot, Scheme(*parts), Heart().anchored(conf), conf.q, dt=1e-3, duration=0.1)
-    assert np.abs(record.position - record.position_desired).max() < 1e-5
-    assert np.nanmax(record.solution_gap) < 1e-7
 
 
 def test_limits_names_and_pickling() -> None:

@@ -10,7 +10,6 @@ import pinocchio as pin
 from helpers_kinematics import dh_pose
 from iiwa_dnn.references import Heart, Line
 from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.schemes import (
@@ -40,19 +39,6 @@ def test_each_arm_is_the_single_one_moved_aside() -> None:
         np.testing.assert_allclose(conf.frame(frame).position, position + [0, side, 0], atol=1e-12)
         np.testing.assert_allclose(conf.frame(frame).rotation, rotation, atol=1e-12)
     assert compile_model(robot, 1e-3).nq == 14
-
-
-def test_two_hearts_at_once() -> None:
-    robot = load_robot("iiwa7_dual")
-    start = Configuration(robot, robot.start_posture())
-    paths = {name: Heart(scale=3e-3).anchored(start.frame(name)) for name in (LEFT, RIGHT)}
-    tasks = [task(frame=name) for name in paths for task in (PositionTask, OrientationTask)]
-    scheme = Scheme(COSTS, tasks, [JointLimits()])
-    record = simulate(robot, scheme, paths, start.q, dt=1e-4, duration=0.2)
-    assert failures(record) == []
-    metrics = compute_metrics(record)
-    assert metrics["max_position_error_m"] < 1e-6
-    assert metrics["frames"][RIGHT]["max_position_error_m"] < 1e-6
 
 
 def test_an_object_carried_by_both_arms_keeps_its_grasp() -> None:

@@ -113,16 +113,6 @@ def test_masses_and_friction(robot):
     assert other.body("iiwa7_link_0").mass == plain.body("iiwa7_link_0").mass
 
 
-def test_an_arm_of_meshes_moves_too():
-    robot = load_robot(example_urdf("ur_description/urdf/ur5_robot.urdf"), tip="tool0")
-    model = compile_model(robot, 1e-3)
-    data = mujoco.MjData(model)
-    data.qpos[:] = q = np.linspace(-1.0, 1.0, robot.dof)
-    mujoco.mj_forward(model, data)
-    tip = data.site(TIP_SITE)
-    np.testing.assert_allclose(tip.xpos, Configuration(robot, q).position, atol=1e-12)
-
-
 @pytest.mark.parametrize(("name", "value"), [("damping", -1.0), ("armature", np.nan)])
 def test_wrong_dynamics(name, value):
     with pytest.raises(InvalidInputError, match=name):

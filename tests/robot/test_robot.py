@@ -9,8 +9,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-import iiwa_dnn.robot.loading
-from helpers_kinematics import example_urdf, finite_difference
+from helpers_kinematics import finite_difference
 from iiwa_dnn.errors import FileError, InvalidInputError, NotFoundError
 from iiwa_dnn.robot import Configuration, Robot, available_robots, load_robot
 from iiwa_dnn.robot.arms import ARMS
@@ -58,24 +57,6 @@ def test_by_path(written, kind: type) -> None:
     robot = load_robot(kind(written(one_joint())))
     assert (robot.name, robot.tip, robot.dof) == ("one", "b", 1)
     assert [robot.q_lower, robot.q_upper, robot.dq_max] == [-1, 2, 4]
-
-
-def test_by_relative_path_without_a_separator(written, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(written(one_joint()).parent)
-    assert load_robot("some.urdf").name == "one"
-
-
-def test_robots_beside_the_module_come_first(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(
-        iiwa_dnn.robot.loading, "__file__", str(tmp_path / "iiwa_dnn" / "robot" / "loading.py")
-    )
-    for folder, name in (("robots", "above"), ("iiwa_dnn/robots", "inside")):
-        (tmp_path / folder / name).mkdir(parents=True)
-        (tmp_path / folder / name / f"{name}.urdf").write_text(one_joint())
-        assert available_robots()[0] == name
-        assert package_robots() == (name,)
 
 
 def test_unknown_robot_names_those_that_exist() -> None:
@@ -213,15 +194,6 @@ def test_locking_what_cannot_be_locked(robot: Robot) -> None:
         load_robot("iiwa7", locked=["iiwa7_joint_9"])
     with pytest.raises(InvalidInputError, match="no joint moves frame"):
         load_robot("iiwa7", locked=robot.joint_names)
-
-
-def test_kinova_has_three_joints_without_limits() -> None:
-    path = example_urdf("kinova_description/robots/kinova.urdf")
-    robot = load_robot(path, tip="j2s6s200_end_effector")
-    unlimited = [f"j2s6s200_joint_{i}" for i in (1, 4, 6)]
-    assert np.array(robot.joint_names)[np.isinf(robot.q_upper)].tolist() == unlimited
-    locked = load_robot(path, robot.tip, unlimited)
-    assert (locked.dof, locked.q_locked) == (3, (0.0,) * 3)
 
 
 @pytest.mark.parametrize("as_se3", [True, False])
