@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.random_motion import Judge
+from benchmarks.random_motion import Judge, swinging
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.qp import Matrix, Vector
 
@@ -106,35 +106,36 @@ def arm(name: str) -> iiwa_dnn.Robot:
     return robot
 
 
-def sway(random: np.random.Generator, until: float) -> dict[str, Any]:
-    """Draw a displacement that swings, and ends at a time [s]."""
+Sway = tuple[Vector, float, float]
+"""Velocity [m/s], (3,), rate [1/s] and end [s] of an obstacle that swings."""
+
+
+def sway(random: np.random.Generator, until: float) -> Sway:
+    """Draw how an obstacle swings up to a time [s]."""
     direction = random.standard_normal(3)
     direction /= np.linalg.norm(direction)
     speed = float(random.uniform(0.02, 0.2))
     rate = float(random.uniform(0.5, 2.0))
-
-    def motion(t: float) -> Vector:
-        shift: Vector = speed / rate * np.sin(rate * min(t, until)) * direction
-        return shift
-
-    return {"motion": motion, "speed": speed}
+    return speed * direction, rate, until
 
 
-def draw_obstacle(random: np.random.Generator, tip: Vector, move: dict[str, Any]) -> Any:
-    """Draw an obstacle around a point (3,) [m] that moves so."""
+def draw_obstacle(random: np.random.Generator, tip: Vector, swing: Sway | None) -> Any:
+    """Draw an obstacle around a point (3,) [m] that swings, or stands still."""
+    velocity, *rest = (np.zeros(3), 1.0, np.inf) if swing is None else swing
+    move = {"velocity": velocity}
     kind = random.integers(4)
     center = tip + 0.35 * random.standard_normal(3)
     if kind == 0:
-        return iiwa_dnn.Sphere(center, 0.08, **move)
+        return swinging(iiwa_dnn.Sphere, *rest)(center, 0.08, **move)
     if kind == 1:
         end = center + 0.2 * random.standard_normal(3)
-        return iiwa_dnn.Capsule(center, end, 0.05, **move)
+        return swinging(iiwa_dnn.Capsule, *rest)(center, end, 0.05, **move)
     if kind == 2:
-        return iiwa_dnn.Box(center, [0.08, 0.1, 0.06], **move)
+        return swinging(iiwa_dnn.Box, *rest)(center, [0.08, 0.1, 0.06], **move)
     normal = random.standard_normal(3)
     normal /= np.linalg.norm(normal)
     offset = float(normal @ tip) - random.uniform(0.1, 0.4)
-    return iiwa_dnn.HalfSpace(normal, offset, **move)
+    return swinging(iiwa_dnn.HalfSpace, *rest)(normal, offset, **move)
 
 
 def draw_case(seed: int, exported: bool = False) -> Case:
@@ -146,7 +147,7 @@ def draw_case(seed: int, exported: bool = False) -> Case:
     hostile = min(int(HOSTILE / dt), MOST) * (LONGER if exported else 1)
     moving = bool(random.random() < 0.3) and not exported
     obstacles = [
-        draw_obstacle(random, start.position, sway(random, hostile * dt) if moving else {})
+        draw_obstacle(random, start.position, sway(random, hostile * dt) if moving else None)
         for _ in range(random.integers(1, 4))
     ]
     nearest = (24, 64)[random.integers(2)]

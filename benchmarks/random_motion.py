@@ -8,7 +8,6 @@ how small it can have been, and intervals are halved until the bound says enough
 
 import sys
 import time
-from collections.abc import Callable
 from typing import Any
 
 import coal
@@ -38,20 +37,25 @@ class Wander(iiwa_dnn.Cost):
         return np.eye(step.q.size), -draw.choice([-1.0, 1.0], step.q.size) * self._robot.dq_max
 
 
-def swing(direction: Vector, speed: float, rate: float) -> Callable[[float], Vector]:
-    """Return a sinusoidal displacement [m] along a unit vector, no faster than `speed`."""
-    return lambda t: np.sin(rate * t) * speed / rate * direction
+def swinging(kind: type[Any], rate: float = 1.0, until: float = np.inf) -> type[Any]:
+    """Return a shape that swings at a rate [1/s] up to a time [s], no faster than its velocity."""
+
+    def shift(obstacle: Any, t: float) -> Vector:
+        shifted: Vector = np.sin(rate * min(t, until)) / rate * np.array(obstacle.velocity)
+        return shifted
+
+    return type(kind.__name__, (kind,), {"shift": shift})
 
 
 def obstacles_for(moving: bool) -> list[Any]:
     """Return one obstacle of each kind, around an arm of 0.9 m at the origin."""
-    path = {"motion": swing(np.array([0.0, 1.0, 0.0]), 0.1, 1.0), "speed": 0.1} if moving else {}
+    path = {"velocity": (0.0, 0.1, 0.0)} if moving else {}
     wedge = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.3], [0.1, 0.1, 0.2]])
     return [
-        iiwa_dnn.Sphere([0.45, 0.35, 0.5], 0.1, **path),
-        iiwa_dnn.Capsule([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, **path),
+        swinging(iiwa_dnn.Sphere)([0.45, 0.35, 0.5], 0.1, **path),
+        swinging(iiwa_dnn.Capsule)([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, **path),
         iiwa_dnn.Box([0.5, -0.45, 0.3], [0.1, 0.1, 0.3]),
-        iiwa_dnn.ConvexMesh((wedge + [-0.5, -0.6, 0.3]).tolist(), **path),
+        swinging(iiwa_dnn.ConvexMesh)((wedge + [-0.5, -0.6, 0.3]).tolist(), **path),
         iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.15),
     ]
 

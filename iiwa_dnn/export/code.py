@@ -138,14 +138,10 @@ def check(controller: Controller, step: ControlStep) -> None:
 
 
 def _check_motion(part: Any) -> None:
-    """Raise an InvalidInputError unless a limit moves by constant velocities alone."""
+    """Raise an InvalidInputError unless a limit moves by the velocities of obstacles alone."""
     if not isinstance(part, CollisionAvoidance):
         problem = f"{type(part).__name__} moves by numpy, which is not exported"
         raise InvalidInputError("scheme", problem, part)
-    for obstacle in part.obstacles:
-        if obstacle.motion is not None:
-            problem = f"{type(obstacle).__name__} moves by a function, which is not exported: "
-            raise InvalidInputError("obstacles", f"{problem}give it a velocity", obstacle)
 
 
 def _motions(program: StepProgram) -> list[tuple[int, Vector, Vector]]:

@@ -1,53 +1,46 @@
 """Obstacles that an arm keeps away from: convex shapes in the world, still or moving."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, suggestion
 from iiwa_dnn.files import one_line
 
-Motion = Callable[[float], ArrayLike]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Obstacle(ABC):
-    """A convex shape that stands still or is moved without being turned.
+    """A convex shape that stands still or moves without turning.
 
     Attributes:
         velocity: Constant velocity [m/s], (3,).
-        motion: Displacement [m], (3,), at a time [s], in place of a velocity; a function of the
-            time alone, so that a record can be made of it.
-        speed: Bound on the speed [m/s], needed with `motion`; that of `velocity`, if larger.
 
     Raises:
         InvalidInputError: A parameter is wrong; it is named. So do all shapes.
     """
 
     velocity: Sequence[float] = (0.0, 0.0, 0.0)
-    motion: Motion | None = None
-    speed: float = 0.0
 
     def __post_init__(self) -> None:
         for name in {"center", "a", "b", "half_extents", "velocity"} & vars(self).keys():
             self._set(name, checks.vector3(name, getattr(self, name)))
         if hasattr(self, "radius"):
             checks.positive("radius", self.radius)
-        own = float(np.linalg.norm(self.velocity))
-        self._set("speed", max(own, checks.not_negative("speed", self.speed)))
-        if self.motion is not None and (own > 0.0 or not self.speed > 0.0):
-            problem = "a motion needs a bound on its speed above 0, and no velocity beside it"
-            raise InvalidInputError("speed", problem, self.speed)
 
     @property
     def moves(self) -> bool:
         """True if the obstacle ever moves."""
-        return self.motion is not None or any(self.velocity)
+        return any(self.velocity)
+
+    @property
+    def speed(self) -> float:
+        """Bound on the speed [m/s]."""
+        return float(np.linalg.norm(self.velocity))
 
     @property
     @abstractmethod
@@ -61,15 +54,11 @@ class Obstacle(ABC):
 
     def shift(self, t: float) -> checks.Array:
         """Return the displacement at a time [s], (3,) [m]."""
-        if self.motion is None:
-            return t * np.asarray(self.velocity)
-        return checks.finite_array("motion", self.motion(t), (3,))
+        return t * np.asarray(self.velocity)
 
     def settings(self) -> dict[str, Any]:
         """Return shape and parameters as a table of an obstacle file has them."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
-        if values["motion"] is not None:
-            values["motion"] = getattr(self.motion, "__name__", type(self.motion).__name__)
         return {"shape": type(self).__name__} | {k: v for k, v in values.items() if v is not None}
 
     def _set(self, name: str, value: object) -> None:
@@ -209,7 +198,7 @@ def make_obstacle(table: dict[str, Any]) -> Obstacle:
     kind = next((kind for shape, kind in SHAPES.items() if shape.lower() == name), None)
     if kind is None:
         raise InvalidInputError("shape", f"must be one of {', '.join(SHAPES)}, not {name!r}")
-    known = {field.name for field in fields(kind)} - {"motion"}
+    known = {field.name for field in fields(kind)}
     for unknown in sorted(values.keys() - known):
         problem = f"is no parameter of {kind.__name__}{suggestion(unknown, sorted(known))}"
         raise InvalidInputError(unknown, problem)

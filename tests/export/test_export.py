@@ -364,11 +364,6 @@ def _with_own_part() -> Controller:
     return drawing(iiwa_dnn.Scheme(costs, base.tasks, base.limits))[0]
 
 
-def _among_guided() -> Controller:
-    ball = iiwa_dnn.Sphere((1.0, 1.0, 1.0), 0.1, motion=lambda t: (t, 0.0, 0.0), speed=1.0)
-    return drawing(with_parts(limits=(iiwa_dnn.CollisionAvoidance([ball]),)))[0]
-
-
 class _Closing(iiwa_dnn.JointLimits):
     def refresh(self, step: iiwa_dnn.Step, constants: np.ndarray) -> None:
         constants *= 0.99
@@ -389,7 +384,6 @@ class _Eager(iiwa_dnn.ProjectionNetwork):
     ("make", "words"),
     [
         (_with_own_part, "Manipulability is written with numpy"),
-        (_among_guided, "obstacles: Sphere moves by a function"),
         (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing moves by numpy"),
         (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
         (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),

@@ -61,6 +61,15 @@ class PushedPlant(IdealPlant):
         return Moved(self._q)
 
 
+class _Dragged(Sphere):
+    """A sphere where its ball is, whatever the time."""
+
+    def shift(self, t: float) -> FloatArray:
+        """Return the displacement of the ball [m], (3,)."""
+        ball: Ball = vars(self)["ball"]
+        return ball.shift
+
+
 class Ball:
     """A sphere that moves to a point at `TIP_SPEED`.
 
@@ -72,14 +81,19 @@ class Ball:
         """Begin at a point (3,) [m]."""
         self._start = np.array(center)
         self._shift: FloatArray = np.zeros(3)
-        self.obstacle = Sphere(
-            self._start.tolist(), radius, motion=lambda _: self._shift, speed=TIP_SPEED
-        )
+        fastest = (TIP_SPEED, 0.0, 0.0)  # whose length bounds the ball's speed
+        self.obstacle = _Dragged(self._start.tolist(), radius, velocity=fastest)
+        object.__setattr__(self.obstacle, "ball", self)
 
     @property
     def position(self) -> FloatArray:
         """The center [m], (3,)."""
         return self._start + self._shift
+
+    @property
+    def shift(self) -> FloatArray:
+        """The displacement from the start [m], (3,)."""
+        return self._shift
 
     def move(self, goal: ArrayLike, dt: float) -> None:
         """Move towards a point (3,) [m] for a time [s]."""
