@@ -395,13 +395,32 @@ def test_what_is_not_compiled_is_refused_by_name(make, words: str, tmp_path: Pat
     assert not (tmp_path / "none").exists()
 
 
+class _Plain(iiwa_dnn.Heart):
+    """A heart in Python."""
+
+    def move(self, t: float, target: np.ndarray) -> None:
+        super().move(t, target)
+
+
 def test_a_reference_without_compiled_form_leaves_the_targets_to_the_caller(tmp_path: Path) -> None:
-    controller, q0 = drawing(path=iiwa_dnn.Tilting())
+    controller, q0 = drawing(path=_Plain())
     folder = c99(controller, tmp_path, q0, verify=False)
     exported = loaded(folder, QUICKEST)
     assert not exported.has_reference
     assert "controller_target" not in (folder / "README.md").read_text(encoding="utf-8")
     run("gcc", *WARNINGS, "-fsyntax-only", folder / "example.c")
+
+
+@pytest.mark.parametrize(
+    "path", [iiwa_dnn.Tilting(), iiwa_dnn.Tilting(iiwa_dnn.Waypoints([0, 1], np.eye(2, 3)))]
+)
+def test_a_tilting_path_is_exported(path: iiwa_dnn.Reference, tmp_path: Path) -> None:
+    controller, q0 = drawing(path=path)
+    exported = loaded(c99(controller, tmp_path, q0, verify=False), QUICKEST)
+    assert exported.has_reference
+    for t in (0.0, 0.3, 0.9):
+        ours = controller.targets(t)[0]
+        np.testing.assert_allclose(exported.target(t).ravel(), ours, rtol=0, atol=1e-12)
 
 
 def test_the_controller_that_is_exported_stays_as_it_is(tmp_path: Path) -> None:
