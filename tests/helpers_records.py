@@ -30,7 +30,12 @@ def make_settings(
         "dt": 0.1,
         "duration": 1.0,
         "mode": "converged",
-        "check": {"solvers": list(solvers), "tolerance": 1e-6, "reference_tolerance": 1e-8},
+        "check": {
+            "solvers": list(solvers),
+            "second": ["osqp" if name == "proxqp" else "proxqp" for name in solvers],
+            "tolerance": 1e-6,
+            "reference_tolerance": 1e-8,
+        },
         "tol": 1e-9,
         "scheme": {"name": "DoubleIndicator", "weight": 0.2, "kinetic": "identity"},
         "reference": {"name": "Heart", "scale": 3.45e-3, "period": 10.0},

@@ -1,16 +1,20 @@
-"""Tables, lists and pictures in Markdown."""
+"""Tables, lists and pictures in Markdown, and tables for papers."""
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+
+from tabulate import tabulate
 
 from iiwa_dnn.files import write_text
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out a table in Markdown, its cells made fit to stand in one."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(_cell(text) for text in line) + " |" for line in lines)
+    """Lay out a table of texts in Markdown, its cells made fit to stand in one."""
+    cells = [[" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in rows]
+    table = tabulate(cells, head, "pipe", disable_numparse=True)
+    return re.sub("  +", " ", re.sub("--+", "---", table))  # without the padding
 
 
 def save_markdown(folder: str | os.PathLike[str], parts: Iterable[str]) -> Path:
@@ -20,7 +24,7 @@ def save_markdown(folder: str | os.PathLike[str], parts: Iterable[str]) -> Path:
     return path
 
 
-def number(value: float | None, form: str = ".6g", unknown: str = "unknown") -> str:
+def number(value: float | None, form: str = ".4g", unknown: str = "unknown") -> str:
     """Write a number in a format, if there is one."""
     return unknown if value is None else format(value, form)
 
@@ -36,7 +40,3 @@ def show_figures(figures: Iterable[Path], captions: Mapping[str, str]) -> list[s
     named = ((path.stem.replace("_", " ").capitalize() + ".", path) for path in shown)
     pictures = [f"![{captions.get(path.stem, name)}]({path.name})" for name, path in named]
     return ["## Figures", *pictures] if shown else []
-
-
-def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")

@@ -1,6 +1,5 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from itertools import product
@@ -17,10 +16,11 @@ from iiwa_dnn.results.record import RATES, FloatArray, Record
 PROOF = "proof"
 """Name of the proof among a run's reference solvers."""
 
-KINDS_OF_PROGRAM = ("own", "scaled", "softened", "held", "stopped")
+PROGRAMS = ("own", "scaled", "softened", "held", "stopped")
 """Kinds of a step by their codes in `Record.kind`."""
 
-_HELD, _STOPPED = (KINDS_OF_PROGRAM.index(name) for name in ("held", "stopped"))
+_HELD = PROGRAMS.index("held")
+_STOPPED = PROGRAMS.index("stopped")
 
 EXCESS_TOLERANCE = 1e-9
 """Excess of a command over the bounds and rows of its own step that is rounding."""
@@ -28,8 +28,8 @@ EXCESS_TOLERANCE = 1e-9
 BOUNDS = "bounds"
 """Name of what judges a command beside its step's own bounds and rows."""
 
-_SLOW, _RELAX, _STOP = 2, 3, 4
-ACTIONS = {_SLOW: "slow", _RELAX: "relax", _STOP: "stop", 5: "euler"}
+_SLOW = 2
+ACTIONS = {_SLOW: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5
@@ -54,14 +54,16 @@ def position_error(record: Record) -> FloatArray:
     return record.position - record.position_desired
 
 
-def start_distance(record: Record) -> float:
-    """Compute the distance between tip and path at the start of a run [m]."""
-    return float(np.linalg.norm(position_error(record)[0]))
-
-
 def orientation_error(record: Record) -> FloatArray:
     """Compute the angle between the tip's orientation and the desired one [rad], (N+1,)."""
     return rotation_angle(record.rotation, record.rotation_desired)
+
+
+def frame_errors(record: Record) -> tuple[FloatArray, FloatArray]:
+    """Compute distances [m] and angles [rad] of the f further frames to their targets, (N+1, f)."""
+    offset = record.frame_position - record.frame_position_desired
+    angle = rotation_angle(record.frame_rotation, record.frame_rotation_desired)
+    return np.linalg.norm(offset, axis=2), angle
 
 
 def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
@@ -78,45 +80,31 @@ def rotation_angle(rotation: FloatArray, desired: FloatArray) -> FloatArray:
     return angle
 
 
-def position_limit_excess(record: Record) -> FloatArray:
-    """Compute the distance of each joint beyond its position limits [rad], (N+1, n); 0 inside."""
+def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
+    """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
+    values = record.settings[key]
+    return np.array([unlimited if value is None else value for value in values], dtype=float)
+
+
+def _position_excess(record: Record) -> FloatArray:
+    """Compute the distance of each joint beyond its position limits [rad], (N+1, n)."""
     # np.maximum, unlike max(), lets a NaN through.
-    below = np.maximum(limits(record, "q_lower", -np.inf) - record.q, 0.0)
+    below = limits(record, "q_lower", -np.inf) - record.q
     excess: FloatArray = np.maximum(below, record.q - limits(record, "q_upper"))
     return excess
 
 
-def velocity_limit_excess(record: Record) -> FloatArray:
-    """Compute the excess of each joint's speed over its limit [rad/s], (N, n); 0 below."""
-    excess: FloatArray = np.maximum(np.abs(_judged(record)) - limits(record, "dq_max"), 0.0)
-    return excess
-
-
-def _judged(record: Record) -> FloatArray:
-    """Return the velocities that are judged (N, n) [rad/s]: a real arm's commands, else the motion.
-
-    Its encoders' differences are noise, and what its drives make of a command it judges itself.
-    """
-    return record.dq_solver if "plant" in record.settings else record.dq
-
-
-def rate_limit_excess(record: Record, order: int) -> FloatArray:
-    """Compute the excess of each joint's acceleration or jerk over its limit, (N, n); 0 below.
+def _rate_excess(record: Record, order: int) -> FloatArray:
+    """Compute the excess of each joint's acceleration or jerk over its limit, (N, n).
 
     Finite differences of the commands, from rest, less the rounding that they carry on; the order
-    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3]. Where commands came too late for
-    a real arm, those after them go on from what the arm has done in their place.
+    is 1 for the acceleration [rad/s^2], 2 for the jerk [rad/s^3].
     """
     dt = record.settings["dt"]
-    commands = _judged(record)
-    from_rest = np.vstack([np.zeros((order, record.dof)), commands])
+    from_rest = np.vstack([np.zeros((order, record.dof)), record.dq])
     rates = np.diff(from_rest, order, axis=0) / dt**order
-    late = np.searchsorted(record.t[:-1], record.settings.get("plant", {}).get("late_s", ()))
-    for k in late:
-        rates[max(k - 1, 0) : k + order] = 0.0
-    rounding = 8.0 * np.finfo(float).eps * np.abs(commands).max(initial=1.0) * (2.0 / dt) ** order
-    allowed = limits(record, RATES[order - 1]) + rounding
-    excess: FloatArray = np.maximum(np.abs(rates) - allowed, 0.0)
+    rounding = 8.0 * np.finfo(float).eps * np.abs(record.dq).max(initial=1.0) * (2.0 / dt) ** order
+    excess: FloatArray = np.abs(rates) - (limits(record, RATES[order - 1]) + rounding)
     return excess
 
 
@@ -139,31 +127,29 @@ class JointLimit(NamedTuple):
 
 
 JOINT_LIMITS = (
-    JointLimit("position", "q_upper", "position_limit_violation_rad", "rad", position_limit_excess),
+    JointLimit("position", "q_upper", "position_limit_violation_rad", "rad", _position_excess),
     JointLimit(
-        "velocity", "dq_max", "velocity_limit_violation_rad_s", "rad/s", velocity_limit_excess
+        "velocity",
+        "dq_max",
+        "velocity_limit_violation_rad_s",
+        "rad/s",
+        lambda record: np.abs(record.dq) - limits(record, "dq_max"),
     ),
     JointLimit(
         "acceleration",
         "ddq_max",
         "acceleration_limit_violation_rad_s2",
         "rad/s^2",
-        partial(rate_limit_excess, order=1),
+        partial(_rate_excess, order=1),
     ),
     JointLimit(
         "jerk",
         "dddq_max",
         "jerk_limit_violation_rad_s3",
         "rad/s^3",
-        partial(rate_limit_excess, order=2),
+        partial(_rate_excess, order=2),
     ),
 )
-
-
-def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
-    """Return a limit of each joint out of the settings, (n,); None there stands for no limit."""
-    values = record.settings[key]
-    return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
 def compute_metrics(record: Record) -> dict[str, Any]:
@@ -174,12 +160,12 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     the path once, or the run's if it is shorter. The mean squared error
     ``mse_position_error_m2`` is the mean over the N+1 samples *and* the three axes, which is most
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
-    simulated; ``settings["duration"]`` was asked for. A run in physics also has ``physics``
-    (torques, settled error, recovery from a push), one that tracks several frames ``frames``
-    (largest errors of those beside the first), one with priorities ``level_residual`` (the largest
-    of each level), a run in which a bound, an inequality row, a policy
-    or clipping acted ``incidents``, one that avoids collisions ``collisions`` (the nearest pair,
-    and by how much it came nearer than it may).
+    simulated; ``settings["duration"]`` was asked for. ``violations`` says of each broken limit
+    where its excess is largest, ``unsolved`` of the answers above the tolerance which is the first.
+    A run in physics also has ``physics`` (torques, settled error, recovery from a push), one that
+    tracks several frames ``frames`` (largest errors of those beside the first), a run in which a
+    bound, an inequality row, a policy or clipping acted ``incidents``, one that avoids collisions
+    ``collisions`` (the nearest pair, and by how much it came nearer than it may).
 
     Args:
         record: The run.
@@ -193,9 +179,13 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     duration = float(record.t[-1] - record.t[0])
     wall = record.wall_time_s
     settings = record.settings
+    broken = {
+        limit.metric: limit.excess(record) for limit in JOINT_LIMITS if limit.setting in settings
+    }
     metrics: dict[str, Any] = plain(
         {
             "path_completed": record.path_completed,
+            "start_distance_m": distance[0],
             "max_position_error_m": distance.max(),
             "mse_position_error_m2": np.mean(error**2),
             "max_orientation_error_rad": orientation_error(record).max(),
@@ -206,12 +196,10 @@ def compute_metrics(record: Record) -> dict[str, Any]:
             "duration_s": duration,
             "wall_time_s": wall,
             "realtime_factor": duration / wall if wall else None,
-            **{
-                limit.metric: limit.excess(record).max(initial=0.0)
-                for limit in JOINT_LIMITS
-                if limit.setting in settings
-            },
+            **{name: excess.max(initial=0.0) for name, excess in broken.items()},
+            "violations": {name: _worst(record, excess) for name, excess in broken.items()},
             "max_kkt_residual": _max(record.kkt_residual),
+            "unsolved": _unsolved(record),
             "active_limit_steps": _active(record).sum(),
             "network_iterations": {
                 "mean": record.iterations.mean() if record.steps else None,
@@ -229,31 +217,35 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     return metrics
 
 
-def frame_errors(record: Record) -> tuple[FloatArray, FloatArray]:
-    """Compute distances [m] and angles [rad] of the f further frames to their targets, (N+1, f)."""
-    offset = record.filled("frame_position") - record.filled("frame_position_desired")
-    rotation = record.filled("frame_rotation")
-    angle = rotation_angle(rotation, record.filled("frame_rotation_desired"))
-    return np.linalg.norm(offset, axis=2), angle
-
-
-def _frames(record: Record) -> dict[str, Any]:
-    """Sum up the errors of the tracked frames beside the first, and the residuals of the levels."""
-    found: dict[str, Any] = {}
-    if record.frame_position is not None:
-        largest = [errors.max(axis=0) for errors in frame_errors(record)]
-        found["frames"] = {
-            name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
-            for name, distance, angle in zip(record.settings["frames"], *largest, strict=True)
-        }
-    if record.level_residual is not None and record.steps:
-        found["level_residual"] = record.level_residual.max(axis=0)
-    return found
-
-
 def _max(values: NDArray[Any]) -> Any:
     """Return the largest value (NaN if there is one), None of no values."""
     return values.max() if values.size else None
+
+
+def _first(record: Record, acts: BoolArray) -> dict[str, Any] | None:
+    """Count steps (N,), and name the first of them."""
+    steps = np.flatnonzero(acts)
+    if not steps.size:
+        return None
+    return {"steps": steps.size, "step": steps[0], "time_s": record.t[steps[0]]}
+
+
+def _unsolved(record: Record) -> dict[str, Any] | None:
+    """Count the answers above the tolerance, and name the first of them."""
+    first = _first(record, ~(record.kkt_residual <= record.settings["tol"]))
+    return first and first | {"residual": record.kkt_residual[first["step"]]}
+
+
+def _worst(record: Record, excess: FloatArray) -> dict[str, Any] | None:
+    """Name the joint and the step of the largest excess (k, n) above zero."""
+    if not excess.max(initial=0.0) > 0.0:
+        return None
+    step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
+    return {
+        "joint": joint_name(record.settings, int(joint)),
+        "step": step,
+        "time_s": record.t[step],
+    }
 
 
 def _active(record: Record) -> BoolArray:
@@ -262,97 +254,94 @@ def _active(record: Record) -> BoolArray:
     return np.asarray(np.hstack(multipliers).any(axis=1))
 
 
-def program_kinds(record: Record) -> Codes:
-    """Return what each step answered, (N,): places in `KINDS_OF_PROGRAM`."""
-    if record.kind is not None:
-        return record.kind
-    action = record.filled("action")
-    return np.select([action == _SLOW, action == _RELAX, action == _STOP], [1, 2, _STOPPED])
-
-
 def _crosscheck(record: Record) -> dict[str, Any]:
     """Count and size the differences to the reference solvers.
 
     An answer is believed only if the reference's own residual is within its tolerance; the gaps
-    of the others are counted as `reference_failures` and enter no maximum.
+    of the others are counted as `reference_failures` and enter no maximum. A command outside of the
+    bounds and rows of its own step disagrees whatever the references say; of a stopped step there
+    is nothing to check.
     """
     check = record.settings["check"]
+    kind = record.filled("kind")
     gap = record.solution_gap
     residual = record.reference_residual
-    kinds = program_kinds(record)
-    # A residual without a gap is an answer too: the network's own was then not a number. Of a
-    # stopped step there is nothing to ask.
-    asked = ~(np.isnan(gap) & np.isnan(residual)) & (kinds != _STOPPED)[:, np.newaxis]
+    converged = record.settings["mode"] == "converged"
+    # A residual without a gap is an answer too: the network's own was then not a number.
+    asked = ~(np.isnan(gap) & np.isnan(residual)) & (kind != _STOPPED)[:, np.newaxis]
     believed = asked & (residual <= check["reference_tolerance"]) & ~np.isinf(gap)
-    judged = record.settings["mode"] == "converged" and record.references > 0
     # Not `gap > tolerance`, which a NaN would pass.
-    disagrees = believed & ~(gap <= check["tolerance"]) & judged
+    differs = believed & ~(gap <= check["tolerance"]) & converged
     excess = record.filled("excess")
-    outside = ~(excess <= EXCESS_TOLERANCE) & (kinds != _STOPPED)
-    outside &= record.settings["mode"] == "converged"
+    outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED) & converged
+    disagrees = differs.any(axis=1) | outside
     checked = asked.all(axis=1) & (record.references > 0)
     proofs = [name == PROOF for name in check["solvers"]]
-    proven = {"proven": int(believed[:, proofs].sum())} if any(proofs) else {}
+    first = _first(record, disagrees)
     return {
         "solver": "+".join(check["solvers"]) or "none",
-        **proven,
-        "steps_checked": int(checked.sum()),
+        **({"proven": believed[:, proofs].sum()} if any(proofs) else {}),
+        "steps_checked": checked.sum(),
         "kinds": {
-            name: int(((kinds == code) & (checked | (code >= _HELD))).sum())
-            for code, name in enumerate(KINDS_OF_PROGRAM)
+            name: ((kind == code) & (checked | (code >= _HELD))).sum()
+            for code, name in enumerate(PROGRAMS)
         },
-        **_judged_by(record, asked),
-        "disagreements": int((disagrees.any(axis=1) | outside).sum()),
-        "reference_failures": int((asked & ~believed).sum()),
+        "judged_by": _judged_by(record, asked),
+        "disagreements": disagrees.sum(),
+        "reference_failures": (asked & ~believed).sum(),
         "max_solution_gap": _max(gap[believed]),
         "max_objective_gap": _max(record.objective_gap[believed]),
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
         "max_excess": _max(excess),
-        "judged": judged,
+        "judged": converged and record.references > 0,
         "tolerance": check["tolerance"],
-        "first_disagreement": _first_disagreement(record, disagrees, outside),
+        "first_disagreement": first and _who(record, first, differs, outside),
     }
 
 
-def _judged_by(record: Record, asked: BoolArray) -> dict[str, Any]:
+def _judged_by(record: Record, asked: BoolArray) -> dict[str, int]:
     """Count the answers that each solver judged: those asked for, and the second ones."""
-    if record.judge is None:
-        return {}
-    counts: Counter[str] = Counter()
-    for i, name in enumerate(record.settings["check"]["solvers"]):
-        second = "osqp" if name == "proxqp" else "proxqp"
-        for code, solver in enumerate((name, second)):
-            counts[solver] += int((asked[:, i] & (record.judge[:, i] == code)).sum())
-    return {"judged_by": {solver: count for solver, count in counts.items() if count}}
+    check = record.settings["check"]
+    names = zip(check["solvers"], check.get("second", check["solvers"]), strict=False)
+    counts: dict[str, int] = {}
+    for i, pair in enumerate(names if len(record.judge) else ()):
+        for code, solver in enumerate(pair):
+            judged = int((asked[:, i] & (record.judge[:, i] == code)).sum())
+            counts[solver] = counts.get(solver, 0) + judged
+    return {solver: count for solver, count in counts.items() if count}
 
 
-def _first_disagreement(
-    record: Record, disagrees: BoolArray, outside: BoolArray
-) -> dict[str, Any] | None:
-    """Name the first step that disagrees, and the solver that differs most there, or its bounds."""
-    wrong = np.flatnonzero(disagrees.any(axis=1) | outside)
-    if not wrong.size:
-        return None
-    step = int(wrong[0])
-    found = {"step": step, "time_s": record.t[step]}
+def _who(
+    record: Record, first: dict[str, Any], differs: BoolArray, outside: BoolArray
+) -> dict[str, Any]:
+    """Name the solver that differs most at the first step that disagrees, or its bounds."""
+    step = first["step"]
+    found = {"step": step, "time_s": first["time_s"]}
     if outside[step]:
-        return found | {"solver": BOUNDS, "gap": record.filled("excess")[step]}
+        return found | {"solver": BOUNDS, "gap": record.excess[step]}
     gap = record.solution_gap[step]
-    solver = int(np.argmax(np.where(disagrees[step], gap, -np.inf)))
+    solver = int(np.argmax(np.where(differs[step], gap, -np.inf)))
     return found | {"solver": record.settings["check"]["solvers"][solver], "gap": gap[solver]}
 
 
 def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
     """Sum up torques, settled error and recovery from the distance to the path [m], (N+1,)."""
-    if record.torque is None:
+    if not len(record.torque):
         return {}
-    largest = np.abs(record.torque).max(axis=0, initial=0.0)
+    torque = np.abs(record.torque)
+    limit = limits(record, "torque_max")
+    reached = [_first(record, ~(torque[:, i] < limit[i])) for i in range(record.dof)]
     physics = {
         "settled_after_s": SETTLED_AFTER,
         "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
-        "max_torque_n_m": largest,
+        "max_torque_n_m": torque.max(axis=0),
         "torque_limit_n_m": record.settings["torque_max"],
-        "max_torque_share": (largest / limits(record, "torque_max")).max(),
+        "max_torque_share": (torque.max(axis=0) / limit).max(),
+        "torque_limit_reached": [
+            {"joint": joint_name(record.settings, i), "limit_n_m": limit[i], **first}
+            for i, first in enumerate(reached)
+            if first is not None
+        ],
         "push": _push(record, distance),
     }
     return {"physics": physics}
@@ -364,10 +353,9 @@ def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
     if push is None:
         return None
     end = push["start"] + push["duration"]
-    after = record.t >= end
-    far = record.t[after & ~(distance <= RECOVERED_BELOW)]
+    far = record.t[(record.t >= end) & ~(distance <= RECOVERED_BELOW)]
     # The first sample after the last one that is too far away.
-    recovered = record.t[after & (record.t > (far[-1] if far.size else -np.inf))]
+    recovered = record.t[(record.t >= end) & (record.t > max([*far[-1:], -np.inf]))]
     return {
         **push,
         "max_position_error_m": _max(distance[record.t >= push["start"]]),
@@ -376,27 +364,56 @@ def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
     }
 
 
+def _frames(record: Record) -> dict[str, Any]:
+    """Sum up the errors of the tracked frames beside the first."""
+    if not len(record.frame_position):
+        return {}
+    largest = [errors.max(axis=0) for errors in frame_errors(record)]
+    frames = {
+        name: {"max_position_error_m": distance, "max_orientation_error_rad": angle}
+        for name, distance, angle in zip(record.settings["frames"], *largest, strict=True)
+    }
+    return {"frames": frames}
+
+
+def _collisions(record: Record) -> dict[str, Any]:
+    """Name the nearest pair of a run, and the distance by which it was too near."""
+    if not len(record.distance):
+        return {}
+    least = int(record.distance.argmin())
+    stated = record.settings["collisions"]
+    first, second = stated["pairs"][int(record.nearest[least])]
+    found = {
+        "least_distance_m": record.distance[least],
+        "first": first,
+        "second": second,
+        "time_s": record.t[least],
+        "allowed_m": stated["distance"],
+        "missing_m": max(0.0, stated["distance"] - float(record.distance[least])),
+    }
+    return {"collisions": found}
+
+
 def _incidents(record: Record) -> dict[str, Any]:
     """Count active bounds and rows, clipped commands, and steps that a policy decided."""
     columns = ("bound_multiplier", "row_multiplier", "clipped", "action")
-    if all(getattr(record, name) is None for name in columns):
+    if not any(len(getattr(record, name)) for name in columns):
         return {}
     action = record.filled("action")
-    blocking = record.filled("blocking")
-    kinds = record.bound_kind
-    if kinds is None:
+    kinds: Codes = record.bound_kind
+    if not len(kinds):
         # A bound is the velocity limit itself, or the tighter one near a position limit.
-        fast = np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max")
-        kinds = 1 + fast
+        kinds = 1 + (np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max"))
     active = _bounds(record, record.filled("bound_multiplier"), np.abs(kinds))
+    first = _first(record, action != 0)
     return {
         "incidents": {
             "clipped_steps": record.filled("clipped").any(axis=1).sum(),
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
-            "needed": _needed(record, action, blocking),
-            "off_path_m": _off_path(record, action, blocking),
-            "first": _first_action(record, action),
+            "needed": _needed(record, action == _SLOW),
+            "off_path_m": _off_path(record, action == _SLOW),
+            "first": first and _what(record, first, action),
             "blocking": _spells(record, _blocking(record)),
             "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
             "active_bounds": _spells(record, active, sized=True),
@@ -405,7 +422,11 @@ def _incidents(record: Record) -> dict[str, Any]:
     }
 
 
-def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | None:
+def _begins_far(record: Record) -> bool:
+    return bool(np.linalg.norm(record.position[0] - record.position_desired[0]) > FAR)
+
+
+def _needed(record: Record, slow: BoolArray) -> dict[str, Any] | None:
     """Estimate what would have sufficed where velocity limits alone slowed the path.
 
     With its velocity over the fraction of the path's speed that it had, a slowed step would have
@@ -413,13 +434,9 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
     left of an incomplete path may need more. A tip that begins far from the path was slowed on its
     way there, which says nothing of the path.
     """
-    slow = action == _SLOW
-    acting = np.abs(blocking[slow])
-    others = (acting != 0) & (acting != _VELOCITY)
-    nothing = ~acting.any(axis=1)
-    far = start_distance(record) > FAR
-    rows = record.filled("blocking_rows").any()
-    if not slow.any() or others.any() or nothing.any() or rows or far:
+    acting = np.abs(record.filled("blocking")[slow])
+    by_velocity = (acting == _VELOCITY).any(axis=1) & np.isin(acting, (0, _VELOCITY)).all(axis=1)
+    if not (slow.any() and by_velocity.all()) or record.blocking_rows.any() or _begins_far(record):
         return None
     fraction = record.filled("fraction")[slow, np.newaxis]
     ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
@@ -429,59 +446,25 @@ def _needed(record: Record, action: Codes, blocking: Codes) -> dict[str, Any] | 
     return named | {"speed_ratio": ratio[joint], "time_s": time}
 
 
-def _off_path(record: Record, action: Codes, blocking: Codes) -> float | None:
+def _off_path(record: Record, slow: BoolArray) -> float | None:
     """Compute the largest distance [m] to the slowed target where inequality rows slowed the path.
 
     A tip that begins far from the path, or that acceleration limits hold back, says nothing of it.
     """
     rows = record.filled("blocking_rows").any(axis=1)
-    slowed = rows & (action == _SLOW) & (np.abs(blocking) <= _VELOCITY).all(axis=1)
-    if not slowed.any() or start_distance(record) > FAR:
+    slowed = rows & slow & (np.abs(record.filled("blocking")) <= _VELOCITY).all(axis=1)
+    if not slowed.any() or _begins_far(record):
         return None
     return float(np.linalg.norm(position_error(record)[1:][slowed], axis=1).max())
 
 
-def _first_action(record: Record, action: Codes) -> dict[str, Any] | None:
-    """Name the first step that a policy decided, and what was in its way."""
-    if not action.any():
-        return None
-    step = int(np.flatnonzero(action)[0])
+def _what(record: Record, first: dict[str, Any], action: Codes) -> dict[str, Any]:
+    """Name the action at the first step that a policy decided, and what was in its way."""
+    step = first["step"]
     name = ACTIONS.get(int(action[step]), "unknown")
     acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
     against = in_the_way({"rows": (), **record.settings}, *acting)
-    return {"step": step, "time_s": record.t[step], "action": name, "against": against}
-
-
-def _collisions(record: Record) -> dict[str, Any]:
-    """Name the nearest pair of a run, and the distance by which it was too near."""
-    if record.distance is None or record.nearest is None:
-        return {}
-    least = int(record.distance.argmin())
-    stated = record.settings["collisions"]
-    first, second = stated["pairs"][int(record.nearest[least])]
-    distance = float(record.distance[least])
-    allowed = float(stated["distance"])
-    return {
-        "collisions": {
-            "least_distance_m": distance,
-            "first": first,
-            "second": second,
-            "time_s": record.t[least],
-            "allowed_m": allowed,
-            "missing_m": max(0.0, allowed - distance),
-        }
-    }
-
-
-def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
-    """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
-    words = bound_words(record.settings)
-    joints = record.settings.get("joints", ())
-    codes = range(1, 1 + len(words))
-    for joint, sign, code in product(range(record.dof), (-1, 1), codes):
-        of_kind = kinds[:, joint] == code
-        name = bound_name(joint, sign * code, words, joints)
-        yield name, np.where(of_kind, sign * signed[:, joint], 0)
+    return {"step": step, "time_s": first["time_s"], "action": name, "against": against}
 
 
 def blocking_limits(record: Record) -> Iterator[Named]:
@@ -491,8 +474,17 @@ def blocking_limits(record: Record) -> Iterator[Named]:
 
 
 def _blocking(record: Record) -> Iterator[Named]:
-    blocking = record.filled("blocking")
-    return _bounds(record, blocking, np.abs(blocking))
+    return _bounds(record, record.filled("blocking"), np.abs(record.filled("blocking")))
+
+
+def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
+    """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
+    words = bound_words(record.settings)
+    joints = record.settings.get("joints", ())
+    codes = range(1, 1 + len(words))
+    for joint, sign, code in product(range(record.dof), (-1, 1), codes):
+        name = bound_name(joint, sign * code, words, joints)
+        yield name, np.where(kinds[:, joint] == code, sign * signed[:, joint], 0)
 
 
 def _rows(record: Record, column: str) -> Iterator[Named]:

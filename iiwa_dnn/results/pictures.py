@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line, write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
-from iiwa_dnn.results.record import FloatArray, IntArray, Record
+from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.results.scenery import SCENERY_GROUP, add_meshes, add_obstacles, make_scenery
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
-from iiwa_dnn.robot.offscreen import import_mujoco, open_context, opengl_library
+from iiwa_dnn.robot.offscreen import import_mujoco, prepare_renderer
 from iiwa_dnn.robot.robot import Robot
 
 if TYPE_CHECKING:
@@ -42,11 +42,9 @@ FRAME_RATE = 25
 WIDTH = 960  # of the video [pixel]
 HEIGHT = 540
 SIDE = 420  # width of the path on its right
-_MARGIN = 12
-
 _DESIRED = (0.2, 0.25, 0.35, 1.0)
 _DRAWN = (0.86, 0.0, 0.1, 1.0)
-
+_REMEDY = "pip install 'iiwa-dnn[sim]'"
 _PIECES = 400  # straight ones that a path is drawn with
 _ENCODING: dict[str, Any] = {
     "codec": "libx264",
@@ -69,7 +67,7 @@ def save_moments(robot: Robot, record: Record, folder: str | os.PathLike[str]) -
 
 
 def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
-    """Draw the arm at five moments, and below each the path so far, face on.
+    """Draw the arm after each fifth of a run, and below each the path so far, face on.
 
     Each picture is `pixels` wide and high.
 
@@ -79,21 +77,16 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
     figure = new_figure(DOUBLE_COLUMN, 2.0 * DOUBLE_COLUMN / MOMENTS + 0.2)
     layout: Any = figure.get_layout_engine()
     layout.set(w_pad=0.02, h_pad=0.02, wspace=0.0, hspace=0.0)
+    times = np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:]
     views: tuple[View, View] = ("arm", "path")
     for panels, view in zip(figure.subplots(2, MOMENTS), views, strict=True):
         with ArmRenderer(robot, record, pixels, pixels, view) as renderer:
-            for panel, t in zip(panels, moments(record), strict=True):
-                sample = sample_at(record, t)
-                panel.imshow(renderer.draw(sample), interpolation="lanczos")
+            for panel, t in zip(panels, times, strict=True):
+                panel.imshow(renderer.draw(sample_at(record, t)), interpolation="lanczos")
                 panel.set_axis_off()
                 if view == "arm":
-                    panel.set_title(f"$t$ = {record.t[sample]:.3g} s", fontsize=8, pad=3)
+                    panel.set_title(f"$t$ = {t:.3g} s", fontsize=8, pad=3)
     return figure
-
-
-def moments(record: Record) -> list[float]:
-    """Return the times that the figure shows [s]."""
-    return list(map(float, np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:]))
 
 
 def save_video(
@@ -114,39 +107,35 @@ def save_video(
     path = Path(path)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "video.mp4"
-        size = (WIDTH, HEIGHT)
-        writer = encoder.write_frames(str(file), size, fps=FRAME_RATE, **_ENCODING)
         try:
-            writer.send(None)
-            for frame in frames(robot, record):
-                writer.send(np.ascontiguousarray(frame))
-                if progress is not None:
-                    progress(1)
+            with encoder.get_writer(file, fps=FRAME_RATE, **_ENCODING) as writer:
+                for frame in frames(robot, record):
+                    writer.append_data(frame)
+                    if progress is not None:
+                        progress(1)
         except OSError as error:
             raise FileError(path, f"cannot be encoded ({one_line(error)})") from error
-        finally:
-            writer.close()
         write_atomically(path, lambda target: target.write(file.read_bytes()))
     return path
 
 
 def import_encoder() -> Any:
-    """Import imageio-ffmpeg, which brings ffmpeg in its wheel.
-
-    Raises:
-        MissingDependencyError: If it is not installed.
-    """
-    return import_extra("imageio_ffmpeg", "pip install 'iiwa-dnn[sim]'")
+    """Import the writer of videos, a part of the extra ``sim``; raises MissingDependencyError."""
+    import_extra("imageio_ffmpeg", _REMEDY)
+    return import_extra("imageio.v2", _REMEDY)
 
 
 def frame_times(record: Record) -> list[float]:
-    """Return the times of the video's pictures [s], the run's first and last among them."""
+    """Return the times of the video's pictures [s], evenly spaced over the run."""
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
     return list(map(float, np.linspace(record.t[0], record.t[-1], count)))
 
 
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
     """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, beside it the path, the time."""
+    from PIL import Image as PillowImage, ImageDraw, ImageFont
+
+    font = ImageFont.load_default(22)
     with ExitStack() as stack:
         left = WIDTH - SIDE
         arm = stack.enter_context(ArmRenderer(robot, record, left, HEIGHT, "arm", smooth=False))
@@ -155,16 +144,14 @@ def frames(robot: Robot, record: Record) -> Iterator[Image]:
             sample = sample_at(record, t)
             frame = np.hstack([arm.draw(sample), path.draw(sample)])
             frame[:, left : left + 2] = 160  # a border
-            yield _captioned(frame, f"t = {t:5.2f} s")
+            picture = PillowImage.fromarray(frame)
+            ImageDraw.Draw(picture).text((16, 12), f"t = {t:5.2f} s", fill=(40, 40, 40), font=font)
+            yield np.asarray(picture)
 
 
-def _captioned(frame: Image, text: str) -> Image:
-    from PIL import Image as PillowImage, ImageDraw, ImageFont
-
-    picture = PillowImage.fromarray(frame)
-    font = ImageFont.load_default(22)
-    ImageDraw.Draw(picture).text((_MARGIN + 4, _MARGIN), text, fill=(40, 40, 40), font=font)
-    return np.asarray(picture)
+def sample_at(record: Record, t: float) -> int:
+    """Return the index of the record's sample nearest to a time [s]."""
+    return int(np.abs(record.t - t).argmin())
 
 
 class ArmRenderer(AbstractContextManager["ArmRenderer"]):
@@ -190,61 +177,69 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
             InvalidInputError: MuJoCo cannot take the robot.
         """
         self._mj = import_mujoco()
-        opengl_library()  # before the slow part
+        prepare_renderer()  # before the slow part
         self._record = record
         self._view = view
-        self._paths = _paths(record, view)
         arm = build_spec(robot)
         if view == "arm":
             add_meshes(self._mj, arm, robot)
         spec = make_scenery(self._mj, record)
         spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
         self._obstacles = add_obstacles(self._mj, spec, record)
-        self._model = spec.compile()
-        self._data = self._mj.MjData(self._model)
+        model = spec.compile()
+        model.vis.global_.offwidth = width
+        model.vis.global_.offheight = height
+        model.vis.quality.offsamples = 4 if smooth else 0
+        model.vis.quality.shadowsize = 4096 if smooth else 1024
+        self._data = self._mj.MjData(model)
+        self._camera = self._mj.MjvCamera()
         if view == "arm":
-            self._data.qpos[:] = record.q[0]
-            self._mj.mj_kinematics(self._model, self._data)
-            top = float(self._data.xpos[:, 2].max())
-            self._camera = _arm_camera(self._mj, record, top)
+            self._pose(0)
+            _aim_at_arm(self._camera, record, float(self._data.xpos[:, 2].max()))
         else:
-            self._camera = _path_camera(self._mj, record)
+            _aim_at_path(self._camera, record)
             self._camera.distance *= max(1.0, height / width)  # its angle is that of the height
-        self._options = _options(self._mj, view)
-        most = self._model.ngeom + 2 * _PIECES * len(self._paths) + 10
-        self._screen = _Screen(self._model, width, height, smooth)
-        self._scene = self._mj.MjvScene(self._model, maxgeom=most)
-        self._scene.flags[self._mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
+        self._options = self._mj.MjvOption()
+        self._options.sitegroup[:] = 0
+        self._options.geomgroup[:] = 0
+        self._options.geomgroup[SCENERY_GROUP] = 1
+        self._options.geomgroup[VISUAL_GROUP] = view == "arm"
+        self._paths = _paths(record, view)
+        most = model.ngeom + 2 * _PIECES * len(self._paths) + 10
+        self._renderer = self._mj.Renderer(model, height, width, most)
+        self._renderer.scene.flags[self._mj.mjtRndFlag.mjRND_SHADOW] = view == "arm"
 
     def __exit__(self, *_: object) -> None:
         """Give the OpenGL context back."""
-        self._screen.free()
+        self._renderer.close()
 
     def draw(self, sample: int) -> Image:
         """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colors to 255."""
-        mj = self._mj
+        self._pose(sample)
+        renderer = self._renderer
+        renderer.update_scene(self._data, self._camera, self._options)
+        width = max(3.0, renderer.height / 130.0)
+        # A little farther off than what is drawn, so that it never shows through that.
+        behind = 2e-3 * self._camera.distance * renderer.scene.camera[0].forward
+        steps = self._record.steps
+        corners = np.linspace(0, steps, min(steps, _PIECES) + 1).astype(int)
+        for desired, drawn in self._paths:
+            self._line(desired[corners] + behind, 0.4 * width, _DESIRED)
+            self._line(drawn[[*corners[corners < sample], sample]], width, _DRAWN)
+        if self._view == "path":  # a dot for the tip
+            size = 0.008 * self._camera.distance
+            sphere = self._mj.mjtGeom.mjGEOM_SPHERE
+            self._geom(sphere, (0.0, 0.0, 0.0, 1.0), size, self._record.position[sample])
+        image: Image = renderer.render()
+        return image
+
+    def _pose(self, sample: int) -> None:
+        """Bring the arm and the obstacles to where they are at a sample."""
         self._data.qpos[:] = self._record.q[sample]
         for i, obstacle in enumerate(self._obstacles):
             self._data.mocap_pos[i] = obstacle.shift(float(self._record.t[sample]))
-        mj.mj_kinematics(self._model, self._data)
-        mj.mj_camlight(self._model, self._data)
-        every = mj.mjtCatBit.mjCAT_ALL.value
-        mj.mjv_updateScene(
-            self._model, self._data, self._options, None, self._camera, every, self._scene
-        )
-        width = max(3.0, self._screen.frame.height / 130.0)
-        # A little farther off than what is drawn, so that it never shows through that.
-        behind = 2e-3 * self._camera.distance * self._scene.camera[0].forward
-        corners = _corners(self._record)
-        passed = [*corners[corners < sample], sample]
-        for desired, drawn in self._paths:
-            self._line(desired[corners] + behind, 0.4 * width, _DESIRED)
-            self._line(drawn[passed], width, _DRAWN)
-        if self._view == "path":  # a dot for the tip
-            size = 0.008 * self._camera.distance
-            black = (0.0, 0.0, 0.0, 1.0)
-            self._geom(mj.mjtGeom.mjGEOM_SPHERE, black, size, self._record.position[sample])
-        return self._screen.image(self._scene)
+        self._mj.mj_kinematics(self._data.model, self._data)
+        self._mj.mj_camlight(self._data.model, self._data)
 
     def _line(self, points: FloatArray, width: float, color: tuple[float, ...]) -> None:
         """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
@@ -256,75 +251,25 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
 
     def _geom(self, kind: Any, color: tuple[float, ...], size: float, at: FloatArray) -> Any:
         """Add a shape to the scene."""
-        geom = self._scene.geoms[self._scene.ngeom]
+        scene = self._renderer.scene
+        geom = scene.geoms[scene.ngeom]
         rgba = np.array(color, dtype=np.float32)
         self._mj.mjv_initGeom(geom, kind, np.full(3, size), at, np.eye(3).ravel(), rgba)
-        self._scene.ngeom += 1
+        scene.ngeom += 1
         return geom
-
-
-class _Screen:
-    """A picture in memory that MuJoCo draws a model into."""
-
-    def __init__(self, model: Any, width: int, height: int, smooth: bool) -> None:
-        self._mj = import_mujoco()
-        self.frame = self._mj.MjrRect(0, 0, width, height)
-        model.vis.global_.offwidth = width
-        model.vis.global_.offheight = height
-        model.vis.quality.offsamples = 4 if smooth else 0
-        model.vis.quality.shadowsize = 4096 if smooth else 1024
-        # Not mujoco.Renderer: which library that draws with was settled when MuJoCo was imported.
-        self._opengl = open_context(width, height)
-        self._drawing = self._mj.MjrContext(model, self._mj.mjtFontScale.mjFONTSCALE_100.value)
-        self._mj.mjr_setBuffer(self._mj.mjtFramebuffer.mjFB_OFFSCREEN.value, self._drawing)
-
-    def image(self, scene: Any) -> Image:
-        """Draw a scene, (height, width, 3)."""
-        image: Image = np.empty((self.frame.height, self.frame.width, 3), dtype=np.uint8)
-        self._opengl.make_current()  # another renderer may have drawn since
-        self._mj.mjr_render(self.frame, scene, self._drawing)
-        self._mj.mjr_readPixels(image, None, self.frame, self._drawing)
-        return image[::-1]  # OpenGL counts rows from below
-
-    def free(self) -> None:
-        """Give the OpenGL context back."""
-        self._opengl.make_current()
-        self._drawing.free()
-        self._opengl.free()
-
-
-def _corners(record: Record) -> IntArray:
-    """Choose the samples that a path is drawn through; a record may have 100,000."""
-    return np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
 
 
 def _paths(record: Record, view: View) -> list[tuple[FloatArray, FloatArray]]:
     """Return the desired and the drawn path, (N+1, 3) each: the tip's, of the arm all frames'."""
     paths = [(record.position_desired, record.position)]
     if view == "arm":
-        desired = record.filled("frame_position_desired").swapaxes(0, 1)
-        paths += zip(desired, record.filled("frame_position").swapaxes(0, 1), strict=True)
+        desired = record.frame_position_desired.swapaxes(0, 1)
+        paths += zip(desired, record.frame_position.swapaxes(0, 1), strict=True)
     return paths
 
 
-def _options(mj: Any, view: View) -> Any:
-    """Choose what is drawn: the scenery, and of the arm's view the arm."""
-    options = mj.MjvOption()
-    options.sitegroup[:] = 0
-    options.geomgroup[:] = 0
-    options.geomgroup[SCENERY_GROUP] = 1
-    options.geomgroup[VISUAL_GROUP] = view == "arm"
-    return options
-
-
-def sample_at(record: Record, t: float) -> int:
-    """Return the index of the record's sample nearest to a time [s]."""
-    return int(np.abs(record.t - t).argmin())
-
-
-def _arm_camera(mj: Any, record: Record, top: float) -> Any:
+def _aim_at_arm(camera: Any, record: Record, top: float) -> None:
     """Aim a camera at the whole arm, up to its top [m], from beside the path."""
-    camera = mj.MjvCamera()
     path = record.position_desired.mean(axis=0)
     radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
     camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * radius])
@@ -335,12 +280,10 @@ def _arm_camera(mj: Any, record: Record, top: float) -> Any:
     # MuJoCo's azimuth is the direction of sight.
     camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
     camera.elevation = -38.0
-    return camera
 
 
-def _path_camera(mj: Any, record: Record) -> Any:
+def _aim_at_path(camera: Any, record: Record) -> None:
     """Aim a camera at the path's own plane, from above where it can."""
-    camera = mj.MjvCamera()
     path = record.position_desired
     camera.lookat[:] = 0.5 * (path.min(axis=0) + path.max(axis=0))
     normal = np.linalg.svd(path - path.mean(axis=0), full_matrices=False)[2][-1]
@@ -349,4 +292,3 @@ def _path_camera(mj: Any, record: Record) -> Any:
     camera.elevation = np.degrees(np.arcsin(np.clip(sight[2], -1.0, 1.0)))
     level = float(np.hypot(sight[0], sight[1]))
     camera.azimuth = 90.0 if level < 1e-6 else np.degrees(np.arctan2(sight[1], sight[0]))
-    return camera

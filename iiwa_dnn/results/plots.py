@@ -1,6 +1,7 @@
 """The figures of a record for print: readable in grey, as PNG and PDF, styled by style.mplstyle.
 
-Matplotlib is imported only when a figure is drawn, and without pyplot: no global state, no window.
+Each ``draw_*`` draws one panel into Axes of one's own. Matplotlib is imported only when a figure is
+drawn, and without pyplot: no global state, no window.
 """
 
 from __future__ import annotations
@@ -13,11 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.naming import describe, short_names
-from iiwa_dnn.results.envelope import BUCKETS, envelope, stretches
+from iiwa_dnn.results.envelope import BUCKETS, envelope
 from iiwa_dnn.results.metrics import (
     blocking_limits,
     frame_errors,
@@ -34,40 +34,37 @@ if TYPE_CHECKING:
 COLUMN = 3.5  # width in a two-column journal [in]
 DOUBLE_COLUMN = 7.0
 STYLE = Path(__file__).with_name("style.mplstyle")
+CAPTIONS = {
+    "overview": "Path, joint angles and velocities with the joints' limits near them, errors and "
+    "kinetic index, and what else the run has. A line is the mean or the largest value, a band the "
+    "range, of each short stretch of time.",
+    "convergence": "KKT residual of the network, and gap to the reference.",
+    "torques": "Joint torques: of each step the largest.",
+    "moments": "The arm, and below it the path so far, face on.",
+}
 
-_ROUGH = 40.0  # sum of the ups and downs of a rough curve, over its largest value
-_COARSE = 60  # stretches that a rough curve is drawn in
 _TAG_HEIGHT = 0.05  # of a limit's name, over the height of the axes
 _MOST_BARS = 6  # limits below the path's time
-
 _JOINTS = {
     "q": (r"$q_{{{}}}$", "Joint angle [rad]"),
     "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]"),
     "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]"),
 }
 _COMPONENTS = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
-_LIMIT_LINE: dict[str, Any] = {"color": "0.0", "linewidth": 0.8, "linestyle": (0, (8, 3))}
+_LIMIT_LINE: dict[str, Any] = {"linewidth": 0.8, "linestyle": (0, (8, 3))}
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
-_TURNS = 1e-9  # change of a desired rotation's entries from which on it is drawn as turning
 _LENGTH_UNITS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 
 
 def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
-    """Draw all figures of a run and write them with `write_figures`.
+    """Draw the figures of a run and write them with `write_figures`.
 
-    The figures are ``overview`` (the paper's Fig. 1 (a)–(d) together), ``path``, ``joint_angles``,
-    ``joint_velocities``, ``position_error``, ``convergence`` (KKT residual and cross-check gap),
-    of a run in physics ``torques``, of one that avoids collisions ``distance``, of one that tracks
-    several frames ``frames`` and of one that was slowed ``path_time``. The same record gives the
-    same bytes.
+    They are ``overview``, ``convergence`` and, of a run in physics, ``torques``. The same record
+    gives the same bytes.
     """
-    drawable = {
-        name: partial(draw, record)
-        for name, draw in FIGURES.items()
-        if name not in _DRAWN_IF or _DRAWN_IF[name](record)
-    }
-    return write_figures(drawable, folder)
+    names = [name for name in FIGURES if name != "torques" or len(record.torque)]
+    return write_figures({name: partial(FIGURES[name], record) for name in names}, folder)
 
 
 def write_figures(
@@ -101,36 +98,44 @@ def write_figures(
     return written
 
 
+def new_figure(width: float, height: float) -> Figure:
+    """Make an empty figure of this size [in] that keeps its parts from overlapping."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
+
+
 def overview_figure(record: Record) -> Figure:
-    """Draw path, joint angles, joint velocities and position error: the paper's Fig. 1 (a)–(d).
+    """Draw path, joints, errors and kinetic index; (a)-(d) are the panels of the paper's Fig. 1.
 
-    If the target turns, (e) is the orientation error against it.
+    A run that was slowed, one that avoids collisions and one that tracks several frames have
+    further panels.
     """
-    turns = bool(np.ptp(record.rotation_desired, axis=0).max() > _TURNS)
-    rows = 3 if turns else 2
-    figure = new_figure(DOUBLE_COLUMN, 2.8 * rows)
-    grid = figure.add_gridspec(rows, 2)
-    draw_path(figure.add_subplot(grid[0, 0], **_projection(record)), record)
-    draw_joints(figure.add_subplot(grid[0, 1]), record, "q")
-    draw_joints(figure.add_subplot(grid[1, 0]), record, "dq")
-    draw_error(figure.add_subplot(grid[1, 1]), record)
-    if turns:
-        axes = figure.add_subplot(grid[2, :])
-        draw_log(axes, record.t, orientation_error(record)[:, None], ["angle to the target"])
-        axes.set_ylabel("Orientation error [rad]")
-        time_axis(axes, record)
-    for axes, letter in zip(figure.axes, "abcde", strict=False):
-        if hasattr(axes, "text2D"):  # a spatial axis turns its label with itself
-            axes.text2D(0.5, -0.1, f"({letter})", transform=axes.transAxes, ha="center")
+    panels: list[Callable[[Any, Record], None]] = [
+        draw_path,
+        partial(draw_joints, name="q"),
+        partial(draw_joints, name="dq"),
+        draw_error,
+        draw_orientation_error,
+        draw_kinetic_index,
+    ]
+    if len(record.frame_position):
+        panels += [partial(draw_frames, name=name) for name in _FRAMES]
+    if (record.fraction < 1.0).any():
+        panels += [draw_path_time, draw_blocking]
+    if len(record.distance):
+        panels.append(draw_distance)
+    rows = (len(panels) + 1) // 2
+    figure = new_figure(DOUBLE_COLUMN, 2.7 * rows)
+    for number, draw in enumerate(panels):
+        spatial = number == 0 and plane_of(record.position_desired) is None
+        axes: Any = figure.add_subplot(rows, 2, number + 1, projection="3d" if spatial else None)
+        draw(axes, record)
+        letter = f"({chr(ord('a') + number)})"
+        if spatial:  # its label would turn with the axis
+            axes.text2D(0.5, -0.1, letter, transform=axes.transAxes, ha="center")
         else:
-            axes.set_xlabel(f"{axes.get_xlabel()}\n({letter})")
-    return figure
-
-
-def path_figure(record: Record) -> Figure:
-    """Draw the desired and actual path: in its plane if it lies in one of the world's."""
-    figure = new_figure(COLUMN, 3.2)
-    draw_path(figure.add_subplot(**_projection(record)), record)
+            axes.set_xlabel(f"{axes.get_xlabel()}\n{letter}")
     return figure
 
 
@@ -139,86 +144,16 @@ def convergence_figure(record: Record) -> Figure:
     rows = 2 if record.references else 1
     figure = new_figure(COLUMN, 1.9 * rows)
     panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    check = record.settings["check"]
-    # In continuous mode both are a lag, which no tolerance is meant for.
-    judged = record.settings["mode"] == "converged"
-    t = record.t[:-1]
-    tolerance = judged * record.settings["tol"]
-    draw_log(panels[0], t, record.kkt_residual[:, None], ["network"], tolerance)
-    panels[0].set_ylabel("KKT residual")
-    if record.references:
-        draw_log(panels[1], t, record.solution_gap, check["solvers"], judged * check["tolerance"])
-        panels[1].set_ylabel("Gap to reference [rad/s]")
-    time_axis(panels[-1], record)
+    for axes, draw in zip(panels, (draw_residual, draw_gap), strict=False):
+        draw(axes, record)
+        axes.label_outer()
     return figure
 
 
-def frames_figure(record: Record) -> Figure:
-    """Draw distance and angle of each tracked frame to its target over time."""
-    figure = new_figure(COLUMN, 3.8)
-    panels = figure.subplots(2, 1, sharex=True)
-    distance, angle = frame_errors(record)
-    tip_distance = np.linalg.norm(position_error(record), axis=1)
-    names = [record.settings["tip"], *record.settings["frames"]]
-    draw_log(panels[0], record.t, np.column_stack([tip_distance, distance]), names)
-    draw_log(panels[1], record.t, np.column_stack([orientation_error(record), angle]), names)
-    panels[0].set_ylabel("Position error [m]")
-    panels[1].set_ylabel("Orientation error [rad]")
-    panels[1].get_legend().remove()
-    time_axis(panels[1], record)
-    return figure
-
-
-def path_time_figure(record: Record) -> Figure:
-    """Draw the path's time over time, slowed stretches shaded, and the limits that slowed it.
-
-    Each limit has a bar where it was in the way, the longest of `_MOST_BARS` first.
-    """
-    slowed = is_slowed(record)
-    bars = [(describe(name), steps > 0) for name, steps in blocking_limits(record)]
-    bars = sorted(bars, key=lambda bar: -bar[1].sum())[:_MOST_BARS]
-    bars = [bar for bar in bars if bar[1].any()] or [("no limit: a singular pose", slowed)]
-    figure = new_figure(COLUMN, 2.4 + 0.25 * len(bars))
-    heights = (1.9, 0.25 * len(bars))
-    clock, limit = figure.subplots(2, 1, sharex=True, height_ratios=heights)
-    start = record.t[0]
-    reached = np.append(0.0, np.cumsum(record.settings["dt"] * record.filled("fraction")))
-    times, reached, _, _ = envelope(record.t, reached)
-    span = record.t[[0, -1]]
-    clock.plot(span, span - start, color="0.55", linestyle="--", label="as planned")
-    clock.plot(times, reached, color="0.0", label="reached")
-    for number, (begin, end) in enumerate(start + np.ptp(span) * stretches(slowed)):
-        clock.axvspan(begin, end, color="0.88", label="" if number else "slowed")
-    clock.set_ylabel("Path time [s]")
-    legend_above(clock, columns=3)
-    for row, (name, steps) in enumerate(bars):
-        begin, end = (start + np.ptp(span) * stretches(steps)).T
-        limit.broken_barh(list(zip(begin, end - begin, strict=True)), (row, 0.35), color="0.35")
-        limit.text(0.01, row - 0.15, name, transform=limit.get_yaxis_transform(), fontsize=7)
-    limit.set(ylim=(len(bars) - 0.5, -0.75), yticks=[])
-    time_axis(limit, record)
-    return figure
-
-
-def is_slowed(record: Record) -> NDArray[np.bool_]:
-    """Test for each step whether the path's time went slower than time, (N,)."""
-    return np.asarray(record.filled("fraction") < 1.0)
-
-
-def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure of this size [in] that keeps its parts from overlapping."""
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), layout="constrained")
-
-
-def _projection(record: Record) -> dict[str, Any]:
-    return {"projection": "3d"} if plane_of(record.position_desired) is None else {}
-
-
-def _single(draw: Callable[..., None], record: Record, **options: Any) -> Figure:
-    figure = new_figure(COLUMN, 2.6)
-    draw(figure.add_subplot(), record, **options)
+def torques_figure(record: Record) -> Figure:
+    """Draw the joint torques of a run in physics."""
+    figure = new_figure(COLUMN, 2.8)
+    draw_joints(figure.add_subplot(), record, "torque")
     return figure
 
 
@@ -233,7 +168,7 @@ def plane_of(position: FloatArray) -> tuple[int, int] | None:
 
 
 def draw_path(axes: Any, record: Record) -> None:
-    """Draw the desired and the actual path [m], in axes made for the answer of `plane_of`."""
+    """Draw the desired and the actual path [m], in spatial axes where `plane_of` finds no plane."""
     plane = plane_of(record.position_desired)
     columns = list(plane or (0, 1, 2))
     actual = record.position[:, columns].T
@@ -263,17 +198,16 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """
     import matplotlib
 
-    label, quantity = _JOINTS[name]
+    symbol, quantity = _JOINTS[name]
     values = getattr(record, name)
     if name == "torque":
         values = 100.0 * values / limits(record, "torque_max")
         axes.set_yscale("symlog", linthresh=1.0, subs=(2.0, 5.0))
         axes.yaxis.set_major_formatter("{x:g}")
-    t = record.t[: len(values)]
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
-    every = max(min(len(t), BUCKETS) // 7, 1)
     names = short_names(record.settings, record.dof)
-    labels = [label.format(name) if name.isdigit() else name for name in names]
+    labels = [symbol.format(text) if text.isdigit() else text for text in names]
+    every = max(min(len(values), BUCKETS) // 7, 1)
     for joint, curve in enumerate(values.T):
         style = {
             "color": colors[joint],
@@ -283,113 +217,153 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
             "markevery": (every * joint // record.dof, every),
             "label": labels[joint],
         }
-        _draw_curve(axes, t, curve, **style)
-    time_axis(axes, record)
+        _draw_curve(axes, record.t[: len(values)], curve, **style)
+    _label(axes, record, quantity)
     if name == "q":
-        bounds = [limits(record, "q_lower", -np.inf), limits(record, "q_upper")]
-        _draw_limits(axes, bounds, labels, colors)
+        _draw_limits(axes, limits(record, "q_lower", -np.inf), limits(record, "q_upper"), labels)
     elif name == "dq":
-        bounds = [-limits(record, "dq_max"), limits(record, "dq_max")]
-        _draw_limits(axes, bounds, labels, colors)
-    axes.set_ylabel(quantity)
+        _draw_limits(axes, -limits(record, "dq_max"), limits(record, "dq_max"), labels)
     legend_above(axes, columns=4 if max(map(len, names)) < 8 else 2)
 
 
 def _draw_curve(
-    axes: Axes,
-    t: FloatArray,
-    curve: FloatArray,
-    buckets: int = BUCKETS,
-    band: bool = True,
-    **line: Any,
+    axes: Axes, t: FloatArray, curve: FloatArray, buckets: int = BUCKETS, **line: Any
 ) -> None:
-    """Draw the mean of each stretch as a line in a pale band of its extremes.
+    """Draw the mean of each stretch as a line, and in a pale band its extremes.
 
     A band thinner than the line is left out; a noisy curve stays readable among others.
     """
     curve = np.where(np.isfinite(curve), curve, np.nan)  # a gap in the line
     times, mean, least, greatest = envelope(t, curve, buckets)
     axes.plot(times, mean, **line)
-    if band and len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
+    if len(times) < len(t) and not np.max(greatest - least) <= 0.01 * np.ptp(curve):
         axes.fill_between(times, least, greatest, color=line["color"], alpha=0.25, linewidth=0.3)
 
 
-def _draw_limits(axes: Axes, bounds: list[FloatArray], labels: list[str], colors: Any) -> None:
+def _draw_limits(axes: Axes, lower: FloatArray, upper: FloatArray, labels: list[str]) -> None:
     """Draw the limits near the curves, beside each the joints that it belongs to.
 
     A limit far off would only flatten the curves. Limits too near each other share their names.
     """
     low, high = axes.get_ylim()
     margin = 0.15 * (high - low)
-    values = np.concatenate(bounds)
-    tags: list[list[int]] = []
-    for i in np.argsort(values):
-        if not low - margin <= values[i] <= high + margin:
-            continue
-        if not tags or values[i] - values[tags[-1][0]] > _TAG_HEIGHT * (high - low):
-            tags.append([])
-        tags[-1].append(int(i))
-    for number, tag in enumerate(tags):
-        joints = sorted({i % len(labels) for i in tag})
-        color = colors[joints[0]] if len(joints) == 1 else "0.0"
-        style = _LIMIT_LINE | {"color": color}
-        for value in np.unique(values[tag]):
-            axes.axhline(value, label=None if number else "limit", **style)
-            number += 1
+    values = np.concatenate([lower, upper])
+    near = (low - margin <= values) & (values <= high + margin)
+    label: str | None = "limit"
+    for value in np.unique(values[near]):
+        axes.axhline(value, color="0.0", label=label, **_LIMIT_LINE)
+        label = None
+    apart = _TAG_HEIGHT * (high - low)
+    while near.any():
+        tag = np.abs(values - values[near].min()) <= apart
+        joints = np.unique(np.flatnonzero(tag) % len(labels))
         names = ", ".join(labels[joint] for joint in joints)
-        axes.annotate(
-            "all" if len(joints) == len(labels) else names,
-            (1.01, float(values[tag].mean())),
-            xycoords=axes.get_yaxis_transform(),
-            va="center",
-            fontsize=6,
-            color=color,
-        )
+        text = "all" if joints.size == len(labels) else names
+        at = (1.01, float(values[tag].mean()))
+        axes.annotate(text, at, xycoords=axes.get_yaxis_transform(), va="center", fontsize=6)
+        near &= ~tag
 
 
 def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None:
     """Draw the position error's components and norm over time, in the unit that suits its size.
 
-    With `largest` [m] the unit and the axis suit that size instead: panels to be compared. A rough
-    error, as under noise, is shown by the means of longer stretches, and the norm's range.
+    With `largest` [m] the unit and the axis suit that size instead: panels to be compared.
     """
     error = position_error(record)
     norm = np.linalg.norm(error, axis=1)
     size = float(np.nanmax(norm, initial=0.0)) if largest is None else largest
     fitting = (pair for pair in _LENGTH_UNITS if size >= pair[1])
     unit, scale = next(fitting, _LENGTH_UNITS[0] if size == 0.0 else _LENGTH_UNITS[-1])
-    rough = _is_rough(record.t, norm)
-    buckets = _COARSE if rough else BUCKETS
-    for (label, color, dashes), curve in zip(_COMPONENTS, error.T, strict=True):
-        style = {"color": color, "linestyle": dashes, "label": label}
-        # Without bands if rough: four of them would hide each other.
-        _draw_curve(axes, record.t, curve / scale, buckets, band=not rough, **style)
-    _draw_curve(axes, record.t, norm / scale, buckets, color="0.0", label=r"$\|e\|$")
-    time_axis(axes, record)
+    for (label, color, dashes), curve in zip(_COMPONENTS, error.T / scale, strict=True):
+        curve = np.where(np.isfinite(curve), curve, np.nan)
+        # Means alone: four bands would hide each other.
+        times, mean, _, _ = envelope(record.t, curve, BUCKETS // 4)
+        axes.plot(times, mean, color=color, linestyle=dashes, label=label)
+    _draw_curve(axes, record.t, norm / scale, color="0.0", label=r"$\|e\|$")
+    _label(axes, record, f"Position error [{unit}]")
     if largest:
         axes.set_ylim(-1.05 * largest / scale, 1.05 * largest / scale)
-    axes.set_ylabel(f"Position error [{unit}]")
     legend_above(axes, columns=4)
 
 
-def _is_rough(t: FloatArray, curve: FloatArray) -> bool:
-    """Test whether the ups and downs of a curve, means of short stretches, dwarf its height."""
-    mean = envelope(t, curve)[1]
-    mean = mean[np.isfinite(mean)]
-    return bool(np.abs(np.diff(mean)).sum() > _ROUGH * mean.max(initial=0.0))
+def draw_orientation_error(axes: Axes, record: Record) -> None:
+    """Draw the angle between the tool's orientation and the desired one over time."""
+    # Without the start, where it is rounding: a log scale would show little else.
+    error = orientation_error(record)[1:, np.newaxis]
+    draw_log(axes, record.t[1:], error, ["angle to the target"])
+    _label(axes, record, "Orientation error [rad]")
+
+
+def draw_kinetic_index(axes: Axes, record: Record) -> None:
+    """Draw the kinetic index over time."""
+    _draw_curve(axes, record.t[:-1], record.kinetic_index, color="0.0", label="kinetic index")
+    _label(axes, record, r"$\dot{q}^T G \dot{q}$")
+    legend_above(axes, columns=1)
+
+
+def draw_residual(axes: Axes, record: Record) -> None:
+    """Draw the KKT residual of the network's answers over time, and its tolerance."""
+    # In continuous mode it is a lag, which no tolerance is meant for.
+    judged = record.settings["mode"] == "converged"
+    residual = record.kkt_residual[:, np.newaxis]
+    draw_log(axes, record.t[:-1], residual, ["network"], judged * record.settings["tol"])
+    _label(axes, record, "KKT residual")
+
+
+def draw_gap(axes: Axes, record: Record) -> None:
+    """Draw the gap to each reference over time, and its tolerance."""
+    check = record.settings["check"]
+    judged = record.settings["mode"] == "converged"
+    tolerance = judged * check["tolerance"]
+    draw_log(axes, record.t[:-1], record.solution_gap, check["solvers"], tolerance)
+    _label(axes, record, "Gap to reference [rad/s]")
+
+
+def draw_frames(axes: Axes, record: Record, name: str) -> None:
+    """Draw the error of each tracked frame over time; the name is ``position`` or ``angle``."""
+    distance, angle = frame_errors(record)
+    first = np.linalg.norm(position_error(record), axis=1)
+    errors = [first, distance] if name == "position" else [orientation_error(record), angle]
+    names = [record.settings["tip"], *record.settings["frames"]]
+    draw_log(axes, record.t, np.column_stack(errors), names)
+    _label(axes, record, _FRAMES[name])
 
 
 def draw_distance(axes: Axes, record: Record) -> None:
     """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
     # Of each stretch the smallest: that is what counts.
-    times, _, least, _ = envelope(record.t, record.filled("distance"))
+    times, _, least, _ = envelope(record.t, record.distance)
     axes.plot(times, least, color="0.0", label="nearest pair")
     allowed = record.settings["collisions"]["distance"]
-    axes.axhline(allowed, label="least allowed", **_LIMIT_LINE)
+    axes.axhline(allowed, color="0.0", label="least allowed", **_LIMIT_LINE)
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    time_axis(axes, record)
-    axes.set_ylabel("Distance [m]")
+    _label(axes, record, "Distance [m]")
     legend_above(axes, columns=2)
+
+
+def draw_path_time(axes: Axes, record: Record) -> None:
+    """Draw the path's time over time, as planned and as a slowed run reached it."""
+    reached = np.append(0.0, np.cumsum(record.settings["dt"] * record.filled("fraction")))
+    span = record.t[[0, -1]]
+    axes.plot(span, span - span[0], color="0.55", linestyle="--", label="as planned")
+    axes.plot(*envelope(record.t, reached)[:2], color="0.0", label="reached")
+    _label(axes, record, "Path time [s]")
+    legend_above(axes, columns=2)
+
+
+def draw_blocking(axes: Axes, record: Record) -> None:
+    """Draw a bar where the path was slowed, and for each limit in its way; the longest first."""
+    found = [(describe(name), steps > 0) for name, steps in blocking_limits(record)]
+    longest = sorted(found, key=lambda bar: -bar[1].sum())[:_MOST_BARS]
+    bars = [("slowed", record.filled("fraction") < 1.0), *longest]
+    bars = [bar for bar in bars if bar[1].any()]
+    for row, (name, acts) in enumerate(bars):
+        times, _, _, acted = envelope(record.t[:-1], acts.astype(float))
+        at = times[acted > 0.0]
+        axes.plot(at, np.full_like(at, row + 0.2), color="0.35", linestyle="", marker="|")
+        axes.text(0.01, row - 0.1, name, transform=axes.get_yaxis_transform(), fontsize=7)
+    axes.set(ylim=(len(bars) - 0.5, -0.75), yticks=[])
+    _label(axes, record, "Limits in the way")
 
 
 def draw_log(
@@ -401,30 +375,31 @@ def draw_log(
     crosses at the top, a tolerance above zero is a dashed line.
     """
     axes.set_yscale("log")
+    drawn = [tolerance] * (tolerance > 0.0)
     for name, curve, color in zip(names, values.T, cycle(("0.15", "0.55", "0.35"))):
         missing = np.isinf(curve)
         # A log scale has no point for zero; a residual may well be zero.
         shown = (curve > 0.0) & ~missing
         times, _, least, greatest = envelope(t[shown], curve[shown])
-        if times.size:
-            axes.fill_between(times, least, greatest, color=color, alpha=0.25, linewidth=0.3)
-            _widen(axes, least.min(), greatest.max())
+        axes.fill_between(times, least, greatest, color=color, alpha=0.25, linewidth=0.3)
+        drawn += [*least, *greatest]
         alone = "." if len(times) == 1 else ""
         axes.plot(times, greatest, color=color, linewidth=0.8, marker=alone, label=name)
         if missing.any():
             marks = t[missing][:: max(int(missing.sum()) // 100, 1)]
-            height = np.full_like(marks, 0.96)
             top = axes.get_xaxis_transform()
+            height = np.full_like(marks, 0.96)
             axes.plot(marks, height, "x", color="0.0", transform=top, label=f"{name} failed")
     if tolerance > 0.0:
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
-        _widen(axes, tolerance, tolerance)
+    if drawn:  # half a decade around them: the axis of a single value would have no length
+        axes.set_ylim(min(drawn) / 3.0, max(drawn) * 3.0)
     legend_above(axes, columns=3)
 
 
-def _widen(axes: Axes, low: float, high: float) -> None:
-    """Leave half a decade around these values, so that the axis of a single one has a length."""
-    axes.update_datalim([(0.0, low / 3.0), (0.0, high * 3.0)], updatex=False)
+def _label(axes: Axes, record: Record, quantity: str) -> None:
+    axes.set_ylabel(quantity)
+    time_axis(axes, record)
 
 
 def time_axis(axes: Axes, record: Record) -> None:
@@ -439,23 +414,11 @@ def legend_above(axes: Axes, columns: int) -> None:
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2)
 
 
+_FRAMES = {"position": "Position errors [m]", "angle": "Orientation errors [rad]"}
+
 FIGURES: dict[str, Callable[[Record], Figure]] = {
     "overview": overview_figure,
-    "path": path_figure,
-    "joint_angles": partial(_single, draw_joints, name="q"),
-    "joint_velocities": partial(_single, draw_joints, name="dq"),
-    "position_error": partial(_single, draw_error),
     "convergence": convergence_figure,
-    "torques": partial(_single, draw_joints, name="torque"),
-    "distance": partial(_single, draw_distance),
-    "frames": frames_figure,
-    "path_time": path_time_figure,
+    "torques": torques_figure,
 }
-"""Figures of a run by the names of their files."""
-
-_DRAWN_IF: dict[str, Callable[[Record], bool]] = {
-    "torques": lambda record: record.torque is not None,
-    "distance": lambda record: record.distance is not None,
-    "frames": lambda record: record.frame_position is not None,
-    "path_time": lambda record: bool(is_slowed(record).any()),
-}
+"""Figures of a run by the names of their files; torques of one in physics alone."""

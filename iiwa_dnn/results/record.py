@@ -8,18 +8,17 @@ import tokenize
 import warnings
 import zipfile
 import zlib
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, field, fields
 from pathlib import Path
-from typing import Annotated, Any, get_origin, get_type_hints
+from typing import Annotated, Any, NamedTuple, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, percent, plain, write_atomically
-from iiwa_dnn.results.column import Column
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -35,6 +34,7 @@ _UNREADABLE = (
     LookupError,
     ValueError,
     TypeError,
+    AttributeError,
     EOFError,
     SyntaxError,
     MemoryError,
@@ -46,15 +46,81 @@ _UNREADABLE = (
 )
 
 
+class Column(NamedTuple):
+    """An array of a record.
+
+    Attributes:
+        meaning: Quantity of the entries, with its unit.
+        shape: Length of each axis, a number or a symbol; the first is ``"N"`` for one entry a step
+            or ``"N+1"`` for one entry a sample.
+        dtype: Type of the entries.
+        fill: Entry at a step for which nothing was recorded.
+    """
+
+    meaning: str
+    shape: tuple[str | int, ...]
+    dtype: type[Any] = np.float64
+    fill: float = 0.0
+
+    def allocate(self, steps: int, **sizes: int) -> NDArray[Any]:
+        """Make the array of a run of so many steps, of `fill` alone; further sizes as ``n=7``."""
+        # Zeros take no memory before they are written, unlike np.full.
+        array = np.zeros(self._lengths(sizes | {"N": steps, "N+1": steps + 1}), self.dtype)
+        if self.fill:
+            array[:] = self.fill
+        return array
+
+    def check(self, name: str, value: ArrayLike, sizes: dict[str, int]) -> NDArray[Any]:
+        """Return a read-only array of this column, copied unless it is protected already.
+
+        Sizes that this array is the first to have are entered.
+
+        Raises:
+            InvalidInputError: If the array has another type or shape.
+        """
+        array = np.asarray(value)
+        if array.ndim == len(self.shape):
+            for symbol, length in zip(self.shape[1:], array.shape[1:], strict=True):
+                if isinstance(symbol, str) and length:
+                    sizes.setdefault(symbol, length)
+        expected = self._lengths(sizes)
+        if not array.size and (array.ndim != len(self.shape) or not len(array)):
+            return _protected(np.zeros((0, *expected[1:]), self.dtype))
+        if array.dtype.kind not in ("fiu" if self.dtype is np.float64 else "iu") and array.size:
+            raise InvalidInputError(name, f"must hold numbers, not {array.dtype}", value)
+        if array.shape != expected:
+            symbols = ", ".join(map(str, self.shape))
+            problem = f"shape {array.shape}, expected ({symbols}) = {expected}"
+            raise InvalidInputError(name, problem, value)
+        return _protected(np.asarray(array, dtype=self.dtype, order="C"))
+
+    def _lengths(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
+        return tuple(sizes.get(size, 0) if isinstance(size, str) else size for size in self.shape)
+
+
+def _protected(array: NDArray[Any]) -> NDArray[Any]:
+    """Return an array that nobody can write into: itself if neither it nor its owner is open."""
+    # NumPy makes the owner of the memory the base of a view of a view.
+    owner: Any = array if array.base is None else array.base
+    if not (isinstance(owner, np.ndarray) and owner.base is None) or owner.flags.writeable:
+        array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+def _absent() -> Any:
+    return np.empty(0)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Record:
     """One run of N steps of a robot with n joints, judged by k reference solvers (k may be 0).
 
     The arrays are copied and read-only. Sample i is the state at ``t[i]``; step i leads from
-    sample i to sample i + 1. There are m inequality rows, l priority levels and f tracked frames
-    beside the first. In the gaps and in ``reference_residual`` NaN means that the reference was not
-    asked at that step and inf that it gave no answer. Optional arrays, from ``ddq`` on, are None in
-    a run without them; files of older versions lack some and are read all the same.
+    sample i to sample i + 1. There are m inequality rows and f tracked frames beside the first. In
+    the gaps and in ``reference_residual`` NaN means that the reference was not asked at that step
+    and inf that it gave no answer. A column of which a run has nothing has the length zero;
+    `filled` makes it as long as the run.
 
     Attributes:
         settings: Everything the run was asked for, in JSON types; an infinite limit reads None.
@@ -67,7 +133,7 @@ class Record:
     q: Annotated[FloatArray, Column("Joint positions [rad]", ("N+1", "n"))]
     dq: Annotated[FloatArray, Column("Joint velocities that moved the robot [rad/s]", ("N", "n"))]
     dq_solver: Annotated[
-        FloatArray, Column("Joint velocities that the network answered [rad/s]", ("N", "n"))
+        FloatArray, Column("Joint velocities that the controller answered [rad/s]", ("N", "n"))
     ]
     position: Annotated[FloatArray, Column("Tip position [m]", ("N+1", 3))]
     rotation: Annotated[
@@ -95,53 +161,44 @@ class Record:
         FloatArray, Column("Largest KKT residual of each reference's own answer", ("N", "k"))
     ]
     settings: dict[str, Any]
-    ddq: Annotated[
-        FloatArray | None,
-        Column(
-            "Joint accelerations that the network answered [rad/s^2], of a scheme of the "
-            "acceleration level; `dq` is then the mean velocity of each step, and `dq_solver` the "
-            "velocity after it",
-            ("N", "n"),
-        ),
-    ] = None
     torque: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column("Joint torques of a run in physics [N m], the largest of each step", ("N", "n")),
-    ] = None
+    ] = field(default_factory=_absent)
     bound_multiplier: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column(
             "Multipliers of the joint velocity bounds: positive at an upper one, negative at a "
             "lower one, 0 at an inactive one (`RowLayout.bound_multipliers`); the decrease of the "
-            "objective per rad/s by which the bound is relaxed. None if no bound was ever active",
+            "objective per rad/s by which the bound is relaxed",
             ("N", "n"),
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     clipped: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "1 where a joint's command was clipped to its bounds on leaving the controller, else 0",
             ("N", "n"),
             np.int8,
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     action: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "Action of the policy at each step: codes of "
             "`iiwa_dnn.control.policies.Action`, 0 where the network's answer was taken",
             ("N",),
             np.int8,
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     fraction: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column(
             "Fraction of a control period by which the reference's clock advanced", ("N",), fill=1.0
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     blocking: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "Bounds in the way of a solution: positive upper ones, negative lower ones; 1 for a "
             "position limit, 2 for a velocity, 3 for an acceleration, 4 for a jerk limit, 0 where "
@@ -149,97 +206,93 @@ class Record:
             ("N", "n"),
             np.int8,
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     bound_kind: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
-            "Kind of each active bound, as in `blocking`. None if there is no "
-            "acceleration or jerk limit: a bound below the velocity limit is then of a position",
+            "Kind of each active bound, as in `blocking`. Of length zero without acceleration and "
+            "jerk limits: a bound below the velocity limit is then of a position",
             ("N", "n"),
             np.int8,
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     row_multiplier: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column(
             'Multipliers z >= 0 of the m inequality rows that ``settings["rows"]`` names '
-            '(``{"part": ..., "row": ...}``, row from 1), 0 of an inactive one. '
-            "None if no row was ever active",
+            '(``{"part": ..., "row": ...}``, row from 1), 0 of an inactive one',
             ("N", "m"),
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     blocking_rows: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "1 where an inequality row was in the way of a solution, else 0", ("N", "m"), np.int8
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     kind: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "Program that each step answered: 0 its own, 1 the scaled one (A x = s b), 2 the "
             "softened one, 3 held back from it by acceleration, jerk or braking, 4 stopped",
             ("N",),
             np.int8,
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     excess: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column(
             "Largest excess of each command over the bounds of its own step, and, unless it is "
             "held back, over its inequality rows",
             ("N",),
         ),
-    ] = None
+    ] = field(default_factory=_absent)
     judge: Annotated[
-        CodeArray | None,
+        CodeArray,
         Column(
             "Solver that judged in the place of each reference: 0 itself, 1 the second one, -1 "
             "none",
             ("N", "k"),
             np.int8,
-            fill=-1,
         ),
-    ] = None
-    level_residual: Annotated[
-        FloatArray | None,
-        Column("Largest residual of the task rows of each priority level", ("N", "l")),
-    ] = None
+    ] = field(default_factory=_absent)
     frame_position: Annotated[
-        FloatArray | None,
+        FloatArray,
         Column('Positions of the tracked frames ``settings["frames"]`` [m]', ("N+1", "f", 3)),
-    ] = None
+    ] = field(default_factory=_absent)
     frame_rotation: Annotated[
-        FloatArray | None, Column("Orientations of these frames", ("N+1", "f", 3, 3))
-    ] = None
+        FloatArray, Column("Orientations of these frames", ("N+1", "f", 3, 3))
+    ] = field(default_factory=_absent)
     frame_position_desired: Annotated[
-        FloatArray | None, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
-    ] = None
+        FloatArray, Column("Desired positions of these frames [m]", ("N+1", "f", 3))
+    ] = field(default_factory=_absent)
     frame_rotation_desired: Annotated[
-        FloatArray | None, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
-    ] = None
+        FloatArray, Column("Desired orientations of these frames", ("N+1", "f", 3, 3))
+    ] = field(default_factory=_absent)
     distance: Annotated[
-        FloatArray | None, Column("Distance of the nearest pair of bodies [m]", ("N+1",))
-    ] = None
+        FloatArray, Column("Distance of the nearest pair of bodies [m]", ("N+1",))
+    ] = field(default_factory=_absent)
     nearest: Annotated[
-        IntArray | None,
+        IntArray,
         Column('Index of that pair in ``settings["collisions"]["pairs"]``', ("N+1",), np.int64),
-    ] = None
+    ] = field(default_factory=_absent)
     wall_time_s: float | None = None
     crosscheck_gap: FloatArray = field(init=False)
 
     def __post_init__(self) -> None:
         samples = np.size(self.t)
         sizes = {"N": samples - 1, "N+1": samples}
-        for name, column in self._columns.items():
-            object.__setattr__(self, name, column.check(name, getattr(self, name), sizes))
-        if not (np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
+        for name, column in COLUMNS.items():
+            array = column.check(name, getattr(self, name), sizes)
+            if name not in OPTIONAL and len(array) != sizes[str(column.shape[0])]:
+                raise InvalidInputError(name, "is empty", array)
+            object.__setattr__(self, name, array)
+        if not (samples and np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
         object.__setattr__(self, "settings", _checked(self, sizes))
         # One solver's NaN does not hide another's answer.
         gap = np.fmax.reduce(self.solution_gap, axis=1, initial=np.nan)
-        gap.flags.writeable = False
-        object.__setattr__(self, "crosscheck_gap", gap)
+        object.__setattr__(self, "crosscheck_gap", _protected(gap))
 
     def __repr__(self) -> str:
         error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
@@ -286,22 +339,17 @@ class Record:
 
     def filled(self, name: str) -> NDArray[Any]:
         """Return the column of this name, or if the run lacks it one of its fill values."""
-        array: NDArray[Any] | None = getattr(self, name)
-        if array is not None:
+        array: NDArray[Any] = getattr(self, name)
+        if len(array):
             return array
-        sizes = {"n": self.dof, "m": len(self.settings.get("rows") or ()), "l": 0, "f": 0}
-        sizes["k"] = self.references
+        sizes = {"n": self.dof, "k": self.references, "m": len(self.settings.get("rows") or ())}
         return COLUMNS[name].allocate(self.steps, **sizes)
-
-    @property
-    def _columns(self) -> dict[str, Column]:
-        """The columns that this record has, by name."""
-        return {name: c for name, c in COLUMNS.items() if getattr(self, name) is not None}
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the record as an uncompressed .npz file, atomically and without pickles.
 
-        The same record gives the same bytes.
+        The same record gives the same bytes. Copies are left out: ``dq_solver`` has the length zero
+        if it is ``dq``, and ``rotation_desired`` the length one if the target does not turn.
 
         Args:
             path: The file; ``.npz`` is not appended.
@@ -309,7 +357,11 @@ class Record:
         Raises:
             FileError: If the file cannot be written.
         """
-        arrays = {name: getattr(self, name) for name in (*self._columns, "crosscheck_gap")}
+        arrays = {name: getattr(self, name) for name in (*COLUMNS, "crosscheck_gap")}
+        if np.array_equal(self.dq_solver, self.dq):
+            arrays["dq_solver"] = self.dq_solver[:0]
+        if (self.rotation_desired == self.rotation_desired[0]).all():
+            arrays["rotation_desired"] = self.rotation_desired[:1]
         text = np.array(json.dumps(self.settings, sort_keys=True, allow_nan=False))
         # NumPy leaves the time stamps in the archive at the zip format's own zero, 1980.
         write_atomically(path, lambda file: np.savez(file, settings=text, **arrays))
@@ -325,7 +377,7 @@ class Record:
             The record; its `wall_time_s` is None, since the file does not hold it.
 
         Raises:
-            FileError: If the file is missing, damaged or not a record.
+            FileError: If the file is missing, damaged or not a record of this version.
         """
         try:
             with Path(path).open("rb") as file, warnings.catch_warnings():
@@ -334,10 +386,16 @@ class Record:
                 stored = np.load(file, allow_pickle=False)
                 if not isinstance(stored, np.lib.npyio.NpzFile):
                     raise ValueError("not an .npz archive")
-                names = [name for name in COLUMNS if name in stored or name not in OPTIONAL]
-                arrays: dict[str, Any] = {name: stored[name] for name in (*names, "crosscheck_gap")}
+                missing = [name for name in COLUMNS if name not in stored]
+                if missing:
+                    raise ValueError(f"of another version, without {', '.join(missing)}")
+                arrays: dict[str, Any] = {name: stored[name] for name in COLUMNS}
                 settings = json.loads(str(stored["settings"]))
-            gap = arrays.pop("crosscheck_gap")
+                gap = stored["crosscheck_gap"]
+            if not len(arrays["dq_solver"]):
+                arrays["dq_solver"] = arrays["dq"]
+            if len(arrays["rotation_desired"]) == 1:
+                arrays["rotation_desired"] = arrays["rotation_desired"].repeat(len(arrays["t"]), 0)
             record = cls(settings=settings, **arrays)
             if not np.array_equal(gap, record.crosscheck_gap, equal_nan=True):
                 raise ValueError("crosscheck_gap is not the largest solution_gap of each step")
@@ -353,11 +411,17 @@ COLUMNS: dict[str, Column] = {
 }
 """The arrays of a record by name: the one list that checks, files and documentation are made of."""
 
-OPTIONAL = frozenset(item.name for item in fields(Record) if item.default is None)
-"""Columns that a run may lack."""
+OPTIONAL = frozenset(item.name for item in fields(Record) if item.default_factory is not MISSING)
+"""Columns that may have the length zero."""
 
 Record.__doc__ = "\n        ".join(
-    [(Record.__doc__ or "").rstrip(), *(f"{name}: {column}" for name, column in COLUMNS.items())]
+    [
+        (Record.__doc__ or "").rstrip(),
+        *(
+            f"{name}: {column.meaning}, ({', '.join(map(str, column.shape))})."
+            for name, column in COLUMNS.items()
+        ),
+    ]
 )
 
 
@@ -371,7 +435,7 @@ def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any
     ended = {}
     for name, array in arrays.items():
         array.setflags(write=False)
-        ended[name] = array[: steps + 1 if COLUMNS[name].per_sample else steps]
+        ended[name] = array[: steps + (COLUMNS[name].shape[0] == "N+1")]
     return ended
 
 
@@ -379,10 +443,19 @@ def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
     """Return the settings in JSON types after a check of all keys that the metrics need."""
     try:
         settings: dict[str, Any] = plain(record.settings)
-        _check_limits(settings, LIMITS if record.torque is None else (*LIMITS, "torque_max"), sizes)
-        _check_names(settings, sizes)
-        _check_values(settings)
-        _check_pairs(settings, record)
+        for key in (*LIMITS, *(["torque_max"] if len(record.torque) else [])):
+            finite = [value for value in settings[key] if value is not None]
+            if len(settings[key]) != sizes.get("n", 0) or not np.isfinite(np.array(finite)).all():
+                problem = f"must hold {sizes['n']} limits"
+                raise InvalidInputError(f"settings[{key!r}]", problem, settings[key])
+        _check_names(settings, record, sizes)
+        checks.one_of("settings['mode']", settings["mode"], MODES)
+        for key in ("dt", "duration"):
+            checks.positive(f"settings[{key!r}]", settings[key])
+        checks.finite("settings: duration / dt", settings["duration"] / settings["dt"])
+        checks.not_negative("settings['tol']", settings["tol"])
+        for key in ("tolerance", "reference_tolerance"):
+            checks.not_negative(f"settings['check'][{key!r}]", settings["check"][key])
     except KeyError as error:
         raise InvalidInputError("settings", f"{error} is missing", record.settings) from error
     except (TypeError, OverflowError) as error:
@@ -390,53 +463,25 @@ def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
     return settings
 
 
-def _check_limits(
-    settings: Mapping[str, Any], keys: Iterable[str], sizes: Mapping[str, int]
-) -> None:
-    """Check that each limit has a number or None for every joint."""
-    for key in keys:
-        values = settings[key]
-        finite = [value for value in values if value is not None]
-        if len(values) != sizes["n"] or not np.isfinite(np.array(finite)).all():
-            problem = f"must hold {sizes['n']} limits"
-            raise InvalidInputError(f"settings[{key!r}]", problem, values)
-
-
-def _check_names(settings: Mapping[str, Any], sizes: Mapping[str, int]) -> None:
-    """Check that the columns of the arrays have as many names of solvers and rows."""
+def _check_names(settings: Mapping[str, Any], record: Record, sizes: Mapping[str, int]) -> None:
+    """Check that there are as many names as solvers, rows and pairs in the arrays."""
     solvers = settings["check"]["solvers"]
-    if len(solvers) != sizes["k"] or not all(isinstance(name, str) for name in solvers):
-        problem = f"must name {sizes['k']} solvers, one for each column of solution_gap"
-        raise InvalidInputError("settings['check']['solvers']", problem, solvers)
     rows = settings.get("rows") or []
-    named = all(isinstance(row["part"], str) and row["row"] >= 1 for row in rows)
-    if not named or len(rows) != sizes.get("m", len(rows)):
-        problem = f'must name {sizes.get("m", "the")} rows as {{"part": text, "row": from 1}}'
+    parts = [row["part"] for row in rows]
+    for name in (settings["robot"], settings["status"], *solvers, *parts):
+        checks.instance("settings: a name", name, str)
+    if len(solvers) != sizes.get("k", 0):
+        raise InvalidInputError("settings", f"must name {sizes['k']} solvers", solvers)
+    rows_needed = sizes.get("m", len(rows))
+    if len(rows) != rows_needed or not all(row["row"] >= 1 for row in rows):
+        problem = f'must name {rows_needed} rows as {{"part": text, "row": from 1}}'
         raise InvalidInputError("settings['rows']", problem, rows)
-
-
-def _check_values(settings: Mapping[str, Any]) -> None:
-    """Check mode, texts, times and tolerances."""
-    checks.one_of("settings['mode']", settings["mode"], MODES)
-    for key in ("robot", "status"):
-        if not isinstance(settings[key], str):
-            raise InvalidInputError(f"settings[{key!r}]", "must be a text", settings[key])
-    for key in ("dt", "duration"):
-        checks.positive(f"settings[{key!r}]", settings[key])
-    checks.not_negative("settings['tol']", settings["tol"])
-    for key in ("tolerance", "reference_tolerance"):
-        checks.not_negative(f"settings['check'][{key!r}]", settings["check"][key])
-    checks.finite("settings: duration / dt", settings["duration"] / settings["dt"])
-
-
-def _check_pairs(settings: Mapping[str, Any], record: Record) -> None:
-    """Check that every index of a nearest pair has a name, and that the distance is stated."""
-    if (record.distance is None) != (record.nearest is None):
+    if len(record.distance) != len(record.nearest):
         raise InvalidInputError("distance", "and nearest come together", record.distance)
-    if record.nearest is None:
+    if not len(record.nearest):
         return
-    collisions = settings["collisions"]
-    checks.finite("settings['collisions']['distance']", collisions["distance"])
-    if not 0 <= record.nearest.min() <= record.nearest.max() < len(collisions["pairs"]):
+    pairs = settings["collisions"]["pairs"]
+    checks.finite("settings['collisions']['distance']", settings["collisions"]["distance"])
+    if not 0 <= record.nearest.min() <= record.nearest.max() < len(pairs):
         problem = "must name the pairs that the array nearest counts"
-        raise InvalidInputError("settings['collisions']['pairs']", problem, collisions["pairs"])
+        raise InvalidInputError("settings['collisions']['pairs']", problem, pairs)

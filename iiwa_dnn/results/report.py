@@ -1,153 +1,72 @@
-"""The texts about a run: the summary on the terminal, and a folder with its report."""
+"""The texts about a run, of one list of rows: the summary on the terminal, and report.md."""
 
 import os
+import platform
+import shlex
+import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.files import prepare_folder, write_json
+from tabulate import tabulate
+
+from iiwa_dnn.files import percent, prepare_folder, write_json
 from iiwa_dnn.naming import describe, unwatched
 from iiwa_dnn.results.failures import INFEASIBLE, failures, programs_checked
 from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
 from iiwa_dnn.results.metrics import ACTIONS, PROOF, compute_metrics
-from iiwa_dnn.results.plots import save_figures
+from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
 
-Row = tuple[str, ...]
-Table = Sequence[tuple[str, str, str]]
+Row = tuple[str, str, str]
+"""Quantity, value and unit."""
 
-# Names of the settings in the report; one that is not here keeps its own.
-_SETTINGS = {
-    "joints": "joints, in the order of their numbers",
-    "locked": "locked joints, at [rad]",
-    "q_lower": "lower joint limits [rad]",
-    "q_upper": "upper joint limits [rad]",
-    "dq_max": "velocity limits [rad/s]",
-    "ddq_max": "acceleration limits [rad/s²]",
-    "dddq_max": "jerk limits [rad/s³]",
-    "q0": "initial joint positions [rad]",
-    "dt": "time step [s]",
-    "duration": "duration [s]",
-    "check": "cross-check",
-    "tol": "KKT tolerance",
-    "rho": "network time constant [s]",
-    "rows": "inequality rows",
-    "noise": "noise, standard deviation [rad/s, or rad if at measurement]",
-    "noise_at": "noise enters at",
-    "filter_window": "filter window [steps]",
-}
-_CAPTIONS = {
-    "overview": "Path, joint angles, joint velocities and position error, and the orientation "
-    "error against a target that turns.",
-    "path": "Desired and actual path.",
-    "joint_velocities": "Joint velocities that moved the robot.",
-    "torques": "Joint torques: of each step the largest.",
-    "moments": "The arm, and below it the path so far, face on.",
-    "position_error": "Position error, actual minus desired.",
-    "frames": "Errors of all tracked frames.",
-    "distance": "Distance of the nearest pair of bodies, and the least that is allowed.",
-    "path_time": "The path's time over time, grey where it was slowed, and the limits in the way.",
-    "convergence": "KKT residual of the network and gap to the reference: the line is the largest "
-    "value, the band the range, of each short stretch of time.",
-}
-_KINETIC_UNITS = {"identity": "rad²/s²", "inertia": "J"}
-_SUMMARY = {
-    "run": "{robot}, {mode}, {steps} steps of {dt_s} s ({duration_s} s)",
-    "position error": "max {max_position_error_m} m, mean square {mse_position_error_m2} m^2",
-    "orientation error": "max {max_orientation_error_rad} {angle_unit}",
-    "joint drift": "max {joint_drift_rad} rad",
-    "kinetic index": "max {max_kinetic_index} {kinetic_unit}",
-    "beyond limits": "{position_limit_violation_rad} rad, {velocity_limit_violation_rad_s} rad/s",
-    "KKT residual": "max {max_kkt_residual}, tolerance {tol}",
-    "difficulty": "{active_limit_steps} of {steps} steps with an active limit; "
-    "{mean} {systems} a step, at most {max}",
-    "cross-check": "{solver}: {programs}, {disagreements} disagreements, "
-    "{reference_failures} failures{judged_by}\n"
-    "largest gap {max_solution_gap} rad/s, tolerance {tolerance} rad/s",
-    "wall time": "{wall_time_s} s, {realtime_factor} x real time",
-}
-_PROVEN = (
-    "{proven} answers proven within {max_solution_gap} rad/s of the exact solution, "
-    "{reference_failures} not proven"
-)
-_COMPARED = (
-    "{solver}, {steps_checked} own programs compared, not judged; "
-    "{reference_failures} of them it could not solve\n"
-    "largest lag {max_solution_gap} rad/s"
-)
-_FRAME = "max {max_position_error_m} m, {max_orientation_error_rad} rad"
-_NEAREST = "{least_distance_m} m, {second} and {first} at {time_s} s; allowed {allowed_m} m"
-_SETTLED = "max {max_position_error_settled_m} m from {settled_after_s} s on"
-_PUSHED = "error max {max_position_error_m} m, back within {recovered_below_m} m {recovery}"
-_ACTED = {
-    "active_bounds": "{name} for {time_s} s, multiplier up to {max_multiplier}",
-    "active_rows": "{name} active for {time_s} s, multiplier up to {max_multiplier}",
-}
-_ON_AVERAGE = ", {mean_multiplier} on average ({steps} steps, from {first_s} s on)"
-_BLOCKED = "{name} in the way for {time_s} s ({steps} steps, from {first_s} s on)"
-_RESULTS: Table = (
-    ("share of the path completed", "path_completed", ""),
+_RESULTS = (
+    ("path completed", "path_completed", ""),
     ("largest position error", "max_position_error_m", "m"),
-    ("mean squared position error, over samples and axes", "mse_position_error_m2", "m²"),
-    ("largest orientation error", "max_orientation_error_rad", "angle"),
+    ("mean squared position error", "mse_position_error_m2", "m²"),
+    ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "kinetic"),
-    ("largest KKT residual", "max_kkt_residual", ""),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s²"),
     ("beyond position limits", "position_limit_violation_rad", "rad"),
     ("beyond velocity limits", "velocity_limit_violation_rad_s", "rad/s"),
     ("beyond acceleration limits", "acceleration_limit_violation_rad_s2", "rad/s²"),
     ("beyond jerk limits", "jerk_limit_violation_rad_s3", "rad/s³"),
-    ("steps", "steps", ""),
+    ("largest KKT residual", "max_kkt_residual", ""),
     ("steps with an active bound or row", "active_limit_steps", ""),
-    ("time step", "dt_s", "s"),
-    ("time simulated", "duration_s", "s"),
+    ("linear systems a step, mean", "network_iterations.mean", ""),
+    ("linear systems a step, most", "network_iterations.max", ""),
+    ("largest gap to the reference", "crosscheck.max_solution_gap", "rad/s"),
+    ("tolerance on it", "crosscheck.tolerance", "rad/s"),
+    ("largest residual of a reference", "crosscheck.max_reference_residual", ""),
+    ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
+    ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
+    ("largest torque, of its limit", "physics.max_torque_share", ""),
+    ("largest position error since the push", "physics.push.max_position_error_m", "m"),
+    ("time from the push until back within 1 mm", "physics.push.recovery_s", "s"),
+    ("steps with a clipped command", "incidents.clipped_steps", ""),
+    *((f"steps: {name}", f"incidents.{name}_steps", "") for name in ACTIONS.values()),
     ("wall time", "wall_time_s", "s"),
     ("time simulated / wall time", "realtime_factor", ""),
 )
-_CROSSCHECK: Table = (
-    ("reference solver", "solver", ""),
-    ("own programs checked", "own", ""),
-    ("scaled programs checked", "scaled", ""),
-    ("softened programs checked", "softened", ""),
-    ("steps held back, checked for their bounds alone", "held", ""),
-    ("steps stopped, with nothing to check", "stopped", ""),
-    ("steps that disagree", "disagreements", ""),
-    ("reference answers not to be believed", "reference_failures", ""),
-    ("largest gap in the solution", "max_solution_gap", "rad/s"),
-    ("tolerance on it", "tolerance", "rad/s"),
-    ("largest gap in the objective", "max_objective_gap", ""),
-    ("largest residual of a reference", "max_reference_residual", ""),
-    ("largest excess of a command over its step's bounds and rows", "max_excess", ""),
-)
-_PROOF: Table = (
-    ("answers proven", "proven", ""),
-    ("answers not proven", "reference_failures", ""),
-    ("largest distance from the exact solution, at most", "max_solution_gap", "rad/s"),
-    ("tolerance on it", "tolerance", "rad/s"),
-)
-_INCIDENTS: Table = (
-    ("steps with a clipped command", "clipped_steps", ""),
-    *((f"steps: {name}", f"{name}_steps", "") for name in ACTIONS.values()),
-    ("path time reached", "path_time_s", "s"),
-)
-_PHYSICS: Table = (
-    (
-        "largest position error from {settled_after_s:g} s on",
-        "max_position_error_settled_m",
-        "m",
-    ),
-)
-_PUSH: Table = (
-    ("largest position error since the push", "max_position_error_m", "m"),
-    (
-        "time from the push's end until back within {recovered_below_m:g} m",
-        "recovery_s",
-        "s",
-    ),
-)
-_HEAD = ("quantity", "value", "unit")
+"""Rows of numbers: quantity, place in the metrics, and unit."""
+
+_UNITS = {
+    "q_lower": "rad",
+    "q_upper": "rad",
+    "dq_max": "rad/s",
+    "ddq_max": "rad/s²",
+    "dddq_max": "rad/s³",
+    "q0": "rad",
+    "dt": "s",
+    "duration": "s",
+    "rho": "s",
+    "noise": "rad/s, or rad at the measurement",
+    "filter_window": "steps",
+    "locked": "rad",
+}
 _WHY = {
     "adjacent": "joined to each other",
     "never": "never near each other",
@@ -156,17 +75,30 @@ _WHY = {
 }
 """Reasons of a collision model to leave a pair of links out, in words."""
 
+_STEP = (
+    "At each step, one control period long, the network settles the quadratic program that the "
+    "scheme builds for the joint positions of the moment; a reference solver gets the same program."
+)
+_SPELLS = {
+    "active": ("active_bounds", "active_rows"),
+    "in the way": ("blocking", "blocking_rows"),
+}
+_MOST = 6
+"""Limits of each kind that have a row of their own."""
+
 
 def save_run(
     record: Record,
     folder: str | os.PathLike[str],
     plots: bool = True,
     more: Callable[[Record, Path], list[Path]] | None = None,
+    paper: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
     """Write record.npz, metrics.json, figures and report.md into a folder, made if need be.
 
     Each file is written atomically, the record first; figures only with `plots`. `more` draws
-    further figures into the folder and returns their files.
+    further figures into the folder and returns their files. `paper` has published numbers by the
+    names of the metrics, which the report shows beside the run's.
 
     Returns:
         The metrics, as in metrics.json.
@@ -180,49 +112,62 @@ def save_run(
     write_json(folder / "metrics.json", metrics)
     figures = save_figures(record, folder) if plots else []
     figures += more(record, folder) if more is not None else []
-    write_report(record, metrics, folder, figures)
+    write_report(metrics, folder, figures, paper)
     return metrics
 
 
 def write_report(
-    record: Record,
     metrics: Mapping[str, Any],
     folder: str | os.PathLike[str],
     figures: Iterable[Path] = (),
+    paper: Mapping[str, float] | None = None,
 ) -> Path:
     """Write report.md into a folder that exists, and return the file.
 
-    Every number in it is one of the metrics. It shows the PNG files among the figures, which lie in
-    that folder.
+    Every number in it is one of the metrics, or one of the paper's. It shows the PNG files among
+    the figures, which lie in that folder.
 
     Raises:
         FileError: If it cannot be written.
     """
     settings = metrics["settings"]
-    results = _rows(metrics, _RESULTS) + _iterations(metrics)
-    results += _frames(metrics) + _physics(metrics.get("physics"))
-    versions = [(name, _text(value)) for name, value in metrics["versions"].items()]
-    lag = "Continuous mode: the gap is the network's lag, reported and not judged."
+    versions = ", ".join(f"{name} {value}" for name, value in metrics["versions"].items())
+    made = (
+        datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        f"{platform.system()}, {platform.machine()}, {os.cpu_count()} cores",
+        f"Python {platform.python_version()}, {versions}",
+        f"`{shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])}`",
+    )
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
+        _STEP,
         "## Verdict",
-        bullets(failures(record) or [_success(metrics)]),
+        bullets(failures(metrics) or [_success(metrics)]),
         "## Results",
-        markdown_table(_HEAD, results),
-        "## Cross-check",
-        _checked(metrics["crosscheck"]),
-        *_incidents(metrics.get("incidents")),
-        *(f"Nearest pair: {pair}." for pair in _nearest_pair(metrics)),
-        *_unwatched(settings),
-        *_pairs(settings),
-        *([lag] if settings["mode"] == "continuous" else []),
+        markdown_table(("quantity", "value", "unit"), rows(metrics, paper)),
         "## Settings",
+        *_pairs(settings),
         markdown_table(("setting", "value"), _named(settings)),
-        "## Versions",
-        markdown_table(("package", "version"), versions),
-        *show_figures(figures, _CAPTIONS),
+        "## Made",
+        bullets(made),
+        *show_figures(figures, CAPTIONS),
     ]
     return save_markdown(folder, parts)
+
+
+def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
+    """Sum up a run in aligned lines of ASCII, for the terminal.
+
+    An incomplete path is its first line, or that the path cannot be followed.
+    """
+    reasons = failures(metrics) if reasons is None else reasons
+    verdict = [*(reasons or [_success(metrics)]), *_unwatched(metrics["settings"])]
+    lines = [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
+    lines += zip(["verdict", *[""] * len(verdict)], verdict, strict=False)
+    table = tabulate(lines, tablefmt="plain", disable_numparse=True)
+    first = [text for text in reasons[:1] if text.startswith(("path ", INFEASIBLE))]
+    aligned = [line.rstrip() for line in table.splitlines()]
+    return "\n".join([*first, *aligned]).replace("²", "^2").replace("³", "^3")
 
 
 def settings_lines(metrics: Mapping[str, Any]) -> str:
@@ -230,57 +175,81 @@ def settings_lines(metrics: Mapping[str, Any]) -> str:
     return "\n".join(f"{name}: {value}" for name, value in _named(metrics["settings"]))
 
 
-def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
-    """Sum up a run in about ten aligned lines of ASCII, for the terminal.
+def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
+    """Yield the results of a run: quantity, value in words, and unit.
 
-    An incomplete path is its first line, or that the path cannot be followed. The reasons of a
-    failure are those of the metrics, or more detailed ones: `failures` of the record itself.
+    A count of zero steps that a policy decided is left out, and a number that does not exist.
     """
     settings = metrics["settings"]
+    steps = f"{metrics['steps']:,} steps of {_text(metrics['dt_s'])} s"
+    yield "run", f"{settings['robot']}, {settings['mode']}, {steps}", ""
+    yield "cross-check", _checked(metrics), ""
+    for name, place, unit in _RESULTS:
+        value = _at(metrics, place)
+        if value is None or (value == 0 and place.startswith("incidents.")):
+            continue
+        shown = percent(value) if place == "path_completed" else _text(value)
+        if paper and place in paper:
+            shown += f" (the paper's {_text(paper[place])})"
+        yield name, shown, _unit(settings, place, unit)
+    near = metrics.get("collisions")
+    if near is not None:
+        allowed = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
+        yield f"nearest pair: {near['second']} and {near['first']}", allowed, "m"
+    for frame, errors in metrics.get("frames", {}).items():
+        yield f"largest position error, {frame}", _text(errors["max_position_error_m"]), "m"
+        angle = _text(errors["max_orientation_error_rad"])
+        yield f"largest orientation error, {frame}", angle, "rad"
+    for verb, keys in _SPELLS.items():
+        found = [spell for key in keys for spell in metrics.get("incidents", {}).get(key, ())]
+        yield from _spells(verb, sorted(found, key=lambda spell: -spell["steps"]))
+
+
+def _at(metrics: Mapping[str, Any], place: str) -> Any:
+    """Return the metric at a place, ``crosscheck.tolerance``; None if there is none."""
+    found: Any = metrics
+    for key in place.split("."):
+        found = (found or {}).get(key)
+    return found
+
+
+def _spells(verb: str, spells: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
+    """Yield how long each limit acted."""
+    for spell in spells[:_MOST]:
+        size = ""
+        if "max_multiplier" in spell:
+            size = f", multiplier up to {_text(spell['max_multiplier'])}"
+        took = f"{_text(spell['time_s'])} s, from {_text(spell['first_s'])} s on"
+        yield f"{describe(spell)} {verb}", took + size, ""
+    if len(spells) > _MOST:
+        yield f"further limits {verb}", str(len(spells) - _MOST), ""
+
+
+def _checked(metrics: Mapping[str, Any]) -> str:
+    """State what was checked, by whom, and with what result."""
     check = metrics["crosscheck"]
-    reasons = failures(metrics) if reasons is None else reasons
-    more = {
-        **metrics["network_iterations"],
-        "systems": _systems(settings),
-        "programs": programs_checked(check, ",\n"),
-        "judged_by": _judged_by(check),
-        "angle_unit": _angle_unit(settings),
-        "kinetic_unit": _kinetic_unit(settings).replace("²", "^2"),
-    }
-    lines = {k: _fill(text, settings, check, metrics, more) for k, text in _SUMMARY.items()}
-    if settings["mode"] == "continuous":
-        lines["KKT residual"] = _fill("max {max_kkt_residual}, not judged", metrics)
-        lines["cross-check"] = _fill(_COMPARED, check)
-    if check["solver"] == "none":
-        lines["cross-check"] = "not asked for"
-    if check["solver"] == PROOF:
-        lines["cross-check"] = _fill(_PROVEN, check)
-    frames = metrics.get("frames", {}).items()
-    lines |= {name: _fill(_FRAME, errors) for name, errors in frames}
-    lines |= _physics_lines(metrics.get("physics"))
-    lines |= _incident_lines(metrics.get("incidents", {}))
-    for pair in _nearest_pair(metrics):
-        lines["nearest pair"] = pair
-    lines["wall time"] = lines.pop("wall time")
-    verdict = reasons or [_success(metrics)]
-    lines["verdict"] = "\n".join([*verdict, *_unwatched(metrics["settings"])])
-    width = max(map(len, lines)) + 2
-    aligned = (
-        f"{name:<{width}}" + text.replace("\n", "\n" + " " * width) for name, text in lines.items()
-    )
-    first = [text for text in reasons[:1] if text.startswith(("path ", INFEASIBLE))]
-    return "\n".join([*first, *aligned])
+    solver = check["solver"]
+    failed = f"{check['reference_failures']:,}"
+    if solver == "none":
+        return "not asked for"
+    if not check["judged"]:
+        compared = f"{check['steps_checked']:,} own programs compared, not judged"
+        return f"{solver}: {compared}; {failed} without an answer to be believed"
+    if solver == PROOF:
+        return f"{check['proven']:,} answers proven, {failed} not; {programs_checked(check)}"
+    judges = ", ".join(f"{name} {count:,}" for name, count in check["judged_by"].items())
+    judged = f"; judged by {judges}" if set(check["judged_by"]) - {solver} else ""
+    disagreements = f"{check['disagreements']:,} disagreements, {failed} failures"
+    return f"{solver}: {programs_checked(check)}, {disagreements}{judged}"
 
 
 def _success(metrics: Mapping[str, Any]) -> str:
     """State the verdict on a run without failures, no stronger than the check."""
     check = metrics["crosscheck"]
     solver = check["solver"]
+    solved = f"all {metrics['steps']:,} steps solved, within all limits and"
     if check["judged"]:
-        steps = f"all {metrics['steps']:,} steps solved"
-        if solver == PROOF:
-            return f"{steps}, within all limits and proven"
-        return f"{steps}, within all limits and in agreement with {solver}"
+        return f"{solved} {'proven' if solver == PROOF else f'in agreement with {solver}'}"
     if solver == "none":
         return "completed within all limits; no reference solver was asked"
     failed = check["reference_failures"]
@@ -288,31 +257,9 @@ def _success(metrics: Mapping[str, Any]) -> str:
     return f"completed within all limits; the gap to {solver} is a lag, not judged{doubt}"
 
 
-def _checked(check: Mapping[str, Any]) -> str:
-    """Lay out the report's table on the cross-check, and the proof's line above its own."""
-    kinds = {name: steps for name, steps in check["kinds"].items() if steps or name == "own"}
-    if check["solver"] != PROOF:
-        left_out = () if check["judged"] else ("disagreements", "tolerance")
-        table = [row for row in _CROSSCHECK if row[1] not in left_out]
-        judges = check.get("judged_by", {}).items()
-        judged = [(f"answers judged by {name}", _number(count), "") for name, count in judges]
-        return markdown_table(_HEAD, [*_rows({**kinds, **check}, table), *judged])
-    return f"{_fill(_PROVEN, check)}.\n\n{markdown_table(_HEAD, _rows(check, _PROOF))}"
-
-
-def _fill(text: str, *values: Mapping[str, Any]) -> str:
-    """Fill a text's fields from mappings, numbers in four digits; later mappings come first."""
-    return text.format_map({key: _short(value) for part in values for key, value in part.items()})
-
-
-def _nearest_pair(metrics: Mapping[str, Any]) -> list[str]:
-    """Name the nearest pair of bodies of a run that avoids collisions."""
-    return [_fill(_NEAREST, metrics["collisions"])] if "collisions" in metrics else []
-
-
 def _unwatched(settings: Mapping[str, Any]) -> list[str]:
     """Name the links of a run that nothing kept clear of obstacles."""
-    links = settings.get("collisions", {}).get("unwatched")  # older records lack it
+    links = settings.get("collisions", {}).get("unwatched")
     return [f"Beware: {unwatched(links)}."] if links else []
 
 
@@ -323,150 +270,39 @@ def _pairs(settings: Mapping[str, Any]) -> list[str]:
     for first, second, why in collisions.get("left_out", ()):
         groups.setdefault(f"Not watched, {_WHY.get(why, why)}", []).append(f"{first} and {second}")
     items = groups.items()
-    return [f"{name} ({len(pairs)}): {'; '.join(pairs)}." for name, pairs in items if pairs]
+    lines = [f"{name} ({len(pairs)}): {'; '.join(pairs)}." for name, pairs in items if pairs]
+    return lines + _unwatched(settings)
 
 
-def _judged_by(check: Mapping[str, Any]) -> str:
-    """State how many answers each solver judged, if a second one had to."""
-    judges = check.get("judged_by", {})
-    if set(judges) <= set(check["solver"].split("+")) and len(judges) < 2:
-        return ""
-    return "\njudged by " + ", ".join(f"{name} {count:,}" for name, count in judges.items())
-
-
-def _systems(settings: Mapping[str, Any]) -> str:
-    """Return what an iteration of the network's integrator is called."""
-    integrator = settings.get("integrator")
-    name = integrator.get("name") if isinstance(integrator, Mapping) else None
-    return "linear systems" if name == "ImplicitEuler" else "network iterations"
-
-
-def _iterations(metrics: Mapping[str, Any]) -> list[Row]:
-    """Lay out the report's rows on the work of each step."""
-    name = f"{_systems(metrics['settings'])} a step"
-    mean, most = (_number(metrics["network_iterations"][key]) for key in ("mean", "max"))
-    return [(f"{name}, mean", mean, ""), (f"{name}, most", most, "")]
-
-
-def _physics_lines(physics: Mapping[str, Any] | None) -> dict[str, str]:
-    """Lay out the summary's lines on torques and recovery."""
-    if physics is None:
-        return {}
-    torque = f"max {physics['max_torque_share']:.0%} of a joint's limit"
-    lines = {"settled error": _fill(_SETTLED, physics), "torque": torque}
-    push = physics["push"]
-    if push is not None:
-        recovery = (
-            "never" if push["recovery_s"] is None else f"after {_short(push['recovery_s'])} s"
-        )
-        lines["push"] = _fill(_PUSHED, push, {"recovery": recovery})
-    return lines
-
-
-def _incident_lines(incidents: Mapping[str, Any]) -> dict[str, str]:
-    """Lay out the summary's lines on active bounds, active rows and clipping."""
-    found = {key: _spells(incidents, key, text) for key, text in _ACTED.items()}
-    lines = {key.replace("_", " "): "\n".join(spells) for key, spells in found.items() if spells}
-    if incidents.get("clipped_steps"):
-        lines["clipped commands"] = f"at {incidents['clipped_steps']:,} steps"
-    return lines
-
-
-def _spells(incidents: Mapping[str, Any], key: str, text: str) -> list[str]:
-    return [_fill(text, spell, {"name": describe(spell)}) for spell in incidents.get(key, ())]
-
-
-def _incidents(incidents: Mapping[str, Any] | None) -> list[str]:
-    """Lay out the report's part on limits and policies."""
-    if incidents is None:
-        return []
-    texts = {key: text + _ON_AVERAGE for key, text in _ACTED.items()}
-    texts |= {"blocking": _BLOCKED, "blocking_rows": _BLOCKED}
-    lines = [line for key, text in texts.items() for line in _spells(incidents, key, text)]
-    counts = markdown_table(_HEAD, _rows(incidents, _INCIDENTS))
-    return ["## Limits and policies", counts, *([bullets(lines)] if lines else [])]
-
-
-def _frames(metrics: Mapping[str, Any]) -> list[Row]:
-    """Lay out the report's rows on further frames and levels of priority."""
-    rows = []
-    for frame, errors in metrics.get("frames", {}).items():
-        rows += [(f"{name}, {frame}", *cells) for name, *cells in _rows(errors, _RESULTS)]
-    levels = enumerate(metrics.get("level_residual", ()), 1)
-    return rows + [(f"largest residual, priority {k}", _number(left), "") for k, left in levels]
-
-
-def _physics(physics: Mapping[str, Any] | None) -> list[Row]:
-    """Lay out the report's rows on torques and recovery."""
-    if physics is None:
-        return []
-    rows = _rows(physics, _PHYSICS)
-    torques = zip(physics["max_torque_n_m"], physics["torque_limit_n_m"], strict=True)
-    for joint, (torque, limit) in enumerate(torques, 1):
-        name = f"largest torque of joint {joint}, limit {_number(limit)}"
-        rows.append((name, _number(torque), "N m"))
-    push = physics["push"]
-    if push is None:
-        return rows
-    never = {"recovery_s": "never"} if push["recovery_s"] is None else {}
-    return rows + _rows(push | never, _PUSH)
-
-
-def _rows(values: Mapping[str, Any], table: Table) -> list[Row]:
-    """Look up the numbers of a table; the units ``kinetic`` and ``angle`` depend on the scheme."""
-    settings = values.get("settings", {})
-    units = {"kinetic": _kinetic_unit(settings), "angle": _angle_unit(settings)}
-    return [
-        (name.format_map(values), _number(values[key]), units.get(unit, unit))
-        for name, key, unit in table
-        if key in values
-    ]
-
-
-def _kinetic_unit(settings: Mapping[str, Any]) -> str:
-    """Return the unit of q̇ᵀ G q̇, none where the scheme does not say what G is."""
+def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
+    """Return the unit of a metric; of two it depends on the scheme."""
     scheme = settings.get("scheme")
-    kinetic = scheme.get("kinetic") if isinstance(scheme, Mapping) else None
-    return _KINETIC_UNITS.get(str(kinetic), "")
-
-
-def _angle_unit(settings: Mapping[str, Any]) -> str:
-    """Return the unit of the orientation error, with a remark where the scheme leaves it free."""
-    scheme = settings.get("scheme")
-    is_free = isinstance(scheme, Mapping) and scheme.get("orientation") == "none"
-    return "rad (orientation free)" if is_free else "rad"
+    known = scheme if isinstance(scheme, Mapping) else {}
+    if place == "max_kinetic_index":
+        return {"identity": unit, "inertia": "J"}.get(str(known.get("kinetic")), "")
+    free = place == "max_orientation_error_rad" and known.get("orientation") == "none"
+    return f"{unit} (orientation free)" if free else unit
 
 
 def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Put the settings in words, (name, value)."""
-    named = {_SETTINGS.get(key, key.replace("_", " ")): value for key, value in settings.items()}
-    if settings.get("rows"):
-        counts = Counter(row["part"] for row in settings["rows"])
-        named[_SETTINGS["rows"]] = ", ".join(f"{part}: {n}" for part, n in counts.items())
-    return [(name, _text(value)) for name, value in named.items()]
+    """Put the settings in words, (name, value), without those that are not set."""
+    shown = {key: value for key, value in settings.items() if value not in (None, [], {})}
+    shown.pop("collisions", None)
+    if "rows" in shown:
+        shown["rows"] = dict(Counter(row["part"] for row in shown["rows"]))
+    units = {key: f" [{unit}]" for key, unit in _UNITS.items()}
+    return [(key.replace("_", " ") + units.get(key, ""), _text(v)) for key, v in shown.items()]
 
 
-def _text(value: object, digits: int = 6, unknown: str = "none") -> str:
-    """Put a value in words: 'name = value' pairs, equal entries of a list said once."""
+def _text(value: object) -> str:
+    """Put a value in words: numbers in four digits, equal entries of a list said once."""
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} = {_text(item)}" for key, item in value.items())
+        items = value.items()
+        return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
     if isinstance(value, list):
-        return _list_text(value)
-    if isinstance(value, bool):
-        return str(value).lower()
+        if len(value) > 1 and all(item == value[0] for item in value):
+            return f"{_text(value[0])} (all {len(value)})"
+        return " ".join(f"({_text(v)})" if isinstance(v, dict) else _text(v) for v in value)
     if isinstance(value, float):
-        return f"{value:.{digits}g}"
-    if isinstance(value, int):
-        return f"{value:,}"
-    return unknown if value is None else str(value)
-
-
-def _list_text(values: list[object]) -> str:
-    if len(values) > 1 and all(value == values[0] for value in values):
-        return f"{_text(values[0])} (all {len(values)})"
-    texts = (f"({_text(v)})" if isinstance(v, Mapping) else _text(v) for v in values)
-    return " ".join(texts) or "none"
-
-
-_number = partial(_text, unknown="unknown")
-_short = partial(_text, digits=4, unknown="unknown")
+        return f"{value:.4g}"
+    return f"{value:,}" if type(value) is int else str(value)

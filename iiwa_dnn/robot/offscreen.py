@@ -65,13 +65,12 @@ def opens(library: str) -> bool:
     return not subprocess.run(command, env=environment, capture_output=True, check=False).returncode
 
 
-def open_context(width: int, height: int) -> Any:
-    """Open an OpenGL context for pictures of this size [pixel], made the current one.
+def prepare_renderer() -> None:
+    """Let ``mujoco.Renderer`` draw without a display, whatever MuJoCo chose at its import.
 
     Raises:
         MissingDependencyError: If MuJoCo or an OpenGL library is not there.
     """
-    import_mujoco()
-    context = importlib.import_module(f"mujoco.{opengl_library()}").GLContext(width, height)
-    context.make_current()
-    return context
+    renderer = importlib.import_module(import_mujoco().Renderer.__module__)
+    context = importlib.import_module(f"mujoco.{opengl_library()}").GLContext
+    renderer.gl_context.GLContext = context

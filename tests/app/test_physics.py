@@ -59,8 +59,8 @@ def test_everything_is_written(capsys, tmp_path, monkeypatch):
         "video.mp4",
     ):
         assert (tmp_path / name).stat().st_size > 1000, name
-    assert "cross-check        proxqp: 200 own programs checked, 0 disagreements, 0 failures" in out
-    assert "torque             max" in out
+    assert "proxqp: 200 own programs checked, 0 disagreements, 0 failures" in out
+    assert "largest torque, of its limit" in out
     metrics = json.loads((tmp_path / "metrics.json").read_text())
     assert metrics["physics"]["push"]["force"] == [0.0, 10.0, 0.0]
     assert metrics["physics"]["max_torque_share"] < 0.5

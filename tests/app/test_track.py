@@ -61,7 +61,7 @@ def run(folder: Path, *arguments: str) -> tuple[dict[str, np.ndarray], dict[str,
 def test_a_run_writes_record_metrics_report_and_figures(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    draw_only(monkeypatch, "path", "joint_angles")
+    draw_only(monkeypatch, "convergence")
     folder = tmp_path / "new" / "runs"
     assert call([*SHORT, "--out", str(folder)]) == 0
     captured = capsys.readouterr()
@@ -72,7 +72,7 @@ def test_a_run_writes_record_metrics_report_and_figures(
     assert {"record.npz", "metrics.json", "report.md"} <= files
     figures = {path.stem for path in folder.glob("*.png")}
     assert figures == {path.stem for path in folder.glob("*.pdf")}
-    assert figures == {"path", "joint_angles"}
+    assert figures == {"convergence"}
     assert all((folder / name).stat().st_size > 0 for name in files)
     report = (folder / "report.md").read_text()
     assert all(f"({figure}.png)" in report for figure in figures)
@@ -275,18 +275,6 @@ def test_limits_on_acceleration_and_jerk(tmp_path: Path) -> None:
     assert np.abs(np.diff(arrays["q"], 3, axis=0)).max() < 300.0 * 1e-9
 
 
-@pytest.mark.parametrize("noise", ["1e-4", "1e-6"])
-def test_noise_that_a_jerk_limit_does_not_let_through_is_named(
-    noise: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = ["--noise", noise, "--noise-at", "measurement", "--jerk-limit", "100", "--no-plots"]
-    words += ["--dt", "2e-3", "--duration", "0.1", "--check", "none", "--out", str(tmp_path)]
-    assert call(words) == int(noise == "1e-4")
-    # sqrt(6) 10.2 1/s 1e-4 rad / (2e-3 s)^2
-    said = "the measurement noise of 0.0001 rad asks for a jerk of 625 rad/s^3"
-    assert (said in capsys.readouterr().out) == (noise == "1e-4")
-
-
 def test_datasheet_limits(tmp_path: Path) -> None:
     _, metrics = run(tmp_path, "--joint-limit", "datasheet", "--check", "none")
     degrees = np.rad2deg(metrics["settings"]["q_upper"])
@@ -310,14 +298,14 @@ def test_another_robot_by_its_file_and_a_locked_joint(tmp_path: Path) -> None:
     np.testing.assert_allclose(record["position"], position, rtol=0, atol=1e-12)
     assert metrics["max_position_error_m"] < 1e-5
     report = (tmp_path / "report.md").read_text(encoding="utf-8")
-    assert "| locked joints, at [rad] | iiwa7_joint_3 = 0 |" in report
+    assert "| locked [rad] | iiwa7_joint_3 = 0 |" in report
     assert " | iiwa7_joint_1 iiwa7_joint_2 iiwa7_joint_4 iiwa7_joint_5" in report
 
 
 def test_a_second_arm_draws_too_and_report_and_figures_tell_its_errors(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    draw_only(monkeypatch, "frames")
+    draw_only(monkeypatch, "convergence")
     right = "right_iiwa7_flange"
     assert call([*SHORT, "--robot", "iiwa7_dual", "--frames", right, "--out", str(tmp_path)]) == 0
     record, metrics = results(tmp_path)
@@ -327,9 +315,7 @@ def test_a_second_arm_draws_too_and_report_and_figures_tell_its_errors(
     assert metrics["frames"][right]["max_position_error_m"] == pytest.approx(largest.max())
     assert largest.max() < 1e-5
     report = (tmp_path / "report.md").read_text()
-    assert f"| largest position error, {right} | {largest.max():.6g} | m |" in report
-    assert "(frames.png)" in report
-    assert (tmp_path / "frames.png").stat().st_size > 10_000
+    assert f"| largest position error, {right} | {largest.max():.4g} | m |" in report
 
 
 @pytest.mark.parametrize(

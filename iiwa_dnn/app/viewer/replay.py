@@ -174,7 +174,7 @@ class ReplayPanel:
             "position error": readout.length(float(self._position_error[k])),
             "orientation error": f"{self._orientation_error[k]:.2e} rad",
         }
-        if record.distance is not None:
+        if len(record.distance):
             values["distance of the nearest pair"] = readout.length(float(record.distance[k]))
         if record.steps:
             values |= self._step_values(min(k, record.steps - 1))
@@ -191,7 +191,7 @@ class ReplayPanel:
         }
         if record.action is not None:
             values["policy"] = policy_words(record, step)
-        if record.torque is not None:
+        if len(record.torque):
             values["largest torque"] = f"{np.abs(record.torque[step]).max():.1f} N m"
         return values
 
