@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import io
-import json
 import sys
 import tempfile
 import time
@@ -18,7 +17,6 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -123,8 +121,8 @@ def npy(array: np.ndarray) -> bytes:
 
 def other_array(array: np.ndarray, rng: Rng) -> np.ndarray:
     """The same array with other values, type or shape; settings with other contents."""
-    if array.dtype.kind == "U":
-        return np.array(json.dumps(other_json(json.loads(str(array)), rng)))
+    if array.dtype.kind == "U":  # whole or lost: nobody edits the settings of a record
+        return np.array(str(array)[: int(rng.integers(len(str(array))))])
     kind = int(rng.integers(6))
     if kind == 0 and array.size:
         array = array.astype(np.float64)
@@ -140,23 +138,6 @@ def other_array(array: np.ndarray, rng: Rng) -> np.ndarray:
     if kind == 4:
         return array[np.newaxis]
     return np.concatenate([array, array]) if array.ndim else array
-
-
-def other_json(value: Any, rng: Rng) -> Any:
-    """The same settings with one value, anywhere in them, replaced or taken out."""
-    values = (
-        None, True, -1, 0, 1e308, 10**400, "text", [], {}, [[]], [None], {"solvers": 1}, "\ud800",
-        1e-320,
-    )  # fmt: skip
-    if isinstance(value, dict) and value and rng.random() < 0.9:
-        key = list(value)[int(rng.integers(len(value)))]
-        if rng.random() < 0.15:
-            return {name: item for name, item in value.items() if name != key}
-        return value | {key: other_json(value[key], rng)}
-    if isinstance(value, list) and value and rng.random() < 0.7:
-        i = int(rng.integers(len(value)))
-        return [*value[:i], other_json(value[i], rng), *value[i + 1 :]]
-    return values[int(rng.integers(len(values)))]
 
 
 def read_record(path: Path) -> None:

@@ -302,9 +302,9 @@ def _crosscheck(record: Record) -> dict[str, Any]:
 def _judged_by(record: Record, asked: BoolArray) -> dict[str, int]:
     """Count the answers that each solver judged: those asked for, and the second ones."""
     check = record.settings["check"]
-    names = zip(check["solvers"], check.get("second", check["solvers"]), strict=False)
     counts: dict[str, int] = {}
-    for i, pair in enumerate(names if len(record.judge) else ()):
+    pairs = zip(check["solvers"], check.get("second", check["solvers"]), strict=True)
+    for i, pair in enumerate(pairs if len(record.judge) else ()):
         for code, solver in enumerate(pair):
             judged = int((asked[:, i] & (record.judge[:, i] == code)).sum())
             counts[solver] = counts.get(solver, 0) + judged

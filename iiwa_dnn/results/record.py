@@ -440,48 +440,28 @@ def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any
 
 
 def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
-    """Return the settings in JSON types after a check of all keys that the metrics need."""
+    """Return the settings in JSON types, after a check of what the metrics need of them."""
     try:
         settings: dict[str, Any] = plain(record.settings)
-        for key in (*LIMITS, *(["torque_max"] if len(record.torque) else [])):
-            finite = [value for value in settings[key] if value is not None]
-            if len(settings[key]) != sizes.get("n", 0) or not np.isfinite(np.array(finite)).all():
-                problem = f"must hold {sizes['n']} limits"
-                raise InvalidInputError(f"settings[{key!r}]", problem, settings[key])
-        _check_names(settings, record, sizes)
+        limits = (*LIMITS, "torque_max") if len(record.torque) else LIMITS
+        lists = {f"settings[{key!r}]": (settings[key], sizes.get("n", 0)) for key in limits}
+        rows = settings.get("rows") or []
+        lists["settings['rows']"] = (rows, sizes.get("m", len(rows)))
+        lists["settings['check']['solvers']"] = (settings["check"]["solvers"], sizes.get("k", 0))
+        for name, (values, length) in lists.items():
+            if len(values) != length:
+                raise InvalidInputError(name, f"must hold {length} entries", values)
         checks.one_of("settings['mode']", settings["mode"], MODES)
         for key in ("dt", "duration"):
             checks.positive(f"settings[{key!r}]", settings[key])
-        checks.finite("settings: duration / dt", settings["duration"] / settings["dt"])
-        checks.not_negative("settings['tol']", settings["tol"])
-        for key in ("tolerance", "reference_tolerance"):
-            checks.not_negative(f"settings['check'][{key!r}]", settings["check"][key])
+        missing = [key for key in ("robot", "status", "tol") if settings[key] is None]
+        pairs = settings["collisions"]["pairs"] if len(record.nearest) else ()
     except KeyError as error:
         raise InvalidInputError("settings", f"{error} is missing", record.settings) from error
-    except (TypeError, OverflowError) as error:
+    except TypeError as error:
         raise InvalidInputError("settings", str(error), record.settings) from error
+    if missing:
+        raise InvalidInputError("settings", f"{missing[0]} is missing", record.settings)
+    if len(record.distance) != len(record.nearest) or record.nearest.max(initial=-1) >= len(pairs):
+        raise InvalidInputError("nearest", "must count the pairs of the distances", record.nearest)
     return settings
-
-
-def _check_names(settings: Mapping[str, Any], record: Record, sizes: Mapping[str, int]) -> None:
-    """Check that there are as many names as solvers, rows and pairs in the arrays."""
-    solvers = settings["check"]["solvers"]
-    rows = settings.get("rows") or []
-    parts = [row["part"] for row in rows]
-    for name in (settings["robot"], settings["status"], *solvers, *parts):
-        checks.instance("settings: a name", name, str)
-    if len(solvers) != sizes.get("k", 0):
-        raise InvalidInputError("settings", f"must name {sizes['k']} solvers", solvers)
-    rows_needed = sizes.get("m", len(rows))
-    if len(rows) != rows_needed or not all(row["row"] >= 1 for row in rows):
-        problem = f'must name {rows_needed} rows as {{"part": text, "row": from 1}}'
-        raise InvalidInputError("settings['rows']", problem, rows)
-    if len(record.distance) != len(record.nearest):
-        raise InvalidInputError("distance", "and nearest come together", record.distance)
-    if not len(record.nearest):
-        return
-    pairs = settings["collisions"]["pairs"]
-    checks.finite("settings['collisions']['distance']", settings["collisions"]["distance"])
-    if not 0 <= record.nearest.min() <= record.nearest.max() < len(pairs):
-        problem = "must name the pairs that the array nearest counts"
-        raise InvalidInputError("settings['collisions']['pairs']", problem, pairs)
