@@ -97,14 +97,6 @@ class Configuration(FrameState):
             self._inertia = pin.crba(model, data, self._q)  # a copy of data's
         return read_only(self._inertia)
 
-    @property
-    def center_of_mass(self) -> tuple[Array, Array]:
-        """Position of the center of mass [m], (3,), and its Jacobian, (3, n), along world axes."""
-        model = self._robot.model
-        data = model.createData()
-        jacobian = pin.jacobianCenterOfMass(model, data, self._q)
-        return data.com[0].copy(), jacobian.reshape(3, -1)
-
     def frame(self, name: str) -> FrameState:
         """Compute pose and Jacobian of a frame out of `Robot.frame_names`, as those of the tip.
 

@@ -18,6 +18,7 @@ from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
 from iiwa_dnn.robot.robot import Mimic, Robot, frame_id
 
 _Joints = dict[str, ET.Element]
+_Mimics = dict[str, Mimic]
 
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
@@ -82,23 +83,17 @@ def load_robot(
     name = str(source) if tips else full.name
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
-    chosen = _chosen_joints(full, locked)
+    mimics = _all_mimics(joints)
     others = tips if len(tips) > 1 else ()
-    idle = _idle_joints(full, joints, (tip, *others, *frames))
+    idle = _idle_joints(full, mimics, (tip, *others, *frames))
+    chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    robot = Robot(
-        name,
-        model,
-        tip,
-        _limits(name, path, model, joints),
-        _ramps(model, joints),
-        tuple(held),
-        tuple(held.values()),
-        _mimics(model, joints, tip),
-        path,
-        text,
-    )
-    expected = {*chosen, *(_idle_joints(full, joints, tips) if tips else ())}
+    following = _following(model, mimics, tip)
+    limits = _limits(name, model, joints)
+    ramps = _ramps(model, joints)
+    positions = tuple(held.values())
+    robot = Robot(name, model, tip, limits, ramps, tuple(held), positions, following, path, text)
+    expected = {*chosen, *(_idle_joints(full, mimics, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     if still:
         message = f"held still, since they do not move {tip}: {', '.join(still)}"
@@ -153,18 +148,17 @@ def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
     return chosen
 
 
-def _idle_joints(model: pin.Model, joints: _Joints, frames: Iterable[str]) -> list[str]:
+def _idle_joints(model: pin.Model, mimics: _Mimics, frames: Iterable[str]) -> list[str]:
     """List the joints that move none of the frames, and lead no joint that does."""
-    moving = {0}
-    for name in frames:
-        moving |= set(model.supports[model.frames[frame_id(model, name)].parentJoint])
-    leaders = set()
-    for index in moving:
-        mimic = _mimic_of(joints, model.names[index])
-        if mimic is not None:
-            leaders.add(mimic.leader)
-    names = enumerate(model.names)
-    return [name for index, name in names if index not in moving and name not in leaders]
+    moving = {name for frame in frames for name in _support(model, frame)}
+    moving |= {mimics[name].leader for name in moving if name in mimics}
+    return [name for name in model.names if name not in moving]
+
+
+def _support(model: pin.Model, frame: str) -> list[str]:
+    """List the joints that move a frame, after the world."""
+    joint = model.frames[frame_id(model, frame)].parentJoint
+    return [str(model.names[index]) for index in model.supports[joint]]
 
 
 def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str, float]]:
@@ -181,54 +175,54 @@ def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str,
     return reduced, held
 
 
-def _mimic_of(joints: _Joints, name: str) -> Mimic | None:
-    """Return whom a joint follows, if anyone."""
-    mimic = joints[name].find("mimic") if name in joints else None
-    if mimic is None:
-        return None
-    multiplier = float(mimic.get("multiplier", 1.0))
-    return Mimic(name, mimic.get("joint", ""), multiplier, float(mimic.get("offset", 0.0)))
+def _all_mimics(joints: _Joints) -> _Mimics:
+    """Find the joints of a file that follow another."""
+    found = {}
+    for name, joint in joints.items():
+        mimic = joint.find("mimic")
+        if mimic is not None:
+            multiplier = float(mimic.get("multiplier", 1.0))
+            offset = float(mimic.get("offset", 0.0))
+            found[name] = Mimic(name, mimic.get("joint", ""), multiplier, offset)
+    return found
 
 
-def _mimics(model: pin.Model, joints: _Joints, tip: str) -> tuple[Mimic, ...]:
-    """Find the joints that move the tip and follow another; that one must be free as well."""
-    names = [model.names[i] for i in model.supports[model.frames[frame_id(model, tip)].parentJoint]]
-    found = [mimic for mimic in (_mimic_of(joints, name) for name in names) if mimic is not None]
+def _following(model: pin.Model, mimics: _Mimics, tip: str) -> tuple[Mimic, ...]:
+    """Select the joints that move the tip and follow another; that one must be free as well."""
+    found = tuple(mimics[joint] for joint in _support(model, tip) if joint in mimics)
     for joint, leader, *_ in found:
         if leader not in tuple(model.names):
             problem = f"joint {joint!r} follows {leader!r} (<mimic>), which is locked: lock it too"
             raise InvalidInputError("locked", problem, joint)
-    return tuple(found)
+    return found
 
 
 def _ramps(model: pin.Model, joints: _Joints) -> Array:
     """Read Franka's element of velocity limits that shrink towards position limits, (2, n)."""
-    ramps = np.zeros((2, model.nv))
-    ramps[1] = np.inf
+    ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
     for i, name in enumerate(tuple(model.names)[1:]):
         ramp = joints[name].find("position_based_velocity_limits") if name in joints else None
         if ramp is not None:
-            names = ("velocity_offset", "deceleration_limit")
-            ramps[:, i] = [float(ramp.get(each, "nan")) for each in names]
+            ramps[0, i] = float(ramp.get("velocity_offset", "nan"))
+            ramps[1, i] = float(ramp.get("deceleration_limit", "nan"))
     return ramps
 
 
-def _limits(name: str, path: Path | None, model: pin.Model, joints: _Joints) -> Array:
+def _limits(name: str, model: pin.Model, joints: _Joints) -> Array:
     """Return limits as `Robot.limits` has them, (5, n); infinite where there are none."""
-    for i, joint in enumerate(tuple(model.names)[1:]):
-        if model.nqs[i + 1] != 1 or model.nvs[i + 1] != 1:  # q and its velocity differ in kind
-            problem = f"joint {joint!r} has {model.nvs[i + 1]} directions of motion"
-            raise InvalidInputError("locked", f"{problem} in {model.nqs[i + 1]} coordinates", joint)
+    names = tuple(model.names)[1:]
+    for joint, *sizes in zip(names, list(model.nqs)[1:], list(model.nvs)[1:], strict=True):
+        if sizes != [1, 1]:  # a position and its velocity differ in kind
+            problem = f"joint {joint!r} has {sizes[0]} coordinates, {sizes[1]} directions"
+            raise InvalidInputError("locked", f"{problem}: lock it", joint)
     limits = np.full((5, model.nv), np.inf)
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
-    for i, joint in enumerate(tuple(model.names)[1:]):
-        element = joints.get(joint)
-        limit = None if element is None else element.find("limit")
-        if element is not None and (limit is None or not {"lower", "upper"} & set(limit.keys())):
+    limits[2, limits[2] == 0.0] = np.inf
+    for i, joint in enumerate(names):
+        limit = joints[joint].find("limit") if joint in joints else None
+        if limit is not None and not {"lower", "upper"} & set(limit.keys()):
             limits[:2, i] = [-np.inf, np.inf]
-        if limits[2, i] == 0.0:
-            limits[2, i] = np.inf
     if name in RATES and np.size(RATES[name][0]) in (1, model.nv):
         limits[3] = RATES[name][0]
         limits[4] = RATES[name][1]

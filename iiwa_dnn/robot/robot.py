@@ -285,8 +285,6 @@ def file_of(robot: Robot) -> Path:
 
 
 def urdf_of(robot: Robot) -> str:
-    """Return the text of a robot's URDF, or raise an InvalidInputError if it has none."""
+    """Return the text of a robot's URDF, or raise an InvalidInputError if it comes from no file."""
     file_of(robot)
-    if robot.urdf is None:
-        raise InvalidInputError("robot", "must be loaded from a URDF file", robot)
-    return robot.urdf
+    return str(robot.urdf)
