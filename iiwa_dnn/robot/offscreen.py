@@ -1,20 +1,19 @@
 """OpenGL without a display, for MuJoCo to draw with.
 
-On Linux it is the library that the environment variable MUJOCO_GL names, else EGL (a graphics card,
-or Mesa's software driver), else OSMesa (always in software). Physics needs none of them.
+On Linux it is the library that the environment variable MUJOCO_GL names, by default EGL (a graphics
+card, or Mesa's software driver). Physics needs none.
 """
 
 import importlib
 import os
-import subprocess
 import sys
-from functools import cache
 from typing import Any
 
 from iiwa_dnn.errors import MissingDependencyError
 
-_LIBRARIES = ("egl", "osmesa")
-_OPENGL_REMEDY = "on Debian and Ubuntu: apt-get install libosmesa6 (or, for EGL: libegl1 libgl1)"
+_REMEDY = (
+    "on Debian and Ubuntu: apt-get install libegl1 libgl1 (or libosmesa6, and MUJOCO_GL=osmesa)"
+)
 
 
 def import_mujoco() -> Any:
@@ -30,39 +29,27 @@ def import_mujoco() -> Any:
         package = "the Python package mujoco"
         raise MissingDependencyError(package, "pip install 'iiwa-dnn[sim]'") from error
     except Exception as error:  # whatever PyOpenGL meets where that library is not there
-        wanted = os.environ.get("MUJOCO_GL", "").lower()
-        if wanted not in _LIBRARIES:
-            raise
-        library = f"the OpenGL library that MUJOCO_GL={wanted} asks for"
-        raise MissingDependencyError(library, _OPENGL_REMEDY) from error
+        raise MissingDependencyError("the OpenGL library of MUJOCO_GL", _REMEDY) from error
 
 
 def opengl_library() -> str:
-    """Choose the module of MuJoCo that can draw without a display.
+    """Return the module of MuJoCo that draws without a display.
 
     Returns:
-        ``"egl"`` or ``"osmesa"``; off Linux ``"gl_context"``, MuJoCo's own choice.
+        ``"egl"``, or what MUJOCO_GL names; off Linux ``"gl_context"``, MuJoCo's own choice.
 
     Raises:
-        MissingDependencyError: On Linux, if there is none; it names the Debian package.
+        MissingDependencyError: On Linux, if it opens no context; it names the Debian package.
     """
+    import_mujoco()
     if not sys.platform.startswith("linux"):
         return "gl_context"
-    # PyOpenGL loads one library in a process, and MuJoCo sets the first of these to say which.
-    wanted = [os.environ.get(name, "").lower() for name in ("PYOPENGL_PLATFORM", "MUJOCO_GL")]
-    for library in [name for name in wanted if name in _LIBRARIES][:1] or _LIBRARIES:
-        if opens(library):
-            return library
-    raise MissingDependencyError("an OpenGL library for pictures without a display", _OPENGL_REMEDY)
-
-
-@cache
-def opens(library: str) -> bool:
-    """Check, in a process of its own, that MuJoCo opens a context of ``"egl"`` or ``"osmesa"``."""
-    code = f"from mujoco.{library} import GLContext; GLContext(1, 1)"
-    environment = os.environ | {"MUJOCO_GL": library, "PYOPENGL_PLATFORM": library}
-    command = [sys.executable, "-c", code]
-    return not subprocess.run(command, env=environment, capture_output=True, check=False).returncode
+    library = os.environ.get("MUJOCO_GL", "").lower() or "egl"
+    try:
+        importlib.import_module(f"mujoco.{library}").GLContext(1, 1).free()
+    except Exception as error:  # whatever PyOpenGL meets
+        raise MissingDependencyError(f"OpenGL by {library}, without a display", _REMEDY) from error
+    return library
 
 
 def prepare_renderer() -> None:

@@ -13,7 +13,6 @@ from helpers_records import draw_only
 from iiwa_dnn import Record
 from iiwa_dnn.app.main import main
 from iiwa_dnn.results import pictures
-from iiwa_dnn.robot import offscreen
 
 QUICK = ("--duration", "0.05", "--quiet", "--no-plots")
 DRY = (*QUICK, "--no-pictures", "--no-video")
@@ -150,15 +149,16 @@ def test_bad_input_is_one_line_and_2(capsys, tmp_path, arguments, words):
 @needs_mujoco
 def test_without_opengl_one_line_names_the_package_before_the_run(capsys, tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "platform", "linux")
-    monkeypatch.setattr(offscreen, "opens", lambda library: False)
+    monkeypatch.setenv("MUJOCO_GL", "of_nobody")
     code, _, err = run(capsys, *QUICK, "--out", str(tmp_path / "run"))
     assert code == 2
-    assert "apt-get install libosmesa6" in err
+    assert "apt-get install libegl1" in err
     assert err.count("\n") == 1
     assert not (tmp_path / "run").exists()
     assert run(capsys, *DRY, "--out", str(tmp_path / "run"))[0] == 0  # physics needs none
 
 
+@needs_opengl
 @pytest.mark.parametrize(
     ("missing", "arguments"), [("mujoco", DRY), ("imageio_ffmpeg", (*QUICK, "--no-pictures"))]
 )
@@ -167,18 +167,12 @@ def test_without_the_extra_one_line_says_what_to_install(
 ):
     if missing == "imageio_ffmpeg":
         pytest.importorskip("mujoco", reason="pip install 'iiwa-dnn[sim]'")
-        if offscreen_is_missing():
-            pytest.skip("no OpenGL: on Debian, apt-get install libosmesa6")
     monkeypatch.setitem(sys.modules, missing, None)
     code, _, err = run(capsys, *arguments, "--out", str(tmp_path))
     assert code == 2
     assert "pip install 'iiwa-dnn[sim]'" in err
     assert err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def offscreen_is_missing() -> bool:
-    return not any(map(offscreen.opens, ("egl", "osmesa")))
 
 
 @needs_mujoco

@@ -119,9 +119,7 @@ def test_missing_file_and_folder(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["floating", "planar"])
 def test_joints_of_other_kinds_are_named(written, kind: str) -> None:
-    with pytest.raises(
-        InvalidInputError, match=r"'j' has \d coordinates, \d directions: lock it"
-    ):
+    with pytest.raises(InvalidInputError, match=r"'j' has \d coordinates, \d directions: lock it"):
         load_robot(written(one_joint("", kind)))
 
 
