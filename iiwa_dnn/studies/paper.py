@@ -5,6 +5,9 @@ section V. Lengths are in [m], angles in [rad]; its Table II calls the mean squa
 "meters", which can only be [m^2].
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 from iiwa_dnn.robot.arms import STARTS
 
 START = STARTS["iiwa7"]
@@ -45,3 +48,18 @@ CASES_MAX_ERROR = (6.70e-5, 6.47e-5, 7.07e-5, 6.87e-5)
 
 CASES_MSE = (2.00e-10, 1.97e-10, 3.28e-10, 2.49e-10)
 """Table II, MSE [m^2], in the order of `CASES`."""
+
+
+def published(settings: Mapping[str, Any]) -> dict[str, float]:
+    """Return Table I's numbers of a run of these settings, by the names of its metrics.
+
+    If the run does not draw the paper's heart with one of the paper's weights, there are none.
+    """
+    heart = {"name": "heart", "scale": 3.45e-3, "period": 10.0}
+    weight = settings["scheme"].get("weight")
+    if settings["robot"] != "iiwa7" or settings["reference"] != heart or weight not in WEIGHTS:
+        return {}
+    column = WEIGHTS.index(weight)
+    drift = DRIFT[column]
+    known = {} if drift is None else {"joint_drift_rad": drift}
+    return {"max_position_error_m": MAX_ERROR[column], **known}
