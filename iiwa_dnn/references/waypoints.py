@@ -228,6 +228,7 @@ class Waypoints(Reference):
             InvalidInputError: If ``ends`` is not one of its values, or a speed or the ratio is not
                 above zero.
         """
+        one_of("ends", ends, ("clamped", "closed"))
         positive("speed", speed)
         positive("rate", rate)
         positive("stretch", stretch)
@@ -239,8 +240,6 @@ class Waypoints(Reference):
         try:
             made = cls(stretch * times, points, ends, quaternions)
         except InvalidInputError as error:
-            if error.argument == "ends":
-                raise
             raise FileError(path, str(error)) from error
         for message in made._abrupt_ends():
             warnings.warn(f"{path}: {message}", stacklevel=2)
@@ -252,15 +251,15 @@ class Waypoints(Reference):
             return []
         steps = np.diff(self.times)
         speeds = np.linalg.norm(np.diff(self.points, axis=0), axis=1) / steps
-        usual = float(speeds @ steps) / self.duration
+        usual = np.average(speeds, weights=steps)
         found = []
-        for word, piece in (("begin", 0), ("end", -1)):
+        for word, end, beside in (("begin", 0, 1), ("end", -1, -2)):
             # Rows that speed up evenly from rest are passed at a third of the next ones' speed.
-            at_speed = speeds[piece] > 0.5 * max(usual, speeds[1 if piece == 0 else -2])
-            if at_speed and steps[piece] < 0.1 * self.duration:
+            at_speed = speeds[end] > 0.5 * max(usual, speeds[beside])
+            if at_speed and steps[end] < 0.1 * self.duration:
                 found.append(
-                    f"the rows {word} at {speeds[piece]:.3g} m/s, the path at rest: within "
-                    f"{steps[piece]:.3g} s it changes its speed; let the rows {word} slowly"
+                    f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
+                    f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
                 )
         return found
 

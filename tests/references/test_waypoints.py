@@ -72,16 +72,6 @@ def test_two_points_are_the_one_cubic_at_rest_at_both_ends() -> None:
     )
 
 
-def test_closed_path_approaches_a_circle() -> None:
-    angle = np.linspace(0.0, 2 * np.pi, 65)
-    points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
-    points[-1] += 5e-10  # its last point need only nearly be its first
-    path = Waypoints(angle, points, "closed")
-    t = np.random.default_rng(10).uniform(-10, 20, 500)
-    circle = np.stack([np.cos(t) - 1, np.sin(t), 0 * t], axis=-1)
-    assert np.abs(path.sample(t).position - circle).max() < 1e-6
-
-
 @pytest.mark.parametrize(
     ("arguments", "argument"),
     [
