@@ -7,7 +7,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 from helpers_kinematics import example_urdf
@@ -91,17 +90,6 @@ def test_the_heart_with_any_redundancy(name: str, orientation: str) -> None:
     # Euler's error is of first order: two hundred times that of 1e-4 s, which is 3.4e-7 m.
     assert metrics["max_position_error_m"] < 1e-4
     assert (metrics["max_orientation_error_rad"] < 1e-3) == (orientation == "so3")
-    # Pinocchio's own forward kinematics of the whole robot ends where the record says.
-    full = pin.buildModelFromUrdf(str(example_urdf(ARMS[name].file)))
-    data, q = full.createData(), pin.neutral(full)
-    for joint, angle in zip(robot.joint_names, record.q[-1], strict=True):
-        index = full.getJointId(joint)
-        # A continuous joint of Pinocchio's has two coordinates.
-        values = [np.cos(angle), np.sin(angle)] if full.nqs[index] == 2 else [angle]
-        q[full.idx_qs[index] :][: len(values)] = values
-    pin.framesForwardKinematics(full, data, q)
-    tip = data.oMf[full.getFrameId(robot.tip, pin.FrameType.BODY)].translation
-    np.testing.assert_allclose(record.position[-1], tip, atol=1e-12)
 
 
 def test_without_the_package_one_line_says_what_to_install(

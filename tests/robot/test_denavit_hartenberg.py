@@ -13,7 +13,6 @@ from iiwa_dnn import (
     load_robot,
     robot_from_dh,
 )
-from iiwa_dnn.errors import InvalidInputError
 
 RNG = np.random.default_rng(5)
 TABLE = RNG.uniform(-1.0, 1.0, (6, 4)) * [0.4, np.pi, 0.4, np.pi]
@@ -65,21 +64,3 @@ def test_limits_names_and_pickling() -> None:
     np.testing.assert_array_equal(robot.limits[:3], [[-np.inf] * 6, [1, 2, 3, 4, 5, 6], [0.5] * 6])
     again, q = pickle.loads(pickle.dumps(robot)), np.arange(6.0)
     np.testing.assert_array_equal(Configuration(again, q).pose, Configuration(robot, q).pose)
-
-
-@pytest.mark.parametrize(
-    ("table", "options", "argument"),
-    [
-        (np.zeros((2, 3)), {}, "table"),
-        (np.zeros((0, 4)), {}, "table"),
-        ([[0, 0, np.nan, 0]], {}, "table"),
-        ([[0, 0, 1, 0]], {"prismatic": [2]}, "prismatic"),
-        ([[0, 0, 1, 0]], {"convention": "classic"}, "convention"),
-        ([[0, 0, 1, 0]], {"lower": 1, "upper": 0}, "lower"),
-        ([[0, 0, 1, 0]], {"velocity": [1, 2]}, "velocity"),
-    ],
-)
-def test_bad_tables_are_refused(table: object, options: dict[str, object], argument: str) -> None:
-    with pytest.raises(InvalidInputError) as caught:
-        robot_from_dh(table, **options)
-    assert caught.value.argument == argument

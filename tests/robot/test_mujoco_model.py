@@ -113,12 +113,6 @@ def test_masses_and_friction(robot):
     assert other.body("iiwa7_link_0").mass == plain.body("iiwa7_link_0").mass
 
 
-@pytest.mark.parametrize(("name", "value"), [("damping", -1.0), ("armature", np.nan)])
-def test_wrong_dynamics(name, value):
-    with pytest.raises(InvalidInputError, match=name):
-        JointDynamics(**{name: value})
-
-
 @pytest.mark.parametrize(
     ("name", "also"),
     [

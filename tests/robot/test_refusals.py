@@ -1,0 +1,65 @@
+"""Arguments of robots that are refused by name, one line each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn as d
+from iiwa_dnn.robot.mujoco_model import JointDynamics
+
+ROBOT = d.load_robot("iiwa7")
+
+REFUSED = [
+    *[
+        (d.Configuration, {"robot": ROBOT, "q": q}, "q")
+        for q in (np.zeros(6), np.zeros((7, 1)), 0.0, [*[0] * 6, np.nan], ["a"] * 7, None)
+    ],
+    (d.Configuration, {"robot": ROBOT, "q": [np.inf, -np.inf, 0, 0, 0, 0, 0]}, "q"),
+    (ROBOT.with_limits, {"lower": 3.0}, "lower"),
+    (ROBOT.with_limits, {"lower": np.inf}, "lower"),
+    (ROBOT.with_limits, {"lower": np.nan}, "lower"),
+    (ROBOT.with_limits, {"upper": -3.0}, "lower"),
+    (ROBOT.with_limits, {"upper": [1.0, 2.0]}, "upper"),
+    (ROBOT.with_limits, {"upper": "wide"}, "upper"),
+    (ROBOT.with_limits, {"velocity": 0.0}, "velocity"),
+    (ROBOT.with_limits, {"velocity": [1, 1, 1, -1, 1, 1, 1]}, "velocity"),
+    (ROBOT.with_limits, {"acceleration": np.nan}, "acceleration"),
+    (ROBOT.with_limits, {"jerk": -1.0}, "jerk"),
+    *[
+        (ROBOT.with_tool, {"tool": tool}, "tool")
+        for tool in ([0, 0, 0.1], [np.nan] * 6, "pen", np.eye(3))
+    ],
+    (d.load_robot, {"source": None}, "source"),
+    (d.load_robot, {"source": 7}, "source"),
+    (d.load_robot, {"source": "iiwa7", "locked": 7}, "locked"),
+    (d.load_robot, {"source": "iiwa7", "locked": ROBOT.joint_names}, "tip"),
+    (d.robot_from_dh, {"table": np.zeros((2, 3))}, "table"),
+    (d.robot_from_dh, {"table": np.zeros((0, 4))}, "table"),
+    (d.robot_from_dh, {"table": [[0, 0, np.nan, 0]]}, "table"),
+    (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "prismatic": [2]}, "prismatic"),
+    (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "convention": "classic"}, "convention"),
+    (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "lower": 1, "upper": 0}, "lower"),
+    (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "velocity": [1, 2]}, "velocity"),
+    (JointDynamics, {"damping": -1.0}, "damping"),
+    (JointDynamics, {"armature": np.nan}, "armature"),
+]
+
+
+@pytest.mark.parametrize(("call", "arguments", "named"), REFUSED)
+def test_a_bad_argument_is_named(call: Any, arguments: dict[str, Any], named: str) -> None:
+    with pytest.raises(d.InvalidInputError) as caught:
+        call(**arguments)
+    assert caught.value.argument == named
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_name_lists_those_that_are_near() -> None:
+    with pytest.raises(d.NotFoundError, match="no frame 'iiwa7_link4'; did you mean: iiwa7_link_"):
+        d.Configuration(ROBOT, np.zeros(7)).frame("iiwa7_link4")
+    with pytest.raises(d.NotFoundError, match="no joint 'iiwa7_joint_9'"):
+        d.load_robot("iiwa7", locked=["iiwa7_joint_9"])
+    with pytest.raises(d.NotFoundError, match="no robot 'iiwa14'; did you mean: iiwa7"):
+        d.load_robot("iiwa14")
