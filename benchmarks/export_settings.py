@@ -211,10 +211,6 @@ class SaddleFlow(Network):
         """Count the states."""
         return int(qp.q.size + qp.b.size)
 
-    def stable_step(self, qp: iiwa_dnn.QP, state: Array | None = None) -> float:
-        """State none."""
-        return 0.0
-
 
 def own_network() -> Made:
     """Return the heart in continuous mode with a compiled network of one's own."""

@@ -26,7 +26,7 @@ from iiwa_dnn.networks import (
     ZeroingNetwork,
 )
 from iiwa_dnn.networks.batch import BatchSolution, solve_batch
-from iiwa_dnn.networks.integrators import AdaptiveRungeKutta, ExplicitEuler, ImplicitEuler
+from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
 from iiwa_dnn.networks.problems import solve_problem
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import TrackingSolver
@@ -90,7 +90,7 @@ from iiwa_dnn.simulation import (
 __version__ = version("iiwa-dnn")
 
 __all__ = [
-    "QP", "AccelerationLimits", "ActivatedNetwork", "AdaptiveRungeKutta", "Agreement", "AxisTask",
+    "QP", "AccelerationLimits", "ActivatedNetwork", "Agreement", "AxisTask",
     "BatchSolution", "Box", "Capsule", "Circle", "CollisionAvoidance",
     "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork",

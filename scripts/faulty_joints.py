@@ -31,9 +31,9 @@ import tyro
 
 from iiwa_dnn import checks, load_robot
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.networks.base import Flow, Network, difference_jacobian, read_point
+from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.tracking import FIFD, TrackingSolver
-from iiwa_dnn.qp.layout import Triple, Vector, check_size
+from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.simulation import count_steps
 
@@ -110,14 +110,11 @@ class BarrierNetwork(Network):
         p = qp.b.size
         return np.concatenate([np.zeros(n), np.ones(p), [0.0]])
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side for a program that stands still."""
-        return self.moving_flow(qp, QP.from_data(np.zeros(qp.data.size), qp.sizes))
-
-    def moving_flow(self, qp: QP, rate: QP) -> Flow:
-        """Make the right-hand side for a program and its rate of change [1/rho]."""
-        n = qp.q.size
-        p = qp.b.size
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program and its rate of change [1/rho] up; its multipliers are no KKT ones."""
+        n, m, p = qp.sizes
+        if rate is None:
+            rate = QP.from_data(np.zeros(qp.data.size), qp.sizes)
 
         def rates(s: Vector) -> Vector:
             x = s[:n]
@@ -144,22 +141,7 @@ class BarrierNetwork(Network):
             )
             return np.append(-np.linalg.pinv(matrix) @ wanted, 1.0)
 
-        return Flow(rates, lambda s: difference_jacobian(rates, s))
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; its multipliers are no KKT ones.
-
-        Returns:
-            The residuals of x with multipliers of zero.
-        """
-        n, m, p = qp.sizes
-        check_size("state", state, n + p + 1)
-        known = np.concatenate([state[:n], np.zeros(p + m)])
-        return read_point(qp, known, point, n + p + m)
-
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Return 0: no step is known to be stable."""
-        return 0.0
+        return Flow(rates, unknowns=lambda s: np.concatenate([s[:n], np.zeros(p + m)]))
 
 
 def path(t: float) -> np.ndarray:
@@ -201,9 +183,8 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
     tip = load_robot("iiwa7").tip_id
     data = model.createData()
     # The script takes three Euler steps before the formula: one state more that counts nothing.
-    solver = TrackingSolver(
-        BarrierNetwork(1 / GAMMA, R0, R_INF, DECAY), FIFD._replace(past=(*FIFD.past, 0.0))
-    )
+    formula = FIFD._replace(past=(*FIFD.past, 0.0))
+    solver = TrackingSolver(BarrierNetwork(1 / GAMMA, R0, R_INF, DECAY), formula=formula)
     th = [START]
     states = []
     errors = []
@@ -231,7 +212,7 @@ def by_network(steps: int) -> tuple[np.ndarray, np.ndarray]:
         rate = QP.from_data(np.zeros(qp.data.size), qp.sizes)
         rate.A[:] = pin.getFrameJacobianTimeVariation(model, data, tip, pin.LOCAL_WORLD_ALIGNED)[:3]
         rate.b[:] = a_d - GAIN * (J @ x - v_d)
-        solver.rate = rate.data
+        solver.predict(rate.data)
         states.append(solver.state[:-1])
         errors.append(r_a - wanted)
         wanted = home + shift

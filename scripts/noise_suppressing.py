@@ -119,7 +119,7 @@ def suppressing(arm: Arm, noise: float) -> tuple[Array, Rates]:
 
     def rates(t: float, s: Array) -> Array:
         qp, change = program(arm, s[:6], s[6:12], t)
-        return np.concatenate([s[6:12], network.moving_flow(qp, change).rates(s[6:])])
+        return np.concatenate([s[6:12], network.flow(qp, change).rates(s[6:])])
 
     return np.concatenate([arm.start, np.zeros(6), np.full(15, 1e-3), np.zeros(21)]), rates
 

@@ -24,10 +24,7 @@ START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 class SaddleNetwork(iiwa_dnn.Network):
     """The saddle flow with n + p + m states; `rho` [s] is inherited."""
 
-    def state_size(self, qp):
-        return sum(qp.sizes)
-
-    def flow(self, qp):
+    def flow(self, qp, rate=None):
         _, m, p = qp.sizes
         rows = np.vstack([qp.A, qp.G])
         H = np.block([[qp.P, rows.T], [-rows, np.zeros((p + m, p + m))]])
@@ -43,9 +40,6 @@ class SaddleNetwork(iiwa_dnn.Network):
             return np.where(((aim > lower) & (aim < upper))[:, None], -H, -np.eye(c.size))
 
         return Flow(rates, jacobian)
-
-    def stable_step(self, qp, state=None):
-        return 0.0  # no step is known to be stable for explicit Euler
 
 
 def main(steps: tyro.conf.Positional[int] = 300):

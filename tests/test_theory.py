@@ -328,16 +328,6 @@ def test_across_active_sets_a_step_within_the_linear_bound_may_grow(
     assert settles or np.abs(state).max() > 1e20
 
 
-def test_a_run_that_overflows_is_not_called_solved() -> None:
-    """Where the state is no number x is clipped: its own residuals judge it."""
-    qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])
-    network = ProjectionNetwork(primal_projection=False)
-    solution = DNNSolver(network, settler=ExplicitEuler(max_steps=10_000)).solve(qp)
-    assert solution.status is Status.NOT_SETTLED
-    assert abs(solution.x[0]) <= 1.0
-    assert solution.residuals.dual == pytest.approx(2.0)
-
-
 def test_a_state_that_is_no_number_ends_what_is_advanced() -> None:
     """Its point is clipped to the bounds, and once went on as an answer of the continuous mode."""
     qp = QP([[1.0]], [-10.0], lb=[-1.0], ub=[1.0])

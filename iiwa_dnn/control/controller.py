@@ -205,7 +205,7 @@ class Controller:
     ) -> Command:
         step = self._derived
         state = self._state
-        if step is None or step.version != self.solver.version or not state.begun:
+        if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
         layout = step.layout
         joints: Any = q
@@ -332,7 +332,7 @@ class Controller:
     def _laid_out(self) -> ControlStep:
         """Return the control step, laid out anew after a change of the settings."""
         step = self._derived
-        if step is None or step.version != self.solver.version:
+        if step is None:
             duration = 0.0 if self.mode == "converged" else self.dt
             scheme = self.scheme
             if getattr(type(scheme), "build_qp", None) is not Scheme.build_qp:

@@ -42,7 +42,7 @@ from numba import types
 from numpy.typing import NDArray
 
 from iiwa_dnn.networks.integrators.base import ANSWER, TOLERANCE, enter_answer
-from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
+from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import VECTOR, outlived
 from iiwa_dnn.qp.dense import row_dot
@@ -89,7 +89,7 @@ class Yielding(NamedTuple):
         weights: Weight of each task row, (p,); 0 for a row that is a limit.
         limits: Constants of the acceleration and jerk limits, `MotionLimits.constants`, (6 dof,);
             empty where there are none.
-        settings: Constants with which the network settles, ``[tol, budget, long step]``, (3,).
+        settings: Constants with which the network settles, ``[tol, budget]``, (2,).
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
             braking keeps away from, (scenes, 2); none without acceleration limits.
         dt: Control period [s].
@@ -123,7 +123,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
     return Yielding(
         program.row_weights,
         limits,
-        np.array([tol, BUDGET, ImplicitEuler().long_step]),
+        np.array([tol, float(BUDGET)]),
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
         ANSWER.address(settle),

@@ -56,7 +56,6 @@ class ControlStep:
     Attributes:
         program: The scheme laid out for the robot.
         layout: Columns of the rows that are written.
-        version: Version of the solver's parameters.
         arrays: Arrays that stay the same from step to step.
         has_network: Whether the network is compiled.
         samples: Whether all references are compiled.
@@ -85,7 +84,6 @@ class ControlStep:
         """
         self.program = program
         self._dt = dt
-        self.version = solver.version
         frames = program.target_frames
         names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)

@@ -13,46 +13,19 @@ Sanchez-Torres, E. N. Sanchez, A. G. Loukianov, "Predefined-time stability of dy
 with sliding modes", American Control Conference (2015).
 """
 
-from __future__ import annotations
-
-from abc import ABC
-from collections.abc import Callable
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
-from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
-from numba import types
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.compiling import VECTOR, Signature
-from iiwa_dnn.qp.layout import Vector, compiled
-
-MAGNITUDE = Signature(types.float64, types.float64, VECTOR)
-"""Types of an activation's compiled function."""
-
-enter_magnitude = MAGNITUDE.enter
-
-
-@compiled
-def activate(address: int, constants: Vector, error: Vector, value: Vector) -> None:
-    """Write the values (k,) at errors (k,), of the function at an address with constants (j,)."""
-    for i in range(error.size):
-        magnitude = enter_magnitude(address, abs(error[i]), constants)
-        value[i] = np.copysign(magnitude, error[i])
+from iiwa_dnn.qp.layout import Vector
 
 
 @dataclass(frozen=True)
 class Activation(ABC):
-    """An odd, increasing function of an error, entry by entry.
-
-    Attributes:
-        magnitude: Its value at an error of a size of at least 0, ``(size, constants)``, as a static
-            compiled function; the constants are the fields, in their order.
-    """
-
-    magnitude: ClassVar[staticmethod[[float, Vector], float]]
+    """An odd, increasing function of an error, entry by entry."""
 
     def __post_init__(self) -> None:
         """Check the parameters: above 0, `power` below 1 and `upper_power` above 1."""
@@ -63,49 +36,27 @@ class Activation(ABC):
         if not getattr(self, "upper_power", 2.0) > 1.0:
             raise InvalidInputError("upper_power", "must be above 1")
 
-    @cached_property
-    def constants(self) -> Vector:
-        """The fields in their order, (j,)."""
-        return np.array([getattr(self, field.name) for field in fields(self)], dtype=np.float64)
-
-    @property
-    def address(self) -> int:
-        """Address of the compiled function."""
-        function: Callable[[float, Vector], float] = type(self).magnitude
-        return MAGNITUDE.address(function)
-
     def __call__(self, error: Vector) -> Vector:
         """Evaluate at errors (...,)."""
-        value = np.empty(error.shape)
-        flat = np.ascontiguousarray(error, dtype=np.float64).ravel()
-        activate(self.address, self.constants, flat, value.reshape(-1))
+        value: Vector = np.copysign(self.magnitude(np.abs(error)), error)
         return value
+
+    @abstractmethod
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at errors of sizes (...,) of at least 0."""
 
     def settle_time(self, error: float) -> float:
         """Bound the time [rho] in which an error of this size vanishes; inf where it never does."""
         return np.inf
 
 
-@compiled
-def _linear(size: float, constants: Vector) -> float:
-    """Return the size; there are no constants, (0,)."""
-    return size
-
-
 @dataclass(frozen=True)
 class Linear(Activation):
     """Phi(e) = e: the error decays like exp(-t / rho)."""
 
-    magnitude = staticmethod(_linear)
-
-
-@compiled
-def _power_sigmoid(size: float, constants: Vector) -> float:
-    """Evaluate for constants [exponent, slope], (2,)."""
-    if size < 1.0:
-        half = 0.5 * constants[1]
-        return np.tanh(half * size) / np.tanh(half)  # type: ignore[no-any-return]
-    return size ** constants[0]  # type: ignore[no-any-return]
+    def magnitude(self, size: Vector) -> Vector:
+        """Return the sizes (...,)."""
+        return size
 
 
 @dataclass(frozen=True)
@@ -120,14 +71,11 @@ class PowerSigmoid(Activation):
     exponent: float = 3.0
     slope: float = 4.0
 
-    magnitude = staticmethod(_power_sigmoid)
-
-
-@compiled
-def _fixed_time(size: float, constants: Vector) -> float:
-    """Evaluate for constants [power, upper power, low, high], (4,)."""
-    value: float = constants[2] * size ** constants[0] + constants[3] * size ** constants[1]
-    return value
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (...,)."""
+        half = 0.5 * self.slope
+        below = np.tanh(half * size) / np.tanh(half)
+        return np.where(size < 1.0, below, size**self.exponent)
 
 
 @dataclass(frozen=True)
@@ -149,20 +97,16 @@ class FixedTime(Activation):
     low: float = 1.0
     high: float = 1.0
 
-    magnitude = staticmethod(_fixed_time)
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (...,)."""
+        value: Vector = self.low * size**self.power + self.high * size**self.upper_power
+        return value
 
     def settle_time(self, error: float) -> float:
         """Return the smaller of the two bounds [rho]."""
         below = 1.0 / (self.low * (1.0 - self.power))
         beyond = 1.0 / (self.high * (self.upper_power - 1.0))
         return float(min(below + beyond, below * abs(error) ** (1.0 - self.power)))
-
-
-@compiled
-def _sign_bi_power(size: float, constants: Vector) -> float:
-    """Evaluate for constants [power], (1,)."""
-    value: float = 0.5 * (size ** constants[0] + size ** (1.0 / constants[0]))
-    return value
 
 
 @dataclass(frozen=True)
@@ -177,20 +121,18 @@ class SignBiPower(Activation):
 
     power: float = 0.5
 
-    magnitude = staticmethod(_sign_bi_power)
+    @property
+    def _two_powers(self) -> FixedTime:
+        """The same function."""
+        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5)
+
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (...,)."""
+        return self._two_powers.magnitude(size)
 
     def settle_time(self, error: float) -> float:
-        """Return the bound [rho] of the same two powers."""
-        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5).settle_time(error)
-
-
-@compiled
-def _predefined_time(size: float, constants: Vector) -> float:
-    """Evaluate for constants [time, power], (2,); the exponent is cut lest it overflow."""
-    power = constants[1]
-    grown = np.exp(min(size**power, 300.0))
-    value: float = grown * size ** (1.0 - power) / (power * constants[0])
-    return value
+        """Return the bound [rho] of the two powers."""
+        return self._two_powers.settle_time(error)
 
 
 @dataclass(frozen=True)
@@ -205,7 +147,11 @@ class PredefinedTime(Activation):
     time: float = 1.0
     power: float = 0.5
 
-    magnitude = staticmethod(_predefined_time)
+    def magnitude(self, size: Vector) -> Vector:
+        """Evaluate at sizes (...,); the exponent is cut lest it overflow."""
+        grown = np.exp(np.minimum(size**self.power, 300.0))
+        value: Vector = grown * size ** (1.0 - self.power) / (self.power * self.time)
+        return value
 
     def settle_time(self, error: float) -> float:
         """Return the settle time itself [rho]."""

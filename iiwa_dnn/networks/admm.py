@@ -6,11 +6,12 @@ Source: B. Stellato, G. Banjac, P. Goulart, A. Bemporad, S. Boyd, "OSQP: an oper
 solver for quadratic programs", Mathematical Programming Computation 12 (2020).
 """
 
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from iiwa_dnn import checks
+from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.primal_dual import PrimalDualNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Sizes
@@ -18,6 +19,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
 
+@dataclass(frozen=True)
 class AdmmSolver(DNNSolver):
     """OSQP, stopped after so many iterations and gone on with from there at the next program.
 
@@ -27,41 +29,32 @@ class AdmmSolver(DNNSolver):
         substeps: Iterations in each `advance`.
     """
 
-    def __init__(self, substeps: int = 1, tol: float = 1e-9) -> None:
-        """Start from zero.
-
-        Raises:
-            InvalidInputError: `substeps` is below 1.
-        """
-        super().__init__(PrimalDualNetwork(), tol)
-        self.substeps = checks.integer("substeps", substeps, 1)
-        self._osqp: tuple[Sizes, Any] | None = None
+    network: Network = field(default_factory=PrimalDualNetwork)
+    substeps: int = 1
+    _osqp: dict[Sizes, Any] = field(default_factory=dict, init=False, repr=False)
 
     def reset(self) -> None:
         """Forget the warm start, OSQP's own iterates too."""
         super().reset()
-        self._osqp = None
+        self._osqp.clear()
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Take the iterations for this program; the duration [s] is not used."""
-        n, m, p = sizes = qp.sizes
+        n, m, p = qp.sizes
         triangle = np.triu_indices(n)
         rows = np.vstack([qp.A, qp.G, np.eye(n)])
-        lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
-        changes = {
-            "q": qp.q,
-            "l": lower,
-            "u": np.concatenate([qp.b, qp.h, qp.ub]),
-            "Px": qp.P[triangle][np.lexsort(triangle)],
-            "Ax": rows.T.ravel(),
-        }
-        state = self._take(self.network, qp)
-        if self._osqp is None or self._osqp[0] != sizes:
-            self._osqp = (sizes, _prepared(n, len(rows), self.substeps))
-        solver = self._osqp[1]
-        solver.update(**changes)
+        if qp.sizes not in self._osqp:
+            self._osqp[qp.sizes] = _prepared(n, len(rows), self.substeps)
+        solver = self._osqp[qp.sizes]
+        solver.update(
+            q=qp.q,
+            l=np.concatenate([qp.b, np.full(m, -np.inf), qp.lb]),
+            u=np.concatenate([qp.b, qp.h, qp.ub]),
+            Px=qp.P[triangle][np.lexsort(triangle)],
+            Ax=rows.T.ravel(),
+        )
         result = solver.solve(raise_error=False)
-        state[:] = np.concatenate([result.x, result.y[: p + m]])
+        state = np.concatenate([result.x, result.y[: p + m]])
         return self._advanced(qp, state, self.substeps, 0.0)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -26,22 +25,6 @@ from iiwa_dnn.qp.layout import (
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
 
-
-class Flow(NamedTuple):
-    """A network's right-hand side for one program that does not change meanwhile.
-
-    Attributes:
-        rates: rho ds/dt at a state, (state_size,).
-        jacobian: Its derivative where it has one, and one of its limits at a kink,
-            (state_size, state_size).
-    """
-
-    rates: Callable[[Vector], Vector]
-    jacobian: Callable[[Vector], Matrix]
-
-
-_STOOD_IN_FOR = frozenset({"state_size", "flow", "moving_flow", "prepare", "read", "stable_step"})
-
 Rates = Callable[[QPViews, Vector, Vector, Vector], None]
 """Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
 
@@ -51,27 +34,97 @@ RATES = Signature(types.void, QP_VIEWS, VECTOR, VECTOR, VECTOR)
 enter_rates = RATES.enter
 
 
+class Flow(NamedTuple):
+    """A network that was set up for one program.
+
+    Attributes:
+        rates: rho ds/dt at a state, (state_size,).
+        jacobian: Its derivative where it has one, and one of its limits at a kink,
+            (state_size, state_size); None: it is computed by differences.
+        unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
+        step: Bound on the stable steps of explicit Euler [rho], at a state or for all of them
+            (None); 0 where none is known to be stable, as everywhere if this is None.
+        kernel: Address of a compiled function of the rates, and its constants (k,); None without.
+        limit: `linear_limit` at a state, if it is not that of the derivative.
+    """
+
+    rates: Callable[[Vector], Vector]
+    jacobian: Callable[[Vector], Matrix] | None = None
+    unknowns: Callable[[Vector], Vector] | None = None
+    step: Callable[[Vector | None], float] | None = None
+    kernel: tuple[int, Vector] | None = None
+    limit: Callable[[Vector], float] | None = None
+
+    def derivative(self, state: Vector) -> Matrix:
+        """Differentiate the rates at a state (size,), (size, size)."""
+        if self.jacobian is not None:
+            return self.jacobian(state)
+        steps = 1e-6 * np.maximum(1.0, np.abs(state)) * np.eye(state.size)
+        rows = [
+            (self.rates(state + step) - self.rates(state - step)) / (2.0 * step.max())
+            for step in steps
+        ]
+        return np.array(rows).T
+
+    def linear_limit(self, state: Vector) -> float:
+        r"""Compute the largest step [rho] of explicit Euler that is stable on the active set.
+
+        Eigenvalues :math:`\lambda` of the derivative at the state (size,) ask for
+        :math:`|1 + h \lambda| \le 1`. Those at zero, of dependent rows, are left out. It is 0 where
+        an eigenvalue has no negative real part.
+        """
+        if self.limit is not None:
+            return self.limit(state)
+        eigenvalues = np.linalg.eigvals(self.derivative(state))
+        squares = np.abs(eigenvalues) ** 2
+        moving = squares > 1e-14 * squares.max(initial=1e-300)
+        bounds = -2.0 * eigenvalues.real[moving] / squares[moving]
+        return max(0.0, float(bounds.min(initial=2.0)))
+
+    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
+        """Write the point ``[x | y | z | z_box]`` of a state into `point`, (2 n + m + p,).
+
+        Returns:
+            Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
+        """
+        n, m, p = qp.sizes
+        check_size("point", point, 2 * n + m + p)
+        unknowns = state if self.unknowns is None else self.unknowns(state)
+        return point_of_state(qp.data, n, m, p, unknowns, point)
+
+
 @compiled
 def evaluate_rates(
-    data: Vector,
-    n: int,
-    m: int,
-    p: int,
-    address: int,
-    constants: Vector,
-    state: Vector,
-    rates: Vector,
+    data: Vector, sizes: Sizes, address: int, constants: Vector, state: Vector, rates: Vector
 ) -> None:
     """Write the rates (size,) at a state (size,) of the network whose function is at the address.
 
-    The program is `QP.data`; the constants (k,) are those of `Network.constants`.
+    The program is `QP.data`, of sizes (n, m, p); the constants (k,) are the function's.
     """
+    n, m, p = sizes
     enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
+def compiled_flow(
+    qp: QP, function: Rates, constants: Vector, size: int, **parts: Callable[..., Any] | None
+) -> Flow:
+    """Make the flow of a compiled function with its constants (k,), for states (size,)."""
+    address = RATES.address(function)
+
+    def rates(state: Vector) -> Vector:
+        check_size("state", state, size)
+        result = np.empty(size)
+        evaluate_rates(qp.data, qp.sizes, address, constants, state, result)
+        return result
+
+    return Flow(rates, kernel=(address, constants), **parts)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Network(ABC):
+class Network:
     """A dynamic neural network for one quadratic program after another.
+
+    A subclass has a `flow` of its own, or `compiled_rates`.
 
     Attributes:
         rho: Time constant [s].
@@ -88,63 +141,40 @@ class Network(ABC):
         """Check the time constant."""
         checks.positive("rho", self.rho)
 
-    @abstractmethod
     def state_size(self, qp: QP) -> int:
-        """Count the states."""
+        """Count the states; by default n + m + p."""
+        return sum(qp.sizes)
+
+    def initial_state(self, qp: QP) -> Vector:
+        """Make the state before any program was seen: zero, (state_size,)."""
+        return np.zeros(self.state_size(qp))
 
     def constants(self, sizes: Sizes) -> Vector:
         """Return the constants of `compiled_rates` for programs of these sizes (n, m, p)."""
         return np.empty(0)
 
-    def prepare(self, qp: QP) -> Vector:
-        """Return the constants of `compiled_rates` for one program, (k,).
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up. By default the rates are those of `compiled_rates`.
 
-        By default they are those of its sizes. A network that sets its program up first
-        overrides this, and has no compiled answer then.
-        """
-        return self.constants(qp.sizes)
-
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program.
-
-        By default the rates are those of `compiled_rates`, differentiated numerically.
+        Args:
+            qp: The program.
+            rate: Its rate of change [1/rho], field by field, zero where a field is infinite; None
+                or without effect in a network for programs that stand still.
         """
         function = type(self).compiled_rates
         if function is None:
             raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
-        address = RATES.address(function)
-        constants = self.prepare(qp)
-        size = self.state_size(qp)
+        return compiled_flow(qp, function, self.constants(qp.sizes), self.state_size(qp))
 
-        def rates(state: Vector) -> Vector:
-            check_size("state", state, size)
-            result = np.empty(size)
-            evaluate_rates(qp.data, *qp.sizes, address, constants, state, result)
-            return result
-
-        return Flow(rates, lambda state: difference_jacobian(rates, state))
-
-    def moving_flow(self, qp: QP, rate: QP) -> Flow:
-        """Make the right-hand side for this program while it changes.
-
-        Args:
-            qp: The program.
-            rate: Its rate of change [1/rho], field by field, zero where a field is infinite. A
-                network for a program that stands still leaves it out.
-        """
-        return self.flow(qp)
+    def rates(self, qp: QP, state: Vector) -> Vector:
+        """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
+        return self.flow(qp).rates(state)
 
     def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point ``[x | y | z | z_box]`` of a state (state_size,) into `point`.
+        """Write the point of a state (state_size,) into `point`; returns its residuals."""
+        check_size("state", state, self.state_size(qp))
+        return self.flow(qp).read(qp, state, point)
 
-        By default the state begins with ``[x | y | z]``.
-
-        Returns:
-            Its residuals ``(primal, dual, gap)``, as qpsolvers defines them.
-        """
-        return read_point(qp, state, point, self.state_size(qp))
-
-    @abstractmethod
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the stable steps of explicit Euler [rho]; 0 where none is known to be stable.
 
@@ -152,19 +182,8 @@ class Network(ABC):
             qp: The program.
             state: A state, (state_size,), around which the bound has to hold; None: everywhere.
         """
-
-    def linear_limit(self, qp: QP, state: Vector) -> float:
-        r"""Compute the largest step [rho] of explicit Euler that is stable on the active set.
-
-        Eigenvalues :math:`\lambda` of the derivative at the state (state_size,) ask for
-        :math:`|1 + h \lambda| \le 1`. Those at zero, of dependent rows, are left out. It is 0 where
-        an eigenvalue has no negative real part.
-        """
-        eigenvalues = np.linalg.eigvals(self.flow(qp).jacobian(state))
-        squares = np.abs(eigenvalues) ** 2
-        moving = squares > 1e-14 * squares.max(initial=1e-300)
-        bounds = -2.0 * eigenvalues.real[moving] / squares[moving]
-        return max(0.0, float(bounds.min(initial=2.0)))
+        step = self.flow(qp).step
+        return 0.0 if step is None else step(state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.
@@ -173,23 +192,6 @@ class Network(ABC):
         counts its own; sizes are (n, m, p).
         """
         return 0.0, 2.0 * sum(sizes) ** 2
-
-    def rates_function(self) -> Rates | None:
-        """Return `compiled_rates`, unless a subclass has overridden what it stands in for."""
-        for cls in type(self).__mro__:
-            if "compiled_rates" in vars(cls):
-                return cls.compiled_rates  # type: ignore[attr-defined,no-any-return]
-            if not _STOOD_IN_FOR.isdisjoint(vars(cls)):
-                return None
-        return None
-
-    def initial_state(self, qp: QP) -> Vector:
-        """Make the state before any program was seen: zero, (state_size,)."""
-        return np.zeros(self.state_size(qp))
-
-    def rates(self, qp: QP, state: Vector) -> Vector:
-        """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
-        return self.flow(qp).rates(state)
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
@@ -200,22 +202,6 @@ def kkt_product(sizes: Sizes) -> float:
     """Count the operations of one product with the KKT matrix of a program of sizes (n, m, p)."""
     n, m, p = sizes
     return 2.0 * n**2 + 4.0 * n * (m + p)
-
-
-def read_point(qp: QP, state: Vector, point: Vector, size: int) -> Triple:
-    """Write the point of ``[x | y | z | ...]``, of this size, into `point`; see `Network.read`."""
-    n, m, p = qp.sizes
-    check_size("state", state, size)
-    check_size("point", point, 2 * n + m + p)
-    return point_of_state(qp.data, n, m, p, state, point)
-
-
-def difference_jacobian(rates: Callable[[Vector], Vector], state: Vector) -> Matrix:
-    """Differentiate rates at a state (size,) by central differences, (size, size)."""
-    steps = 1e-6 * np.maximum(1.0, np.abs(state)) * np.eye(state.size)
-    return np.array(
-        [(rates(state + step) - rates(state - step)) / (2.0 * step.max()) for step in steps]
-    ).T
 
 
 def settings_of(part: Any) -> dict[str, Any]:

@@ -2,20 +2,17 @@ r"""Networks that are affine but for one projection, of which one compiled funct
 
 .. math::  \rho\,\dot s = O\,\bigl\{\Pi_{[l,\,u]}(A s + k) - s - \kappa\,(A s + k)\bigr\}
 
-The primal-dual, one-layer and dual networks differ in the matrices, which are set up once a
-program (`ClippedNetwork.arrays`).
+The primal-dual, one-layer and dual networks differ in the matrices.
 """
 
-from abc import abstractmethod
-from dataclasses import dataclass
-from functools import lru_cache
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.base import Flow, compiled_flow
 from iiwa_dnn.qp.dense import dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, compiled
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled
 from iiwa_dnn.qp.program import QP
 
 
@@ -38,6 +35,27 @@ class Clipped(NamedTuple):
     outer: Matrix
     kappa: float = 0.0
 
+    def jacobian(self, state: Vector) -> Matrix:
+        """Differentiate the rates at a state (k,), (k, k)."""
+        aim = self.matrix @ state + self.offset
+        inside = (aim > self.lower) & (aim < self.upper)
+        inner = (inside - self.kappa)[:, np.newaxis] * self.matrix - np.eye(state.size)
+        result: Matrix = self.outer @ inner
+        return result
+
+    def flow(self, qp: QP, step: float, unknowns: Callable[[Vector], Vector] | None = None) -> Flow:
+        """Make the flow, with one bound on its stable steps [rho]."""
+        constants = np.concatenate(self, axis=None)
+        return compiled_flow(
+            qp,
+            clipped_rates,
+            constants,
+            self.offset.size,
+            jacobian=self.jacobian,
+            unknowns=unknowns,
+            step=lambda state: step,
+        )
+
 
 @compiled
 def clipped_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
@@ -55,43 +73,3 @@ def clipped_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) 
         inner[i] = clipped - state[i] - kappa * aim
     for i in range(size):
         rates[i] = dot(constants, at_outer + i * size, inner, size)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ClippedNetwork(Network):
-    """The base of the networks that are affine but for one projection.
-
-    A subclass names `clipped_rates` as its `compiled_rates`.
-    """
-
-    @abstractmethod
-    def arrays(self, qp: QP) -> Clipped:
-        """Set a program up."""
-
-    def prepare(self, qp: QP) -> Vector:
-        """Return the numbers of the program's `Clipped`, (2 k k + 3 k + 1,)."""
-        return _numbers(self, qp.data.tobytes(), qp.sizes)
-
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
-        return Flow(super().flow(qp).rates, lambda state: self._jacobian(qp, state))
-
-    def _jacobian(self, qp: QP, state: Vector) -> Matrix:
-        """Differentiate the rates, (k, k)."""
-        matrix, offset, lower, upper, outer, kappa = _set_up(self, qp.data.tobytes(), qp.sizes)
-        aim = matrix @ state + offset
-        inside = (aim > lower) & (aim < upper)
-        inner = (inside - kappa)[:, np.newaxis] * matrix
-        np.einsum("ii->i", inner)[:] -= 1.0
-        result: Matrix = outer @ inner
-        return result
-
-
-@lru_cache(maxsize=4)  # a step of the network asks several times
-def _set_up(network: ClippedNetwork, data: bytes, sizes: Sizes) -> Clipped:
-    return network.arrays(QP.from_data(np.frombuffer(data), sizes))
-
-
-@lru_cache(maxsize=4)
-def _numbers(network: ClippedNetwork, data: bytes, sizes: Sizes) -> Vector:
-    return np.concatenate(_set_up(network, data, sizes), axis=None)

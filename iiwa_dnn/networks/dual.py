@@ -29,42 +29,19 @@ quadratic programming with its KWTA application", IEEE Transactions on Neural Ne
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import read_point
-from iiwa_dnn.networks.clipped import Clipped, ClippedNetwork, clipped_rates
-from iiwa_dnn.qp.layout import Matrix, Sizes, Triple, Vector, check_size
+from iiwa_dnn.networks.base import Flow, Network
+from iiwa_dnn.networks.clipped import Clipped
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
-class _Dual(NamedTuple):
-    """A program as its dual network has it.
-
-    Attributes:
-        lifted: M E^T, (n, rows).
-        offset: s, (n,).
-        gram: E M E^T, (rows, rows).
-        base: E s, (rows,).
-        lower: Lower limits of E x, (rows,).
-        upper: Upper limits, (rows,).
-        equalities: P^-1 A^T S^-1 of the simplified network, (n, p).
-    """
-
-    lifted: Matrix
-    offset: Vector
-    gram: Matrix
-    base: Vector
-    lower: Vector
-    upper: Vector
-    equalities: Matrix
-
-
 @dataclass(frozen=True, kw_only=True)
-class DualNetwork(ClippedNetwork):
+class DualNetwork(Network):
     """The single-layer dual network, with p + m + n states: 14 for seven joints and rows.
 
     Raises:
@@ -73,7 +50,6 @@ class DualNetwork(ClippedNetwork):
 
     carries_x: ClassVar[bool] = False
     simplified: ClassVar[bool] = False
-    compiled_rates = staticmethod(clipped_rates)
 
     def state_size(self, qp: QP) -> int:
         """Count the states: one for each row and each variable."""
@@ -89,34 +65,47 @@ class DualNetwork(ClippedNetwork):
             setup += 4.0 * n * p * (n + p) + p**3 / 3.0
         return setup, 2.0 * (n + rows) ** 2
 
-    def _dual(self, qp: QP) -> _Dual:
-        return _lift(qp.data.tobytes(), qp.sizes, self.simplified)
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up; dependent equalities are solved in the least-squares sense.
 
-    def arrays(self, qp: QP) -> Clipped:
-        """Set a program up."""
-        _, _, gram, base, lower, upper, _ = self._dual(qp)
-        eye = np.eye(len(gram))
-        return Clipped(gram - eye, base, lower, upper, eye, 1.0)
-
-    def read(self, qp: QP, state: Vector, point: Vector) -> Triple:
-        """Write the point of a state (state_size,) into `point`; returns its residuals."""
-        n, m, p = qp.sizes
-        check_size("state", state, self.state_size(qp))
-        dual = self._dual(qp)
-        x = dual.lifted @ state + dual.offset
-        z = -state[: state.size - n]
-        if self.simplified:
-            gradient = qp.P @ x + qp.q - qp.G.T @ state[:m] - state[m:]
-            z = np.concatenate([-dual.equalities.T @ gradient, z])
-        return read_point(qp, np.concatenate([x, z]), point, n + m + p)
-
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        r"""Bound the stable steps of explicit Euler, in units of rho, on every active set.
-
-        Rows at a limit follow :math:`-E M E^T`, the others decay at rate one: all eigenvalues are
-        real, and none is below minus the largest of both.
+        Explicit Euler is stable on every active set below 2 over the largest eigenvalue of
+        E M E^T, or of 1: rows at a limit follow that matrix, the others decay at rate one.
         """
-        return 2.0 / max(float(np.linalg.eigvalsh(self._dual(qp).gram)[-1]), 1.0)
+        n, m, p = qp.sizes
+        try:
+            inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
+        except np.linalg.LinAlgError:
+            problem = "is singular, and a dual network needs its inverse; take another network"
+            raise InvalidInputError("P", problem) from None
+        M = inverse.T @ inverse
+        offset = -M @ qp.q
+        rows = np.vstack([qp.A, qp.G, np.eye(n)])
+        lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
+        upper = np.concatenate([qp.b, qp.h, qp.ub])
+        equalities = np.empty((n, 0))
+        if self.simplified:
+            scaled = qp.A @ inverse.T
+            equalities = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
+            M = M - equalities @ scaled @ inverse
+            offset = equalities @ qp.b - M @ qp.q
+            rows = rows[p:]
+            lower = lower[p:]
+            upper = upper[p:]
+        lifted = M @ rows.T
+        gram = rows @ lifted
+
+        def unknowns(state: Vector) -> Vector:
+            x = lifted @ state + offset
+            z = -state[: state.size - n]
+            if self.simplified:
+                gradient = qp.P @ x + qp.q - qp.G.T @ state[:m] - state[m:]
+                z = np.concatenate([-equalities.T @ gradient, z])
+            return np.concatenate([x, z])
+
+        eye = np.eye(len(gram))
+        program = Clipped(gram - eye, rows @ offset, lower, upper, eye, 1.0)
+        step = 2.0 / max(float(np.linalg.eigvalsh(gram)[-1]), 1.0)
+        return program.flow(qp, step, unknowns)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,35 +113,3 @@ class SimplifiedDualNetwork(DualNetwork):
     """The simplified dual network, with m + n states: 7 for seven joints and seven task rows."""
 
     simplified: ClassVar[bool] = True
-
-
-@lru_cache(maxsize=4)  # a step of the network asks several times
-def _lift(data: bytes, sizes: Sizes, simplified: bool) -> _Dual:
-    """Lift a program; dependent equalities are solved in the least-squares sense."""
-    qp = QP.from_data(np.frombuffer(data), sizes)
-    try:
-        inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
-    except np.linalg.LinAlgError:
-        problem = "is singular, and a dual network needs its inverse; take another network"
-        raise InvalidInputError("P", problem) from None
-    M = inverse.T @ inverse
-    offset = -M @ qp.q
-    rows = np.eye(qp.q.size)
-    lower = qp.lb
-    upper = qp.ub
-    equalities = np.empty((0, 0))
-    if simplified:
-        scaled = qp.A @ inverse.T
-        equalities = inverse.T @ np.linalg.pinv(scaled, rcond=1e-10)
-        M = M - equalities @ scaled @ inverse
-        offset = equalities @ qp.b - M @ qp.q
-    if qp.h.size:
-        rows = np.vstack([qp.G, rows])
-        lower = np.append(np.full(qp.h.size, -np.inf), lower)
-        upper = np.append(qp.h, upper)
-    if not simplified:
-        rows = np.vstack([qp.A, rows])
-        lower = np.append(qp.b, lower)
-        upper = np.append(qp.b, upper)
-    lifted = M @ rows.T
-    return _Dual(lifted, offset, rows @ lifted, rows @ offset, lower, upper, equalities)

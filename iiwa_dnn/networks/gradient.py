@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.networks.activations import Linear
-from iiwa_dnn.networks.base import Flow, difference_jacobian, kkt_product
+from iiwa_dnn.networks.base import Flow, kkt_product
 from iiwa_dnn.networks.kkt_system import KktSystem
-from iiwa_dnn.networks.primal_dual import coupling
+from iiwa_dnn.networks.primal_dual import variational
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -31,8 +31,12 @@ class GradientNetwork(ZeroingNetwork):
         """Count, for each evaluation, the residual and a product with W^T; sizes are (n, m, p)."""
         return 0.0, 2.0 * kkt_product(sizes)
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side for this program; its derivative by differences."""
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up; its rate of change has no effect.
+
+        Steps of explicit Euler are stable below 2 / ||W||^2, if the activation is linear. Over all
+        active sets of the projected form, W has the rows of the whole KKT matrix or the identity's.
+        """
         system = KktSystem(qp, self.form)
 
         def rates(state: Vector) -> Vector:
@@ -41,26 +45,16 @@ class GradientNetwork(ZeroingNetwork):
             return result
 
         def jacobian(state: Vector) -> Matrix:
-            if self.form == "smooth" or not isinstance(self.activation, Linear):
-                return difference_jacobian(rates, state)
-            system.evaluate(state)  # W is constant on an active set
+            system.evaluate(state)
             result: Matrix = -system.matrix.T @ system.matrix
             return result
 
-        return Flow(rates, jacobian)
+        def step(state: Vector | None) -> float:
+            if state is None:
+                return 2.0 / (float(np.linalg.norm(variational(qp)[0], 2)) ** 2 + 1.0)
+            system.evaluate(state)
+            return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)
 
-    def moving_flow(self, qp: QP, rate: QP) -> Flow:
-        """Make the same right-hand side: the rate of the program is not used."""
-        return self.flow(qp)
-
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Bound the stable steps of explicit Euler [rho]: 2 / ||W||^2, of a linear activation.
-
-        Without a state W is bounded over all active sets of the projected form, whose rows are
-        those of the whole KKT matrix or of the identity.
-        """
-        if state is None:
-            return 2.0 / (float(np.linalg.norm(coupling(qp), 2)) ** 2 + 1.0)
-        system = KktSystem(qp, self.form)
-        system.evaluate(state)
-        return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)
+        # W is constant on an active set of the projected form.
+        exact = self.form == "projected" and isinstance(self.activation, Linear)
+        return Flow(rates, jacobian if exact else None, step=step)

@@ -26,7 +26,6 @@ from iiwa_dnn import checks
 from iiwa_dnn.networks.kkt_system import Form
 from iiwa_dnn.networks.zeroing import ZeroingNetwork
 from iiwa_dnn.qp.layout import Vector
-from iiwa_dnn.qp.program import QP
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +62,7 @@ class NoiseSuppressingNetwork(ZeroingNetwork):
         second: Vector = self.integral * np.clip(error + summed, -bound, bound)
         return first + second - self.noise
 
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+    def step(self, state: Vector | None) -> float:
         """Bound the steps of explicit Euler [rho] near rest, where the activations are linear.
 
         Both eigenvalues, -gamma and -eta, are real.

@@ -25,9 +25,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.clipped import Clipped, clipped_rates
-from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, constant, coupling, limits
-from iiwa_dnn.qp.layout import Sizes, Vector
+from iiwa_dnn.networks.base import Flow
+from iiwa_dnn.networks.clipped import Clipped
+from iiwa_dnn.networks.primal_dual import PrimalDualNetwork, variational
+from iiwa_dnn.qp.layout import Sizes
 from iiwa_dnn.qp.program import QP
 
 
@@ -42,7 +43,6 @@ class OneLayerNetwork(PrimalDualNetwork):
 
     share: float = 0.5
     corrected: bool = True
-    compiled_rates = staticmethod(clipped_rates)
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -55,15 +55,12 @@ class OneLayerNetwork(PrimalDualNetwork):
         setup, two = super().work(sizes)
         return setup, two if self.corrected else 0.5 * two
 
-    def arrays(self, qp: QP) -> Clipped:
-        """Set a program up."""
-        H = coupling(qp)
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up, with the steps that get nearer to every solution, if corrected."""
+        H, c, lower, upper = variational(qp)
         alpha = self.share / float(np.linalg.norm(H, 2))
-        eye = np.eye(len(H))
+        eye = np.eye(c.size)
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye
-        return Clipped(matrix, -alpha * constant(qp), *limits(qp), outer)
-
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Bound the steps [rho] that get nearer to every solution, of the corrected form."""
-        return 2.0 * (1.0 - self.share) / (1.0 + self.share) ** 2
+        step = 2.0 * (1.0 - self.share) / (1.0 + self.share) ** 2
+        return Clipped(matrix, -alpha * c, lower, upper, outer).flow(qp, step)

@@ -24,58 +24,33 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iiwa_dnn.networks.base import kkt_product
-from iiwa_dnn.networks.clipped import Clipped, ClippedNetwork, clipped_rates
+from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.networks.clipped import Clipped
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrimalDualNetwork(ClippedNetwork):
+class PrimalDualNetwork(Network):
     """The primal-dual network, with n + p + m states: 14 for seven joints and seven rows."""
-
-    compiled_rates = staticmethod(clipped_rates)
-
-    def state_size(self, qp: QP) -> int:
-        """Count the states: x and one multiplier for each row."""
-        n, m, p = qp.sizes
-        return n + m + p
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count no set-up and two products with H; sizes are (n, m, p)."""
         return 0.0, 2.0 * kkt_product(sizes)
 
-    def arrays(self, qp: QP) -> Clipped:
-        """Set a program up."""
-        H = coupling(qp)
-        eye = np.eye(len(H))
-        return Clipped(eye - H, -constant(qp), *limits(qp), eye + H.T)
-
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Bound the steps [rho] with which explicit Euler gets nearer to every solution."""
-        H = coupling(qp)
-        return 2.0 / float(np.linalg.norm(np.eye(len(H)) + H, 2)) ** 2
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up, with the steps by which Euler gets nearer to every solution."""
+        H, c, lower, upper = variational(qp)
+        eye = np.eye(c.size)
+        step = 2.0 / float(np.linalg.norm(eye + H, 2)) ** 2
+        return Clipped(eye - H, -c, lower, upper, eye + H.T).flow(qp, step)
 
 
-def coupling(qp: QP) -> Matrix:
-    """Build H, of shape (n + p + m, n + p + m)."""
-    n, m, p = qp.sizes
-    H = np.zeros((n + p + m, n + p + m))
-    rows = np.vstack([qp.A, qp.G])
-    H[:n, :n] = qp.P
-    H[:n, n:] = rows.T
-    H[n:, :n] = -rows
-    return H
-
-
-def constant(qp: QP) -> Vector:
-    """Return c, (n + p + m,)."""
-    return np.concatenate([qp.q, qp.b, qp.h])
-
-
-def limits(qp: QP) -> tuple[Vector, Vector]:
-    """Return the set Omega: lower and upper limits of the state, (n + p + m,) each."""
+def variational(qp: QP) -> tuple[Matrix, Vector, Vector, Vector]:
+    """Return H (k, k), c, and the lower and upper limits of Omega, (k,), with k = n + p + m."""
     _, m, p = qp.sizes
-    free = np.full(p, np.inf)
-    lower = np.concatenate([qp.lb, -free, np.zeros(m)])
-    return lower, np.concatenate([qp.ub, free, np.full(m, np.inf)])
+    rows = np.vstack([qp.A, qp.G])
+    H = np.block([[qp.P, rows.T], [-rows, np.zeros((p + m, p + m))]])
+    lower = np.concatenate([qp.lb, np.full(p, -np.inf), np.zeros(m)])
+    upper = np.concatenate([qp.ub, np.full(p + m, np.inf)])
+    return H, np.concatenate([qp.q, qp.b, qp.h]), lower, upper

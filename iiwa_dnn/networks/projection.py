@@ -24,7 +24,7 @@ from typing import TypeGuard
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.networks.base import Flow, Network, compiled_flow, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
 from iiwa_dnn.qp.layout import (
     Matrix,
@@ -39,8 +39,8 @@ from iiwa_dnn.qp.program import QP
 
 
 @compiled
-def field(qp: QPViews, project: bool, s: Vector, rates: Vector) -> float:
-    """Write rho ds/dt at a state, both (size,); with `project`, x goes through its bounds.
+def field(qp: QPViews, s: Vector, rates: Vector) -> float:
+    """Write rho ds/dt at a state, both (size,), without the projection of x on its bounds.
 
     Returns:
         The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
@@ -67,8 +67,6 @@ def field(qp: QPViews, project: bool, s: Vector, rates: Vector) -> float:
         largest = larger(largest, abs(rate))
     for i in range(n):
         rate = -rates[i]
-        if project:
-            rate = min(max(s[i] + rate, qp.lb[i]), qp.ub[i]) - s[i]
         rates[i] = rate
         upper = _inequality_rate(s[at_u + i], s[i] - qp.ub[i])
         lower = _inequality_rate(s[at_l + i], qp.lb[i] - s[i])
@@ -98,7 +96,10 @@ def mark_active(s: Vector, rates: Vector, active: Vector) -> None:
 @compiled
 def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
     """Write the rates (size,); `constants` (1,) is [1] if x goes through its bounds, else [0]."""
-    field(qp, constants[0] != 0.0, state, rates)
+    field(qp, state, rates)
+    if constants[0] != 0.0:
+        for i in range(qp.q.size):
+            rates[i] = min(max(state[i] + rates[i], qp.lb[i]), qp.ub[i]) - state[i]
 
 
 @compiled
@@ -190,12 +191,24 @@ class ProjectionNetwork(Network):
         """Count no set-up and one product with the KKT matrix; sizes are (n, m, p)."""
         return 0.0, kkt_product(sizes)
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side and its derivative for this program."""
-        rates = super().flow(qp).rates
-        return Flow(rates, lambda state: self._jacobian(qp, state, rates(state)))
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up; the rate of a program that moves has no effect."""
+        size = self.state_size(qp)
 
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+        def jacobian(state: Vector) -> Matrix:
+            result = np.zeros((size, size))
+            rates = made.rates(state)
+            differentiate(qp.data, qp.sizes, self.primal_projection, state, rates, result)
+            return result
+
+        def step(state: Vector | None) -> float:
+            return self._stable_step(qp, None if state is None else state + made.rates(state))
+
+        constants = self.constants(qp.sizes)
+        made = compiled_flow(qp, projection_rates, constants, size, jacobian=jacobian, step=step)
+        return made
+
+    def _stable_step(self, qp: QP, moved: Vector | None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.
 
         On a fixed active set the network is linear. For an eigenvalue with eigenvector (v, w),
@@ -207,29 +220,23 @@ class ProjectionNetwork(Network):
 
         Args:
             qp: The program.
-            state: A state, (state_size,), whose active rows are counted; None counts every
-                inequality row, and the bound holds on every active set.
+            moved: A state and its rates, added up, (state_size,), whose active rows are counted;
+                None counts every inequality row, and the bound holds on every active set.
 
         Returns:
             The bound; zero where P is singular, since then no step is known to be stable.
         """
         n, m, p = qp.sizes
-        if state is None:
+        if moved is None:
             # Both bounds of one variable are active together only if they coincide.
             bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
             active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
         else:
-            active = np.empty(m + 2 * n)
-            mark_active(state, self.rates(qp, state), active)
+            active = np.where(moved[n + p :] > 0.0, 1.0, 0.0)
         return stable_step_of(qp.data, n, m, p, active)
-
-    def _jacobian(self, qp: QP, state: Vector, rates: Vector) -> Matrix:
-        """Differentiate the rates, (state_size, state_size)."""
-        jacobian = np.zeros((state.size, state.size))
-        differentiate(qp.data, qp.sizes, self.primal_projection, state, rates, jacobian)
-        return jacobian
 
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:
     """Check that the compiled loops for the projection network integrate exactly this network."""
-    return network.rates_function() is projection_rates
+    kind = type(network)
+    return kind.flow is ProjectionNetwork.flow and kind.state_size is ProjectionNetwork.state_size

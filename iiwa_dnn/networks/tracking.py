@@ -14,14 +14,14 @@ inversion", IEEE Transactions on Systems, Man, and Cybernetics: Systems 47 (2017
 coefficients of all were derived anew from Taylor's series, and are tested for order and stability.
 """
 
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.layout import Vector, check_size
+from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
@@ -56,6 +56,7 @@ _BACKWARD = ((1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3))
 """Backward differences of orders 1 to 3, the newest program first."""
 
 
+@dataclass(frozen=True)
 class TrackingSolver(DNNSolver):
     """A network that is advanced by a formula, and gets its program's rate of change.
 
@@ -66,29 +67,24 @@ class TrackingSolver(DNNSolver):
     Attributes:
         formula: The formula.
         substeps: Steps of the formula in each `advance`; the program moves on linearly meanwhile.
-        rate: Rate of change of the last program's `QP.data` [1/s], (size,), for the next call; it
-            may be set, where it depends on the answer.
     """
 
-    def __init__(
-        self, network: Network, formula: Formula = EULER, substeps: int = 1, tol: float = 1e-9
-    ) -> None:
-        """Start from the network's initial state.
+    formula: Formula = EULER
+    substeps: int = 1
+    _states: list[Vector] = field(default_factory=list, init=False, repr=False)
+    _programs: list[Vector] = field(default_factory=list, init=False, repr=False)
+    _rates: list[Vector] = field(default_factory=list, init=False, repr=False)
 
-        Raises:
-            InvalidInputError: `substeps` is below 1 or `tol` is not a positive number.
-        """
-        super().__init__(network, tol)
-        self.formula = formula
-        self.substeps = checks.integer("substeps", substeps, 1)
-        self.reset()
+    def __post_init__(self) -> None:
+        """Check the settings."""
+        super().__post_init__()
+        checks.integer("substeps", self.substeps, 1)
 
     def reset(self) -> None:
         """Forget states and programs: the next call starts from the network's initial state."""
         super().reset()
-        self._states: list[Vector] = []
-        self._programs: list[Vector] = []
-        self.rate: Vector = np.zeros(0)
+        for past in (self._states, self._programs, self._rates):
+            past.clear()
 
     def advance(self, qp: QP, duration: float, rate: Vector | None = None) -> Solution:
         """Move on by `duration` from the last program to this one, and answer it.
@@ -102,46 +98,52 @@ class TrackingSolver(DNNSolver):
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
         """
-        sizes = qp.sizes
-        if self.warm_state(sizes) is None:
+        if self.warm_state(qp.sizes) is None:
             self.reset()
-        state = self._take(self.network, qp)
+        state = self._take(qp)
         steps = 0
         if self._programs:
-            self._follow(state, QP.from_data(self._programs[0], sizes), duration)
+            self._follow(state, duration, qp.sizes)
             steps = self.substeps
-        self._programs = [qp.data.copy(), *self._programs[: self.formula.order - 1]]
-        self.rate = self._difference(duration) if rate is None else rate
-        check_size("rate", self.rate, qp.data.size)
+        self._programs.insert(0, qp.data.copy())
+        del self._programs[self.formula.order :]
+        self.predict(self._difference(duration) if rate is None else rate)
         return self._advanced(qp, state, steps, duration / self.network.rho)
+
+    def predict(self, rate: Vector) -> None:
+        """Set the rate of change of the last program's `QP.data` [1/s], (size,), for the next call.
+
+        It may be set after the call, where it depends on the answer.
+        """
+        check_size("rate", rate, self._programs[0].size)
+        self._rates[:] = [rate]
 
     def _difference(self, duration: float) -> Vector:
         """Estimate the rate of change of the program [1/s] at the newest one."""
-        known = self._programs[: self.formula.order]
+        known = np.array(self._programs)
         if len(known) < 2:
             return np.zeros(known[0].size)
-        programs = np.array(known)
-        finite = np.where(np.isfinite(programs), programs, 0.0)
+        finite = np.where(np.isfinite(known), known, 0.0)
         rate: Vector = np.array(_BACKWARD[len(known) - 2]) @ finite / duration
         return rate
 
-    def _follow(self, state: Vector, qp: QP, duration: float) -> None:
-        """Advance the state in place, from a program to the end of the time [s]."""
+    def _follow(self, state: Vector, duration: float, sizes: Sizes) -> None:
+        """Advance the state in place, from the last program to the end of the time [s]."""
         network = self.network
         formula = self.formula
-        rate = self.rate
+        rate = self._rates[0]
         step = duration / self.substeps
-        moving = QP.from_data(network.rho * rate, qp.sizes)
+        moving = QP.from_data(network.rho * rate, sizes)
         for i in range(self.substeps):
-            now = QP.from_data(qp.data + i * step * rate, qp.sizes)
-            change = step / network.rho * network.moving_flow(now, moving).rates(state)
+            now = QP.from_data(self._programs[0] + i * step * rate, sizes)
+            change = step / network.rho * network.flow(now, moving).rates(state)
             before = state.copy()
-            ready = len(self._states) >= len(formula.past) - 1
-            if ready:
+            if len(self._states) >= len(formula.past) - 1:
                 state *= formula.past[0]
                 state += formula.rate * change
                 for share, old in zip(formula.past[1:], self._states, strict=False):
                     state += share * old
             else:
                 state += change
-            self._states = [before, *self._states[: max(0, len(formula.past) - 2)]]
+            self._states.insert(0, before)
+            del self._states[max(1, len(formula.past) - 1) :]

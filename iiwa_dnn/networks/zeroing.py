@@ -30,13 +30,7 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
-from iiwa_dnn.networks.base import (
-    Flow,
-    Network,
-    difference_jacobian,
-    kkt_product,
-    settings_of,
-)
+from iiwa_dnn.networks.base import Flow, Network, kkt_product, settings_of
 from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
 from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -76,19 +70,14 @@ class ZeroingNetwork(Network):
         size = sum(sizes) + (2 * sizes[0] if self.form == "smooth" else 0)
         return 0.0, 2.0 * kkt_product(sizes) + 2.0 * size**3 / 3.0 + 2.0 * size**2
 
-    def flow(self, qp: QP) -> Flow:
-        """Make the right-hand side for a program that stands still."""
-        return self._flow(KktSystem(qp, self.form))
-
-    def moving_flow(self, qp: QP, rate: QP) -> Flow:
-        """Make the right-hand side for a program and its rate of change [1/rho].
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program and its rate of change [1/rho] up.
 
         Its rates raise NoSolutionError where the KKT conditions' derivative is singular.
         """
-        return self._flow(KktSystem(qp, self.form, rate))
-
-    def _flow(self, system: KktSystem) -> Flow:
+        system = KktSystem(qp, self.form, rate)
         size = system.size
+        linear = isinstance(self.activation, Linear) and not (self.growth or self.integral)
 
         def rates(state: Vector) -> Vector:
             error, drift = system.evaluate(state[:size])
@@ -102,10 +91,9 @@ class ZeroingNetwork(Network):
                 raise NoSolutionError("the derivative of the KKT conditions is singular") from None
             return result
 
-        if self.stable_step(system.qp) and not self.integral:
-            # Exact at rest; elsewhere it makes of a long implicit step Newton's.
-            return Flow(rates, lambda state: -np.eye(size))
-        return Flow(rates, lambda state: difference_jacobian(rates, state))
+        # Exact at rest; elsewhere it makes of a long implicit step Newton's.
+        jacobian = (lambda state: -np.eye(size)) if linear else None
+        return Flow(rates, jacobian, step=self.step)
 
     def removal(self, error: Vector, state: Vector) -> Vector:
         """Return the rate (size,) at which a residual (size,) is removed at a state."""
@@ -116,7 +104,7 @@ class ZeroingNetwork(Network):
             wanted = wanted + self.integral * state[error.size : 2 * error.size]
         return wanted
 
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+    def step(self, state: Vector | None) -> float:
         """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known."""
         if self.growth or not isinstance(self.activation, Linear):
             return 0.0

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp.certificates import proves_infeasible
+from iiwa_dnn.qp.certificates import infeasibility_radius
 from iiwa_dnn.qp.curvature import least_curvature
 from iiwa_dnn.qp.enclosure import IntVector, enclose, evaluate, symmetric_part, unit_of
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled, larger, qp_views
@@ -97,7 +97,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     extras: Any = getattr(solution, "extras", None) or {}
     certificate: Any = getattr(solution, "certificate", extras.get("certificate"))
     is_farkas = certificate is not None and np.size(certificate) == n + m + p
-    if is_farkas and proves_infeasible(qp, certificate):
+    if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: m + p]) == np.inf:
         return Proof(np.inf, active[0], REASONS[INFEASIBLE])
     if "last_x" in extras:
         return Proof(np.inf, active[0], f"there is no answer: {extras['status']}")

@@ -82,7 +82,7 @@ class Paced(ExplicitEuler):
     """Explicit Euler by `substeps` steps, each a share of the longest that is linearly stable.
 
     Attributes:
-        share: Share of `Network.linear_limit`.
+        share: Share of `Flow.linear_limit`.
     """
 
     share: float = 0.95
@@ -93,7 +93,7 @@ class Paced(ExplicitEuler):
         Raises:
             InvalidInputError: No step is stable.
         """
-        step = self.share * network.linear_limit(qp, state)
+        step = self.share * network.flow(qp).linear_limit(state)
         if not step > 0.0:
             raise InvalidInputError("network", "has no stable step: take `settled`", network)
         return super().advance(network, qp, state, step * (self.substeps or 1))
@@ -155,7 +155,7 @@ def follows(network: Network, formula: Formula = EULER) -> Entry:
 
     def make(count: int, share: float, dt: float) -> DNNSolver:
         rho = dt / count / (share * formula.limit)
-        return TrackingSolver(replace(network, rho=rho), formula, count)
+        return TrackingSolver(replace(network, rho=rho), formula=formula, substeps=count)
 
     return Entry(network, make, network.work)
 
@@ -204,7 +204,7 @@ NETWORKS: dict[str, Entry] = {
     "noise-suppressing": follows(NoiseSuppressingNetwork(form="projected")),
     "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
     "ADMM (OSQP)": Entry(
-        AdmmSolver, lambda count, share, dt: AdmmSolver(count), _factorised, paced=False
+        AdmmSolver, lambda count, share, dt: AdmmSolver(substeps=count), _factorised, paced=False
     ),
 }
 """Networks of the atlas by name, and the yardstick."""

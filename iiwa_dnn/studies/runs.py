@@ -199,7 +199,7 @@ def amplification(qp: QP, step: float) -> float:
     no error in x, are left out.
     """
     network = ProjectionNetwork(primal_projection=False)
-    jacobian = network.flow(qp).jacobian(network.initial_state(qp))
+    jacobian = network.flow(qp).derivative(network.initial_state(qp))
     moving = qp.q.size + qp.b.size
     eigenvalues = np.linalg.eigvals(jacobian[:moving, :moving])
     growth = np.abs(1.0 + step * eigenvalues[np.abs(eigenvalues) > 1e-9])

@@ -55,7 +55,6 @@ CHANGES: dict[str, Any] = {
         DoubleIndicator(weight=0.9, extra_limits=LIMITED.extra_limits, home=PAPER_Q0),
     ),
     "robot": lambda controller: setattr(controller, "robot", paper_robot().with_limits(velocity=1)),
-    "tol": lambda controller: setattr(controller.solver, "tol", 1e-10),
     "solver": lambda controller: setattr(controller, "solver", DNNSolver()),
     "dt": lambda controller: setattr(controller, "dt", 0.9 * DT),
 }

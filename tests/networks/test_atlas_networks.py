@@ -16,7 +16,6 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.networks import (
     ActivatedNetwork,
-    Flow,
     GradientNetwork,
     Network,
     OneLayerNetwork,
@@ -26,7 +25,7 @@ from iiwa_dnn.networks import (
 from iiwa_dnn.networks.activations import Activation, FixedTime, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.kkt_system import KktSystem
-from iiwa_dnn.networks.primal_dual import coupling, limits
+from iiwa_dnn.networks.primal_dual import variational
 
 ACTIVATIONS = [SignBiPower(), FixedTime(), PredefinedTime(2.0)]
 
@@ -52,12 +51,12 @@ def test_the_corrected_one_layer_network_gets_nearer_as_proved(network: OneLayer
         qp, _ = known_qp(rng, 5, 2, case % 4, inequalities=2)
         solver = DNNSolver(PrimalDualNetwork())
         assert solver.solve(qp).found
-        rest, H = solver.state, coupling(qp)
+        rest = solver.state
+        H, constant, lower, upper = variational(qp)
         alpha = network.share / np.linalg.norm(H, 2)
-        constant = np.concatenate([qp.q, qp.b, qp.h])
         for _ in range(20):
             u = rest + 3.0 * rng.standard_normal(rest.size)
-            residual = np.clip(u - alpha * (H @ u + constant), *limits(qp)) - u
+            residual = np.clip(u - alpha * (H @ u + constant), lower, upper) - u
             rates = network.rates(qp, u)
             assert (u - rest) @ rates <= -(1 - network.share) * residual @ residual + 1e-9
             step = u + network.stable_step(qp) * rates
@@ -99,7 +98,8 @@ def test_activated_networks_settle_below_their_bound_from_1000_starts(
     """Equality rows only, where the two constants of the bound are known."""
     rng = np.random.default_rng(4)
     qp = QP(np.diag([1.0, 1.5, 2.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
-    H, network = coupling(qp), ActivatedNetwork(network=PrimalDualNetwork(), activation=activation)
+    H = variational(qp)[0]
+    network = ActivatedNetwork(network=PrimalDualNetwork(), activation=activation)
     rest = -np.linalg.solve(H, np.concatenate([qp.q, qp.b]))
     field = (np.eye(4) + H.T) @ H
     kappa, c = np.linalg.svd(field)[1][-1], 1.0 / np.linalg.norm(np.eye(4) + H, 2) ** 2
@@ -133,13 +133,6 @@ def test_an_activated_network_has_the_direction_of_the_one_inside() -> None:
     assert network.settings()["activation"]["name"] == "FixedTime"
 
 
-class OwnDual(DualNetwork):
-    """A network without a compiled function: it overrides the right-hand side."""
-
-    def flow(self, qp: QP) -> Flow:
-        return super().flow(qp)
-
-
 @pytest.mark.parametrize(
     "network",
     [
@@ -151,7 +144,6 @@ class OwnDual(DualNetwork):
 def test_compiled_steps_are_those_of_the_rates(network: Network) -> None:
     rng = np.random.default_rng(7)
     qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
-    assert network.rates_function() is not None
     state = rng.standard_normal(network.state_size(qp))
     expected = state.copy()
     rates = network.flow(qp).rates
@@ -162,19 +154,10 @@ def test_compiled_steps_are_those_of_the_rates(network: Network) -> None:
     assert DNNSolver(network).compiled_answer(qp.sizes, 0.1) is None  # no program is set up there
 
 
-def test_an_activated_network_of_ones_own_has_no_compiled_function_and_the_same_rates() -> None:
-    rng = np.random.default_rng(8)
-    qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
-    own = ActivatedNetwork(network=OwnDual())
-    assert own.rates_function() is None
-    state = rng.standard_normal(own.state_size(qp))
-    np.testing.assert_allclose(own.rates(qp, state), ActivatedNetwork().rates(qp, state))
-
-
 def test_the_yardstick_reaches_the_solution_and_starts_warm() -> None:
     rng = np.random.default_rng(6)
     qp, x = known_qp(rng, 6, 2, 2, inequalities=3)
-    solver = AdmmSolver(50)
+    solver = AdmmSolver(substeps=50)
     first = np.abs(solver.advance(qp, 1e-3).x - x).max()
     for _ in range(100):
         last = np.abs(solver.advance(qp, 1e-3).x - x).max()

@@ -11,7 +11,6 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import qpsolvers
-import scipy.sparse as spa
 from qpsolvers import problems
 
 import iiwa_dnn
@@ -24,7 +23,6 @@ from iiwa_dnn import (
     ExplicitEuler,
     ImplicitEuler,
     InvalidInputError,
-    PrimalDualNetwork,
     ProjectionNetwork,
     Status,
 )
@@ -48,9 +46,7 @@ def test_equilibrium_agrees_with_two_solvers(active: int, equalities: int, depen
         answered = agreement.reference_residual[0] <= 1e-8
         assert (agreement.solution_gap[0, answered] < 1e-6).all()
         believed += answered
-    # ProxQP calls about one of a thousand such problems infeasible, wrongly; OSQP none.
-    assert believed[0] >= 4
-    assert believed[1] == 5
+    assert (believed == 5).all()
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -81,30 +77,6 @@ def test_every_dense_problem_of_qpsolvers(name: str) -> None:
     assert solution.duality_gap() <= 1e-8
 
 
-def test_multipliers_have_qpsolvers_signs() -> None:
-    # min (x - t)^2/2: pushed against ub, against lb, against G, and free.
-    problem = qpsolvers.Problem(
-        np.eye(3), np.array([-5.0, 5.0, -5.0]), G=np.array([[0.0, 0.0, 1.0]]), h=np.array([2.0]),
-        lb=np.full(3, -1.0), ub=np.full(3, 3.0),
-    )  # fmt: skip
-    solution = iiwa_dnn.solve_problem(problem)
-    np.testing.assert_allclose(solution.x, [3.0, -1.0, 2.0], atol=1e-9)
-    np.testing.assert_allclose(solution.z_box, [2.0, -4.0, 0.0], atol=1e-9)
-    np.testing.assert_allclose(solution.z, [3.0], atol=1e-9)
-    assert solution.obj == pytest.approx(0.5 * (9 + 1 + 4) - 15 - 5 - 10)
-
-
-def test_sparse_problem_and_extras() -> None:
-    problem = qpsolvers.Problem(
-        spa.eye(4, format="csc"), -np.ones(4), A=spa.csc_matrix(np.ones((1, 4))), b=np.array([1.0])
-    )
-    solution = iiwa_dnn.solve_problem(problem)
-    np.testing.assert_allclose(solution.x, np.full(4, 0.25), atol=1e-9)
-    assert solution.z.size == solution.z_box.size == 0
-    assert solution.extras["status"] == "solved"
-    assert solution.extras["primal_residual"] <= 1e-9
-
-
 def test_tolerance_is_kept_or_not_claimed() -> None:
     qp, _ = known_qp(np.random.default_rng(7), 8, 3, 3, inequalities=4)
     for tol in (1e-3, 1e-6, 1e-9):
@@ -121,7 +93,7 @@ def test_contradictory_equalities_are_not_found() -> None:
     qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 1.0], [1.0, 1.0]], b=[0.0, 1.0])
     solution = iiwa_dnn.solve_problem(qp)
     assert solution.found is False
-    assert solution.extras["status"] == "primal infeasible"
+    assert solution.extras["status"] == Status.NONE_FEASIBLE_NEAR.value
     y = solution.extras["certificate"][:2]
     np.testing.assert_allclose(y, [1.0, -1.0], atol=1e-12)  # 0 x = 0 - 1
 
@@ -182,15 +154,22 @@ def test_a_program_without_a_solution_does_not_spoil_the_next() -> None:
         assert np.abs(after.x - x).max() < 1e-6
 
 
-@pytest.mark.parametrize("tol", [0.0, -1.0, float("nan"), float("inf")])
-def test_tolerance_must_be_positive(tol: float) -> None:
-    with pytest.raises(InvalidInputError, match="tol"):
-        DNNSolver(tol=tol)
-
-
-def test_bad_problem_names_the_argument() -> None:
-    with pytest.raises(InvalidInputError, match=r"^P:"):
-        iiwa_dnn.solve_problem(qpsolvers.Problem(-np.eye(2), np.zeros(2)))
+def test_settings_are_frozen_and_checked_and_reach_the_compiled_answer() -> None:
+    for tol in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(InvalidInputError, match="tol"):
+            DNNSolver(tol=tol)
+    for name in ("network", "settler"):
+        with pytest.raises(InvalidInputError, match=name):
+            DNNSolver(**{name: ExplicitEuler()})
+    solver = DNNSolver(
+        tol=1e-12, settler=ImplicitEuler(max_steps=7), follower=ExplicitEuler(substeps=9)
+    )
+    with pytest.raises(AttributeError):
+        solver.tol = 1e-6
+    answer = solver.compiled_answer((7, 0, 3), 1e-4)
+    assert answer is not None
+    assert answer.constants[[TOLERANCE, BUDGET, SUBSTEPS]].tolist() == [1e-12, 7, 9]
+    assert DNNSolver(DualNetwork()).compiled_answer((7, 0, 3)) is None
 
 
 @pytest.mark.parametrize("call", [DNNSolver.solve, lambda *own: DNNSolver.advance(*own, 1e-4)])
@@ -228,39 +207,6 @@ def test_bad_input_names_the_argument_whoever_states_it(name: str, arguments: di
         assert str(caught.value).startswith(f"{name}: ")
 
 
-def test_what_is_set_later_is_used_by_the_next_call() -> None:
-    qp, x = known_qp(np.random.default_rng(12), 7, 3, 2, inequalities=2)
-    solver = DNNSolver(tol=1e-3)
-    assert solver.version == 0
-    assert solver.solve(qp).residuals.largest > 1e-9
-    before = solver.compiled_answer(qp.sizes)
-    solver.tol = 1e-12
-    assert solver.version == 1
-    assert solver.solve(qp).residuals.largest <= 1e-12
-    after = solver.compiled_answer(qp.sizes)
-    assert before is not None
-    assert after is not None
-    assert after.constants[TOLERANCE] == 1e-12 != before.constants[TOLERANCE]
-    solver.settler = ImplicitEuler(max_steps=7)
-    solver.follower = ExplicitEuler(substeps=9)
-    assert solver.version == 3
-    settling, following = solver.compiled_answer(qp.sizes), solver.compiled_answer(qp.sizes, 1e-4)
-    assert settling is not None
-    assert following is not None
-    assert settling.constants[BUDGET] == 7
-    assert following.constants[SUBSTEPS] == 9
-    # Another network has other states, for programs of the same sizes too.
-    for network in (DualNetwork(), ProjectionNetwork(), PrimalDualNetwork()):
-        solver.network, solver.settler = network, ImplicitEuler()
-        assert np.abs(solver.solve(qp).x - x).max() < 1e-6
-        assert solver.state.size == network.state_size(qp)
-    assert solver.version == 9
-    assert solver.compiled_answer(qp.sizes) is None
-    with pytest.raises(InvalidInputError, match="tol"):
-        solver.tol = -1.0
-    assert (solver.tol, solver.version) == (1e-12, 9)
-
-
 @pytest.mark.parametrize(
     "duplicate", [copy.copy, copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))]
 )
@@ -274,30 +220,6 @@ def test_a_copy_has_a_warm_start_of_its_own(duplicate: Callable[[DNNSolver], DNN
     other.disturb(np.ones(7))
     np.testing.assert_array_equal(solver.state, before)
     assert other.solve(qp).found
-    other.tol = 1e-6
-    assert solver.tol == 1e-9
-
-
-def test_an_error_in_a_call_leaves_no_half_made_state() -> None:
-    class Broken(ProjectionNetwork):
-        def initial_state(self, qp: QP) -> np.ndarray:
-            raise RuntimeError("no state")
-
-    class Short(ProjectionNetwork):
-        def initial_state(self, qp: QP) -> np.ndarray:
-            return np.zeros(3)
-
-    qp, _ = known_qp(np.random.default_rng(13), 50, 10, 5, inequalities=20)
-    solver = DNNSolver(Broken())
-    for _ in range(2):
-        with pytest.raises(RuntimeError, match="no state"):
-            solver.solve(qp)
-        assert solver.warm_state(qp.sizes) is None
-        assert solver.state.size == 0
-    with pytest.raises(InvalidInputError, match="network"):
-        DNNSolver(Short()).solve(qp)
-    solver.network = ProjectionNetwork()
-    assert solver.solve(qp).found
 
 
 class Slow(ProjectionNetwork):
@@ -374,34 +296,6 @@ def test_a_sharpened_answer_is_never_worse() -> None:
     answer = other.solve(qp)
     assert other.sharpen(qp, answer) is answer
     assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="fork")
-def test_sharpening_takes_no_state_of_another_program() -> None:
-    big, small = QP(np.eye(300), np.ones(300)), QP(np.eye(2), np.ones(2))
-    solver = DNNSolver()
-    first = solver.solve(big)
-    second = solver.solve(small)
-    for qp, solution in ((big, first), (big, second), (small, first)):
-        assert solver.sharpen(qp, solution) is solution
-    solver.solve(big)
-    assert solver.sharpen(big, second) is second
-    rng = np.random.default_rng(0)
-    programs = [
-        QP(np.eye(n), rng.standard_normal(n), rng.standard_normal((n, n)), np.ones(n))
-        for n in (2, 3, 60, 70)
-    ]
-
-    def solve(k: int) -> bool:
-        qp = programs[k % 4]
-        return iiwa_dnn.solve_problem(qp, solver=solver, sharpen=True).found
-
-    def work() -> None:
-        sys.setswitchinterval(1e-6)
-        with ThreadPoolExecutor(4) as pool:
-            assert all(pool.map(solve, range(600)))
-
-    assert in_a_fork(work) == 0
 
 
 @pytest.mark.parametrize("n", [2, 150])

@@ -265,13 +265,15 @@ def test_a_problem_of_qpsolvers_is_proven_as_its_program() -> None:
 def test_a_certificate_is_proven_or_is_not() -> None:
     rows = [[-1.0, -1.0]]
     for limit, reason in ((-3.0, "proven: no point satisfies the constraints"), (-1.0, "")):
-        qp = QP(np.eye(2), np.zeros(2), G=rows, h=[limit], ub=[1.0, 1.0])
+        qp = QP(np.eye(2), np.zeros(2), G=rows, h=[limit], lb=[-9.0] * 2, ub=[1.0, 1.0])
         proof = prove(qp, DNNSolver().solve(qp))
         assert proof.reason == reason
         assert (proof.bound < np.inf) is (reason == "")
         farkas = DNNSolver().solve(qp)._replace(certificate=np.ones(3))
         assert prove(qp, farkas).reason == reason
-    problem = QP(np.eye(2), np.zeros(2), G=rows, h=[-3.0], ub=[1.0, 1.0]).to_qpsolvers()
+    problem = QP(
+        np.eye(2), np.zeros(2), G=rows, h=[-3.0], lb=[-9.0] * 2, ub=[1.0, 1.0]
+    ).to_qpsolvers()
     refuted = solve_problem(problem)
     assert prove(problem, refuted).reason == "proven: no point satisfies the constraints"
     del refuted.extras["certificate"]

@@ -21,13 +21,11 @@ TOLERANCE = 0
 """Index, in a compiled answer's constants, of the tolerance of the residuals;"""
 BUDGET = 1
 """of the budget of linear systems;"""
-LONG_STEP = 2
-"""of the linearly implicit step that is tried first [rho];"""
-DURATION = 3
+DURATION = 2
 """of the time to advance [rho];"""
-SUBSTEPS = 4
+SUBSTEPS = 3
 """of the number of explicit sub-steps, 0 for as many as stability needs;"""
-NETWORK = 5
+NETWORK = 4
 """and of the first of the network's own constants."""
 
 ANSWER = Signature(
@@ -48,7 +46,7 @@ class CompiledAnswer(NamedTuple):
     Attributes:
         address: Address of a function of the type `ANSWER`.
         rates: Address of the network's compiled function.
-        constants: ``[tolerance, budget, long step, duration, sub-steps, network's own ...]``, (k,).
+        constants: ``[tolerance, budget, duration, sub-steps, network's own ...]``, (k,).
     """
 
     address: int
@@ -92,21 +90,6 @@ class Integrator(Protocol):
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""
-        ...
-
-    def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
-        """Advance `state` in place until the KKT residuals of `point` are at most `tol`.
-
-        Args:
-            network: The network.
-            qp: The program, which does not change meanwhile.
-            state: Start, (size,); holds the last state afterwards.
-            point: Output ``[x | y | z | z_box]`` of size n + p + m + n.
-            tol: Absolute tolerance on each residual.
-
-        Returns:
-            The progress and the residuals, above `tol` if the budget of steps ended first.
-        """
         ...
 
     def settings(self) -> dict[str, Any]:

@@ -20,9 +20,9 @@ C being the active rows of :math:`\Omega = [G; I; -I]`.
 
 and both are increasing in :math:`x^+`. The line that is left, :math:`(x^+ - x)/h + P x^+ + q +
 A^T y^+ + \Omega^T \mu^+ = 0`, is therefore the stationarity of a strongly convex, piecewise
-quadratic function, for every h. It has one minimiser, and a semismooth Newton iteration whose line
-search becomes exact in the end reaches it; its matrix is K again. A bare Newton iteration on the
-KKT conditions can cycle when many bounds are active; this one cannot.
+quadratic function, for every h. It has one minimiser, and a semismooth Newton iteration with a line
+search reaches it; its matrix is K again. A bare Newton iteration on the KKT conditions can cycle
+when many bounds are active; this one cannot.
 
 Source: R. T. Rockafellar, "Augmented Lagrangians and applications of the proximal point algorithm
 in convex programming", Math. Oper. Res. 1 (1976), for the same step of the plain saddle-point flow,
@@ -45,11 +45,8 @@ from iiwa_dnn.qp.dense import (
 )
 from iiwa_dnn.qp.layout import ONE, Matrix, QPViews, Vector, compiled, inlined, larger
 
-LOOSE = 0.3
-EXACT = 1e-3
-"""Slope at which a line search may end, relative to that at its start, in the first
-`LOOSE_NEWTON` iterations and afterwards."""
-LOOSE_NEWTON = 20
+SLOPE = 0.3
+"""Slope at which a line search may end, relative to that at its start."""
 
 
 class Condensed(NamedTuple):
@@ -125,18 +122,11 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
 
 @inlined
 def linear_step(
-    qp: QPViews,
-    s: Vector,
-    rates: Vector,
-    step: float,
-    factored: bool,
-    matrix: Condensed,
-    new: Vector,
+    qp: QPViews, s: Vector, rates: Vector, step: float, matrix: Condensed, new: Vector
 ) -> bool:
     """Write the state after a linearly implicit step [rho] into `new`, like `s` (3n + m + p,).
 
-    `rates` and `matrix.active` are those at s. If `factored`, `matrix.K` holds the factor that the
-    last call left, for the same step and active set.
+    `rates` and `matrix.active` are those at s.
 
     Returns:
         False if K is not positive definite to working precision; `new` is then meaningless.
@@ -145,10 +135,9 @@ def linear_step(
     p = qp.b.size
     active = matrix.active
     values = matrix.values
-    if not factored:
-        build_condensed(qp, step, matrix)
-        if not cholesky_factor(matrix.K):
-            return False
+    build_condensed(qp, step, matrix)
+    if not cholesky_factor(matrix.K):
+        return False
     # The changes of the multipliers while x stays, and what they leave of its rates.
     decay = step / (1.0 + step)
     for i in range(n):
@@ -216,10 +205,10 @@ def backward_euler(
     max_newton: int,
     matrix: Condensed,
 ) -> int:
-    """Solve new = s + step F(new) for `new` (3n + m + p,), the iteration starting at new[:n].
+    """Solve new = s + step F(new) for `new` (3n + m + p,), the iteration starting at s.
 
-    The iteration stops if the gradient is at most `tol` or lost in rounding, or after `max_newton`
-    rounds.
+    The iteration stops after its first round if the gradient is at most `tol` or lost in rounding,
+    and after `max_newton` rounds.
 
     Returns:
         Newton iterations, or -1 if a matrix was not positive definite to working precision.
@@ -229,6 +218,7 @@ def backward_euler(
     gradient = np.empty(n)
     direction = np.empty(n)
     slacks = np.empty(rows)
+    copy_into(new, s)
     _slacks(qp, new, slacks)
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
@@ -239,7 +229,7 @@ def backward_euler(
     for iteration in range(max_newton):
         _multipliers(qp, s, step, slacks, new, matrix.active)
         size = _gradient(qp, s, step, new, gradient)
-        if not size > max(tol, floor):
+        if iteration > 0 and not size > max(tol, floor):
             taken = iteration
             break
         build_condensed(qp, step, matrix)
@@ -249,8 +239,7 @@ def backward_euler(
         for i in range(n):
             direction[i] = -direction[i]
         rows_times(qp, direction, matrix.values)
-        accuracy = LOOSE if iteration < LOOSE_NEWTON else EXACT
-        length = _line_search(qp, s, step, slacks, matrix.values, direction, gradient, accuracy)
+        length = _line_search(qp, s, step, slacks, matrix.values, direction, gradient)
         for i in range(n):
             new[i] += length * direction[i]
         for k in range(rows):
@@ -320,9 +309,8 @@ def _line_search(
     change: Vector,
     direction: Vector,
     gradient: Vector,
-    accuracy: float,
 ) -> float:
-    """Minimize the step's convex function along the Newton `direction`, to a part of its slope.
+    """Minimize the step's convex function along the Newton `direction`, to `SLOPE`.
 
     Its derivative is continuous, increasing and piecewise linear, so a Newton iteration kept
     inside a bracket ends at the root. `change` is [A; G; I; -I] direction.
@@ -345,7 +333,7 @@ def _line_search(
         slope, second = _slope(n, p, s, step, slacks, change, length)
         slope = slope + constant + length * curvature
         second += curvature
-        if abs(slope) <= accuracy * abs(start):
+        if abs(slope) <= SLOPE * abs(start):
             break
         if slope > 0.0:
             high = length

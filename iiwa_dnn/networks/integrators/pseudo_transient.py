@@ -1,15 +1,7 @@
-"""Pseudo-transient continuation: rules of both settle loops, and the loop for any network.
+"""Implicit steps of any network, by Newton iterations on its whole state.
 
-Each round of `settle` first tries one linearly implicit step, very long at first: near the
-equilibrium that is a Newton step, and a warm start in a control loop needs only that. If it makes
-no `progress`, a fully solved backward Euler step follows, whose length grows from round to round.
-Linearly implicit steps of other lengths are tried too where rounding is in the way.
-
-Here a backward Euler step is solved by a semismooth Newton iteration on the whole state. If that
-does not converge in `MAX_NEWTON` iterations, the step is cut to a quarter: below one over the
-field's Lipschitz constant it does converge, so the flow can always be followed, however slowly. A
-linearly implicit step is kept only where it does not go far, since these fields are small in some
-places that are far from any equilibrium. The projection network has compiled loops
+`settle` takes one linearly implicit step after another, longer ones as the rates fall
+(switched evolution relaxation). The projection network has compiled loops
 (`iiwa_dnn.networks.integrators.implicit`).
 
 Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
@@ -20,57 +12,74 @@ import numpy as np
 
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
-from iiwa_dnn.qp.layout import Vector, compiled
+from iiwa_dnn.qp.layout import Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import within
 
-LAST_STEP = 1e6
-"""Longest backward Euler step [rho]: beyond, the systems are singular to working precision."""
-TRIALS = np.array([1.0, 1e-2, 1e2, 1e-4, 1e4])
-"""Lengths of the linearly implicit steps, in units of the first: shorter ones have better
-conditioned systems, longer ones bring nearly dependent rows to rest."""
-STALLED = 30
-"""Rounds with small rates but large residuals, as large multipliers have them, before the end."""
-TRAVELLING = 12
-"""Longest steps that do not halve the rates, before the end: the state travels, since there is no
-solution or none that is near."""
-FIRST_STEP = 1.0
-GROWTH = 4.0
-"""Length of the first step [rho] and its growth; this iteration has no line search to go faster."""
+LONGEST = 1e8
+"""Longest step of `settle` [rho]."""
+SHORTEST = 1e-6
+"""Step of `settle` [rho] below which the field is not followed any more."""
 MAX_NEWTON = 15
-DEFECT = 1e-3
-"""Defect up to which `settle` solves a backward Euler step, in the state's unit."""
+"""Newton iterations of one backward Euler step; it is cut to a quarter if they do not converge."""
 
 
-@compiled
-def near(rate: float, tol: float) -> bool:
-    """Tell whether the rates are so near the tolerance that rounding is in the way."""
-    return rate <= 1e4 * tol
+def settle(
+    network: Network, qp: QP, state: Vector, point: Vector, tol: float, max_systems: int
+) -> Settled:
+    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
+    flow = network.flow(qp)
+    eye = np.eye(state.size)
+    step = 1.0
+    systems = 0
+    time = 0.0
+    rates = flow.rates(state)
+    rate = float(np.abs(rates).max())
+    while systems < max_systems and step >= SHORTEST:
+        if not rate > tol:
+            residuals = flow.read(qp, state, point)
+            if within(*residuals, tol) or rate != rate:
+                return systems, time, *residuals
+        systems += 1
+        new = state + _solved(eye / step - flow.derivative(state), rates)
+        new_rates = flow.rates(new)
+        new_rate = float(np.abs(new_rates).max())
+        # The fields are small in some places that are far from any equilibrium.
+        far = np.abs(new - state).max() > 10.0 * (1.0 + np.abs(state).max())
+        if far or not new_rate <= 2.0 * rate:
+            step *= 0.25
+            continue
+        time += step
+        growth = min(rate / max(new_rate, 1e-300), 100.0)
+        step = min(step * max(growth, 1.5 if new_rate < rate else 0.5), LONGEST)
+        state[:] = new
+        rates = new_rates
+        rate = new_rate
+    return systems, time, *flow.read(qp, state, point)
 
 
-@compiled
-def progress(rate: float, new_rate: float, tol: float) -> bool:
-    """Tell whether a step is kept: it halved the largest rate, or lowered it near rest."""
-    return new_rate <= 0.5 * rate or (near(rate, tol) and new_rate <= 0.9 * rate)
+def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> int:
+    """Advance `state` (size,) by `count` backward Euler steps, cut where one does not converge.
 
-
-@compiled
-def trial_left(rate: float, tol: float, trial: int) -> bool:
-    """Check that a linearly implicit step of another length may help against rounding."""
-    return near(rate, tol) and trial + 1 < TRIALS.size
-
-
-@compiled
-def next_step(
-    step: float, growth: float, before: float, rate: float, tol: float, travelling: int
-) -> tuple[int, float]:
-    """Count the longest steps that did not halve the rates, and choose the next step's length."""
-    if step < LAST_STEP:
-        return travelling, step * growth
-    if rate <= 0.5 * before:
-        return travelling, step
-    # Not a long way to go, but rounding: shorter steps have better conditioned systems.
-    return travelling + 1, 100.0 if near(rate, tol) else step
+    Returns:
+        Linear systems solved, or -1 where even very short steps did not converge.
+    """
+    total = 0
+    for _ in range(count):
+        left = step
+        length = step
+        while left > 1e-12 * step:
+            length = min(length, left)
+            new, systems = backward_euler(flow, state, length, tol)
+            total += systems
+            if new is not None:
+                state[:] = new
+                left -= length
+            elif length < 1e-6 * step:
+                return -1
+            else:
+                length *= 0.25
+    return total
 
 
 def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[Vector | None, int]:
@@ -88,110 +97,17 @@ def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[
     """
     new = start.copy()
     eye = np.eye(start.size)
-    floor = 1e-14 * step
     for systems in range(MAX_NEWTON + 1):
         defect = new - start - step * flow.rates(new)
-        if np.abs(defect).max() <= tol + floor:
+        if np.abs(defect).max() <= tol + 1e-14 * step:
             return new, systems
-        if systems == MAX_NEWTON or not np.isfinite(defect).all():
-            break
-        try:
-            new = new - np.linalg.solve(eye - step * flow.jacobian(new), defect)
-        except np.linalg.LinAlgError:
-            break
-    return None, systems
+        new = new - _solved(eye - step * flow.derivative(new), defect)
+    return None, MAX_NEWTON
 
 
-def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> int:
-    """Advance `state` (size,) by `count` backward Euler steps, cut where one does not converge.
-
-    Returns:
-        Linear systems solved, or -1 where even very short steps did not converge.
-    """
-    total = 0
-    shortest = 1e-6 * step
-    for _ in range(count):
-        done = 0.0
-        length = step
-        while done < step * (1.0 - 1e-12):
-            length = min(length, step - done)
-            new, systems = backward_euler(flow, state, length, tol)
-            total += systems
-            if new is not None:
-                state[:] = new
-                done += length
-            elif length < shortest:
-                return -1
-            else:
-                length *= 0.25
-    return total
-
-
-def _linear_step(flow: Flow, state: Vector, rates: Vector, step: float) -> Vector:
-    """Take a linearly implicit step [rho]; the state itself if its system is singular."""
+def _solved(matrix: Vector, values: Vector) -> Vector:
+    """Solve a linear system, (size,); NaN if it is singular."""
     try:
-        change = np.linalg.solve(np.eye(state.size) / step - flow.jacobian(state), rates)
+        return np.asarray(np.linalg.solve(matrix, values), dtype=np.float64)
     except np.linalg.LinAlgError:
-        return state
-    return state + change
-
-
-def settle(
-    network: Network,
-    qp: QP,
-    state: Vector,
-    point: Vector,
-    tol: float,
-    max_systems: int,
-    long_step: float,
-) -> Settled:
-    """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
-    flow = network.flow(qp)
-    step = FIRST_STEP
-    systems = 0
-    time = 0.0
-    trial = 0
-    stalled = 0
-    travelling = 0
-    rates = flow.rates(state)
-    rate = float(np.abs(rates).max())
-    while systems < max_systems and travelling < TRAVELLING:
-        if not rate > tol:
-            residuals = network.read(qp, state, point)
-            if within(*residuals, tol):
-                return systems, time, *residuals
-            stalled += 1
-            if stalled > STALLED or rate != rate:
-                break
-        systems += 1
-        length = long_step * float(TRIALS[trial])
-        new = _linear_step(flow, state, rates, length)
-        new_rates = flow.rates(new)
-        new_rate = float(np.abs(new_rates).max())
-        close = np.abs(new - state).max() <= 10.0 * (1.0 + np.abs(state).max())
-        if close and progress(rate, new_rate, tol):
-            if new_rate <= 0.5 * rate:
-                travelling = 0
-            else:
-                trial = (trial + 1) % TRIALS.size
-            state[:] = new
-            rates = new_rates
-            rate = new_rate
-            time = time + length
-            continue
-        if trial_left(rate, tol, trial):
-            trial += 1
-            continue
-        reached, solved_in = backward_euler(flow, state, step, DEFECT)
-        systems += solved_in
-        if reached is None:
-            step *= 0.25
-            continue
-        before = rate
-        trial = 0
-        time = time + step
-        state[:] = reached
-        rates = flow.rates(reached)
-        rate = float(np.abs(rates).max())
-        travelling, step = next_step(step, GROWTH, before, rate, tol, travelling)
-    return systems, time, *network.read(qp, state, point)
+        return np.full_like(values, np.nan)
