@@ -168,7 +168,12 @@ def hostile_targets(case: Case, seed: int) -> Iterator[iiwa_dnn.Target]:
     robot = case.robot
     start = iiwa_dnn.Configuration(robot, robot.start_posture())
     tip = start.position
-    places = [obstacle.points.mean(axis=0) for obstacle in case.avoidance.obstacles]
+    places = [
+        obstacle.offset * np.array(obstacle.normal)
+        if isinstance(obstacle, iiwa_dnn.HalfSpace)
+        else obstacle.box.center
+        for obstacle in case.avoidance.obstacles
+    ]
     while True:
         kind = random.integers(5)
         one = places[random.integers(len(places))]

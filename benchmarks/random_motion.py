@@ -50,12 +50,12 @@ def swinging(kind: type[Any], rate: float = 1.0, until: float = np.inf) -> type[
 def obstacles_for(moving: bool) -> list[Any]:
     """Return one obstacle of each kind, around an arm of 0.9 m at the origin."""
     path = {"velocity": (0.0, 0.1, 0.0)} if moving else {}
-    wedge = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.3], [0.1, 0.1, 0.2]])
+    turn = pin.exp3(np.array([0.4, -0.3, 0.5])).tolist()
     return [
         swinging(iiwa_dnn.Sphere)([0.45, 0.35, 0.5], 0.1, **path),
         swinging(iiwa_dnn.Capsule)([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, **path),
         iiwa_dnn.Box([0.5, -0.45, 0.3], [0.1, 0.1, 0.3]),
-        swinging(iiwa_dnn.ConvexMesh)((wedge + [-0.5, -0.6, 0.3]).tolist(), **path),
+        swinging(iiwa_dnn.Box)([-0.4, -0.5, 0.4], [0.1, 0.05, 0.15], turn, **path),
         iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.15),
     ]
 
@@ -124,12 +124,6 @@ def _coal(obstacle: Any) -> tuple[coal.CollisionGeometry, pin.SE3]:
         turn = np.eye(3) if obstacle.rotation is None else np.array(obstacle.rotation)
         size = 2.0 * np.array(obstacle.half_extents)
         return coal.Box(*size), pin.SE3(turn, np.array(obstacle.center))
-    if isinstance(obstacle, iiwa_dnn.ConvexMesh):
-        points = coal.StdVec_Vec3s()
-        for point in obstacle.points:
-            points.append(point)
-        hull = coal.ConvexBase.convexHull(points, True, "")
-        return hull, pin.SE3.Identity()
     normal = np.array(obstacle.normal)
     return coal.Halfspace(normal, obstacle.offset), pin.SE3.Identity()
 

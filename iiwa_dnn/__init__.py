@@ -56,7 +56,6 @@ from iiwa_dnn.schemes import (
     Box,
     Capsule,
     CollisionAvoidance,
-    ConvexMesh,
     Cost,
     CyclicMotion,
     DoubleIndicator,
@@ -92,7 +91,7 @@ __version__ = version("iiwa-dnn")
 __all__ = [
     "QP", "AccelerationLimits", "ActivatedNetwork", "Agreement", "AxisTask",
     "BatchSolution", "Box", "Capsule", "Circle", "CollisionAvoidance",
-    "Command", "Cone", "Configuration", "Controller", "ConvexMesh", "Cost", "CrossCheck",
+    "Command", "Cone", "Configuration", "Controller", "Cost", "CrossCheck",
     "CyclicMotion", "DNNSolver", "DoubleIndicator", "DualNetwork",
     "ExplicitEuler", "FileError", "GradientNetwork", "HalfSpace",
     "Heart", "IiwaDnnError", "ImplicitEuler", "InvalidInputError", "JerkLimits",

@@ -35,8 +35,8 @@ from iiwa_dnn.control.relaxed import YIELDING, Yielding
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
 from iiwa_dnn.qp.layout import Triple, compiled
-from iiwa_dnn.schemes.distances import difference, dot, point_of
-from iiwa_dnn.schemes.scene import contact_of, pair_of, place_ends, scene_views
+from iiwa_dnn.schemes.distances import difference, dot
+from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
 from iiwa_dnn.schemes.tasks import rate_along
 
 LONGEST = 1e6
@@ -380,8 +380,8 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     """
     n = motion.first.size
     scene = scene_views(constants, n)
-    ends = np.empty(scene.ends.shape)
-    place_ends(scene, instant.placements, ends)
+    placed = np.empty((len(scene.bodies), 12))
+    place_bodies(scene, instant.placements, placed)
     straight = is_straight(motion)
     of_first, of_bend = sums(motion, motion.periods)
     travel = np.empty(n)
@@ -390,21 +390,21 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     rates = np.empty(n)
     for k in range(len(scene.pairs)):
         pair = pair_of(scene.pairs, k)
-        contact = contact_of(pair, ends, scene.points)
+        contact = contact_of(scene, pair, placed)
         bounds = swept(scene.moves, scene.radii, k, travel)
         left = contact.distance - pair.obstacle_speed * dt * motion.periods
         if left - bounds.way >= scene.damper.least:
             continue
         normal = contact.normal
         change = np.inf
-        at = 2 * int(pair.second)
         lacking = 0.5 * bounds.second_order
-        for end in (point_of(ends, at), point_of(ends, at + 1)):
+        a, b = ends_of(scene, placed, int(pair.second))
+        for end in (a, b):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
             # No end is below the nearest point, but rounding would hold an arm that is too near.
             height = max(0.0, dot(difference(end, contact.second), normal))
             change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
-        if pair.corners == 1.0:  # seen from the link, a ball's middle is a point that moves
+        if pair.first_is_ball == 1.0:  # seen from the link, a ball's middle is a point that moves
             _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)
             lacking = 0.5 * _seen_second_order(bounds, contact.core)
             change = max(change, _least_rise(motion, rates, dt, lacking, straight))

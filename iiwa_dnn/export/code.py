@@ -27,7 +27,6 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import prove_point
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import StepProgram, write_program
-from iiwa_dnn.schemes.scene import shift_points
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _DOUBLE = 8
@@ -148,15 +147,16 @@ def _motions(program: StepProgram) -> list[tuple[int, Vector, Vector]]:
     """List the obstacles that move.
 
     Returns:
-        For each the index of its first point among the constants of all parts, its points at time
-        0 [m], (k, 3), and its velocity [m/s], (3,).
+        For each the index of its centre among the constants of all parts, the centre at time 0 [m],
+        (3,), and its velocity [m/s], (3,).
     """
     found = []
     for block in program.blocks:
         if isinstance(block.part, CollisionAvoidance):
             for obstacle, own in block.part.scene(program.robot).moving:
                 velocity = np.array(obstacle.velocity)
-                found.append((block.start + own.start, obstacle.points, velocity))
+                center = block.part.scene(program.robot).constants[own]
+                found.append((block.start + own.start, center, velocity))
     return found
 
 
@@ -283,8 +283,8 @@ def _arrays(
     if not motions:
         return _handed(translator, "arrays", own, variables)
     content: list[float | None] = own.constants.tolist()
-    for first, points, _ in motions:
-        content[first : first + points.size] = [None] * points.size
+    for first, center, _ in motions:
+        content[first : first + center.size] = [None] * center.size
     translator.table("arrays_constants", own.constants)
     variables["constants"] = "c->constants"
     constants = Value(Array(DOUBLE, (len(content),), content=tuple(content)), "constants")
@@ -296,14 +296,9 @@ def _move_function(
 ) -> str:
     """Translate the motion of obstacles, and write the functions that start and move them."""
     calls = []
-    for number, (first, points, velocity) in enumerate(motions, 1):
-        still = translator.table(f"points_{number}", points)
-        shift = _array(f"shift_{number}", 3)
-        made = translator.function(shift_points, [still, shift, _array("shifted", points.size)])
-        assert made is not None
-        moved = ", ".join(f"t * {rate!r}" for rate in velocity.tolist())
-        calls.append(f"    const double {shift.text}[3] = {{{moved}}};")
-        calls.append(f"    {made.name}({still.text}, {shift.text}, constants + {first});")
+    for first, center, velocity in motions:
+        for i, (still, rate) in enumerate(zip(center.tolist(), velocity.tolist(), strict=True)):
+            calls.append(f"    constants[{first + i}] = {still!r} + t * {rate!r};")
     values = {"calls": "\n".join(calls), "size": size}
     return filled("moving.c", values) if motions else ""
 

@@ -3,14 +3,42 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+import pinocchio as pin
+from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError, suggestion
 from iiwa_dnn.files import one_line
+
+BEYOND = 100.0
+"""Half an edge of the cube that stands for a half-space [m]."""
+
+
+class PlacedBox(NamedTuple):
+    """A box in the world; without extents a point, with one a segment.
+
+    Attributes:
+        center: Its middle [m], (3,).
+        rotation: Its axes as columns, (3, 3).
+        half_extents: Half of its edges [m], (3,).
+    """
+
+    center: checks.Array
+    rotation: checks.Array
+    half_extents: checks.Array
+
+
+def box_around(a: ArrayLike, b: ArrayLike) -> PlacedBox:
+    """Return the segment between two points (3,) [m] as a box with its z axis along it."""
+    way = np.subtract(b, a, dtype=np.float64)
+    length = float(np.linalg.norm(way))
+    up = np.array([0.0, 0.0, 1.0])
+    turn = pin.Quaternion.FromTwoVectors(up, way if length else up)
+    half = np.array([0.0, 0.0, 0.5 * length])
+    return PlacedBox(0.5 * np.add(a, b), turn.toRotationMatrix(), half)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,12 +72,20 @@ class Obstacle(ABC):
 
     @property
     @abstractmethod
+    def box(self) -> PlacedBox:
+        """Box that is the shape at time 0, grown by `thickness`."""
+
+    @property
     def points(self) -> checks.Array:
-        """Points whose convex hull, grown by `thickness`, is the shape at time 0 [m], (k, 3)."""
+        """Corners of `box` that differ [m], (k, 3)."""
+        center, rotation, half_extents = self.box
+        signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+        corners: checks.Array = np.unique(signs * half_extents, axis=0) @ rotation.T + center
+        return corners
 
     @property
     def thickness(self) -> float:
-        """Radius by which the hull of `points` is grown [m]."""
+        """Radius by which `box` is grown [m]."""
         return float(getattr(self, "radius", 0.0))
 
     def shift(self, t: float) -> checks.Array:
@@ -78,9 +114,9 @@ class Sphere(Obstacle):
     radius: float
 
     @property
-    def points(self) -> checks.Array:
-        """The middle, (1, 3)."""
-        return np.array([self.center])
+    def box(self) -> PlacedBox:
+        """The middle."""
+        return box_around(self.center, self.center)
 
 
 @dataclass(frozen=True)
@@ -98,9 +134,9 @@ class Capsule(Obstacle):
     radius: float
 
     @property
-    def points(self) -> checks.Array:
-        """The ends, (2, 3)."""
-        return np.array([self.a, self.b])
+    def box(self) -> PlacedBox:
+        """The segment."""
+        return box_around(self.a, self.b)
 
 
 @dataclass(frozen=True)
@@ -126,37 +162,10 @@ class Box(Obstacle):
             self._set("rotation", tuple(map(tuple, turn.tolist())))
 
     @property
-    def points(self) -> checks.Array:
-        """The corners, (8, 3)."""
-        signs = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+    def box(self) -> PlacedBox:
+        """The box itself."""
         axes = np.eye(3) if self.rotation is None else np.array(self.rotation)
-        corners: checks.Array = (
-            np.asarray(self.center) + signs * np.asarray(self.half_extents) @ axes.T
-        )
-        return corners
-
-
-@dataclass(frozen=True)
-class ConvexMesh(Obstacle):
-    """The convex hull of points.
-
-    Attributes:
-        vertices: The points [m], (k, 3), four at least, not all in a plane.
-    """
-
-    vertices: Sequence[Sequence[float]]
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        vertices = checks.finite_array("vertices", self.vertices, (-1, 3))
-        if len(vertices) < 4 or np.linalg.matrix_rank(vertices - vertices[0], 1e-9) < 3:
-            raise InvalidInputError("vertices", "must be four or more and span a solid", vertices)
-        self._set("vertices", tuple(map(tuple, vertices.tolist())))
-
-    @property
-    def points(self) -> checks.Array:
-        """The vertices, (k, 3)."""
-        return np.array(self.vertices)
+        return PlacedBox(np.array(self.center), axes, np.array(self.half_extents))
 
 
 @dataclass(frozen=True)
@@ -177,13 +186,15 @@ class HalfSpace(Obstacle):
         checks.finite("offset", self.offset)
 
     @property
-    def points(self) -> checks.Array:
-        """A point of the boundary, (1, 3)."""
-        return self.offset * np.array([self.normal])
+    def box(self) -> PlacedBox:
+        """A cube of `BEYOND` below the point of the boundary that is nearest to the origin."""
+        normal = np.array(self.normal)
+        _, rotation, _ = box_around(np.zeros(3), normal)
+        return PlacedBox((self.offset - BEYOND) * normal, rotation, np.full(3, BEYOND))
 
 
 SHAPES: dict[str, type[Obstacle]] = {
-    shape.__name__: shape for shape in (Sphere, Capsule, Box, ConvexMesh, HalfSpace)
+    shape.__name__: shape for shape in (Sphere, Capsule, Box, HalfSpace)
 }
 
 

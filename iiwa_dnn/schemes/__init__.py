@@ -3,7 +3,6 @@
 from iiwa_dnn.robot.obstacles import (
     Box as Box,
     Capsule as Capsule,
-    ConvexMesh as ConvexMesh,
     HalfSpace as HalfSpace,
     Obstacle as Obstacle,
     Sphere as Sphere,

@@ -28,11 +28,11 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
-from iiwa_dnn.schemes.distances import difference, dot, point_of
+from iiwa_dnn.schemes.distances import difference, dot
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import (
     Contact,
@@ -40,9 +40,10 @@ from iiwa_dnn.schemes.scene import (
     PairConstants,
     Scene,
     contact_of,
+    ends_of,
     make_scene,
     pair_of,
-    place_ends,
+    place_bodies,
     scene_views,
 )
 from iiwa_dnn.schemes.step import Step, StepViews
@@ -64,14 +65,15 @@ def collision_rows(
     gradients = np.empty((pairs, dof))
     limits = np.empty(pairs)
     slacks = np.empty(pairs)
-    ends = np.empty(scene.ends.shape)
-    place_ends(scene, step.placements, ends)
+    placed = np.empty((len(scene.bodies), 12))
+    place_bodies(scene, step.placements, placed)
     for k in range(pairs):
         pair = pair_of(scene.pairs, k)
-        contact = contact_of(pair, ends, scene.points)
+        contact = contact_of(scene, pair, placed)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
         taken = 0.0
         if scene.damper.braked == 0.0:
+            ends = ends_of(scene, placed, int(pair.second))
             taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
         limits[k] = _approach_limit(scene.damper, pair, contact, taken, step.rate)
         slacks[k] = limits[k] - fastest
@@ -114,15 +116,16 @@ def _write_gradient(
 
 
 @compiled
-def _taken_distance(pair: PairConstants, contact: Contact, ends: Matrix, dt: float) -> float:
+def _taken_distance(
+    pair: PairConstants, contact: Contact, ends: tuple[Triple, Triple], dt: float
+) -> float:
     """Bound the distance of a pair that a step of dt [s] can take although its row holds [m]."""
     speed = pair.speed
     turning = pair.turning
     taken = 0.5 * dt * dt * pair.acceleration
-    shape = int(pair.second)
-    a = difference(point_of(ends, 2 * shape), contact.second)
-    b = difference(point_of(ends, 2 * shape + 1), contact.second)
-    if pair.corners == 1.0 and (dot(a, a) > 0.0 or dot(b, b) > 0.0):
+    a = difference(ends[0], contact.second)
+    b = difference(ends[1], contact.second)
+    if pair.first_is_ball == 1.0 and (dot(a, a) > 0.0 or dot(b, b) > 0.0):
         # Seen from the link, a ball's middle is a point that moves.
         turned = (turning * turning + pair.turning_change) * (contact.core + dt * speed)
         taken += 0.5 * dt * dt * (turned + 2.0 * turning * speed)
@@ -175,7 +178,7 @@ class CollisionAvoidance(Limit):
         obstacles: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
         for number, obstacle in enumerate(obstacles, 1):
             if not isinstance(obstacle, Obstacle):
-                problem = f"number {number} must be a Sphere, Capsule, Box, ConvexMesh or HalfSpace"
+                problem = f"number {number} must be a Sphere, Capsule, Box or HalfSpace"
                 raise InvalidInputError("obstacles", f"{problem}, not {obstacle!r}", obstacle)
         self._set(obstacles=obstacles)
         checks.positive("distance", self.distance)

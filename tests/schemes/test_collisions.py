@@ -409,7 +409,6 @@ def test_a_file_is_what_python_says(tmp_path: Path) -> None:
         (lambda: iiwa_dnn.Sphere([0, 0, 0], 1.0, velocity=[1.0, 0.0]), "velocity"),
         (lambda: iiwa_dnn.HalfSpace([0, 0, 0], 1.0), "normal"),
         (lambda: iiwa_dnn.Box([0, 0, 0], [1, 1, 1], np.diag([1, 1, -1])), "rotation"),
-        (lambda: iiwa_dnn.ConvexMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]), "vertices"),
         (lambda: iiwa_dnn.CollisionAvoidance(["ball"]), "obstacles"),
         (lambda: iiwa_dnn.CollisionAvoidance(self_collision=False).scene(ROBOT), "obstacles"),
         (

@@ -1,4 +1,4 @@
-"""Nearest points of segments and hulls beside coal's, and beside a general minimiser."""
+"""Nearest points of a segment and a box beside coal's, and beside a general minimiser."""
 
 from __future__ import annotations
 
@@ -7,45 +7,39 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from iiwa_dnn.schemes.distances import hull_points, segment_points
+from iiwa_dnn.schemes.distances import beyond, depth, nearest_parameter
 
 
-def nearest(segment: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """The nearest points of a segment (2, 3) and a hull (k, 3), (2, 3)."""
-    a, b = map(tuple, segment)
-    if len(points) <= 2:
-        return np.array(segment_points(a, b, tuple(points[0]), tuple(points[-1])))
-    return np.array(hull_points(a, b, points))
+def distance(segment: np.ndarray, half: np.ndarray) -> float:
+    """The distance of a segment (2, 3) from a box about the origin."""
+    start, way = segment[0], segment[1] - segment[0]
+    s = nearest_parameter(tuple(start), tuple(way), tuple(half))
+    assert 0.0 <= s <= 1.0
+    return float(np.linalg.norm(beyond(tuple(start + s * way), tuple(half))))
 
 
-def minimised(segment: np.ndarray, points: np.ndarray) -> float:
-    """The distance by scipy, over the weights of all corners."""
-    k = len(points)
+def minimised(segment: np.ndarray, half: np.ndarray) -> float:
+    """The distance by scipy, over the segment's parameter and the box's point."""
 
-    def squared(w: np.ndarray) -> float:
-        return float(np.sum((w[:2] @ segment - w[2:] @ points) ** 2))
+    def squared(x: np.ndarray) -> float:
+        return float(np.sum((segment[0] + x[0] * (segment[1] - segment[0]) - x[1:]) ** 2))
 
-    sums = [{"type": "eq", "fun": lambda w: w[:2].sum() - 1.0},
-            {"type": "eq", "fun": lambda w: w[2:].sum() - 1.0}]  # fmt: skip
-    start = np.concatenate([[0.5, 0.5], np.full(k, 1.0 / k)])
-    options = {"ftol": 1e-14, "maxiter": 500}
-    found = minimize(squared, start, bounds=[(0, 1)] * (k + 2), constraints=sums, options=options)
+    bounds = [(0.0, 1.0), *zip(-half, half, strict=True)]
+    found = minimize(squared, [0.5, 0.0, 0.0, 0.0], bounds=bounds, options={"ftol": 1e-16})
     return float(np.sqrt(found.fun))
 
 
-@pytest.mark.parametrize("count", [1, 2, 4, 8, 20])
-def test_random_bodies_agree_with_a_general_minimiser(count: int) -> None:
-    random = np.random.default_rng(count)
-    for _ in range(40):
-        segment = random.normal(size=(2, 3))
-        points = random.normal(size=(count, 3)) + 3.0 * random.normal(size=3)
-        x, y = nearest(segment, points)
-        assert np.linalg.norm(x - y) == pytest.approx(minimised(segment, points), abs=2e-6)
+@pytest.mark.parametrize("extents", [0, 1, 2, 3])
+def test_random_bodies_agree_with_a_general_minimiser(extents: int) -> None:
+    random = np.random.default_rng(extents)
+    for _ in range(60):
+        segment = random.normal(size=(2, 3)) + 3.0 * random.normal(size=3)
+        half = random.uniform(0.1, 1.0, 3) * (np.arange(3) < extents)
+        assert distance(segment, half) == pytest.approx(minimised(segment, half), abs=2e-5)
 
 
 def test_capsule_and_box_agree_with_coal() -> None:
     random, half = np.random.default_rng(0), np.array([0.1, 0.2, 0.3])
-    corners = half * np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
     request, result = coal.DistanceRequest(), coal.DistanceResult()
     for _ in range(300):
         segment = random.normal(size=(2, 3)) * 0.5 + random.normal(size=3) * 0.5
@@ -64,47 +58,23 @@ def test_capsule_and_box_agree_with_coal() -> None:
             request,
             result,
         )
-        a, b = nearest(segment, corners)
         if theirs > 1e-3:
-            assert np.linalg.norm(a - b) - 0.01 == pytest.approx(theirs, abs=2e-6)
+            assert distance(segment, half) - 0.01 == pytest.approx(theirs, abs=2e-6)
         else:
-            assert np.linalg.norm(a - b) <= 0.01 + 1e-3 + 2e-6
-
-
-def test_of_segments_that_rounding_takes_for_parallel_the_ends_are_tried() -> None:
-    # They run towards each other by 1e-8 m a metre: the formula's points are 1e-8 m too far apart.
-    first = np.array([
-        [0.0, 0.0, 0.0],
-        [-1.2995298727420022, 1.8337820743159081, 1.6315190342809855],
-    ])  # fmt: skip
-    second = np.array([
-        [-0.24098741560896667, 0.23722673342345224, 0.87458899883805],
-        [0.423167983506479, -0.6999708535086914, 0.040762687052543045],
-    ])  # fmt: skip
-    from_ends = [nearest(np.array([end, end]), second) for end in first]
-    from_ends += [nearest(first, np.array([end, end])) for end in second]
-    least = min(np.linalg.norm(x - y) for x, y in from_ends)
-    x, y = nearest(first, second)
-    assert np.linalg.norm(x - y) == pytest.approx(least, abs=1e-12)
+            assert distance(segment, half) <= 0.01 + 1e-3 + 2e-6
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-5, 0.3])
 def test_nearly_parallel_segments_have_the_right_distance(tilt: float) -> None:
-    first = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 1.0 + tilt]])
-    second = np.array([[-1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-    x, y = nearest(first, second)
-    assert np.linalg.norm(x - y) == pytest.approx(1.0, abs=1e-12)
+    first = np.array([[0.5, 1.0, 1.0], [0.5 + tilt, 1.0, -1.0]])
+    assert distance(first, np.array([0.0, 0.0, 2.0])) == pytest.approx(
+        np.hypot(0.5, 1.0), abs=1e-12
+    )
 
 
-def test_the_first_corner_may_be_the_nearest() -> None:
-    corners = np.array([[1.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, -1.0, 0.0], [2.0, 0.0, 1.0]])
-    x, y = nearest(np.array([[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]), corners)
-    np.testing.assert_allclose([x, y], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-12)
-
-
-def test_a_segment_that_meets_a_hull_has_no_distance() -> None:
-    corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
-    x, y = nearest(np.array([[0.3, 0.2, -5.0], [0.1, 0.0, 5.0]]), corners)
-    assert np.linalg.norm(x - y) < 1e-9
-    x, y = nearest(np.array([[0.3, 0.2, 0.1], [0.3, 0.2, 0.1]]), corners)
-    assert np.linalg.norm(x - y) < 1e-9
+def test_a_segment_that_meets_a_box_has_no_distance_but_a_depth() -> None:
+    half = np.ones(3)
+    assert distance(np.array([[0.3, 0.2, -5.0], [0.1, 0.0, 5.0]]), half) == 0.0
+    found, normal = depth((0.3, -0.9, 0.1), tuple(half))
+    assert found == pytest.approx(-0.1, abs=1e-15)
+    assert normal == (0.0, -1.0, 0.0)
