@@ -110,7 +110,7 @@ def test_verdicts_claim_no_more_than_was_checked(tmp_path):
     assert "disagreements" not in text
     assert "lag, not judged" in report(lag, tmp_path)
     unsure = make_record(reference_residual=np.full((10, 1), 1e-3), settings=lag.settings)
-    assert "; 10 reference answers not to be believed\n" in report(unsure, tmp_path)
+    assert "not judged; 10 without an answer to be believed" in report(unsure, tmp_path)
     proven = make_record(
         solvers=("proof",), kind=KIND, objective_gap=np.full((10, 1), np.nan),
         reference_residual=np.zeros((10, 1)),
