@@ -26,7 +26,7 @@ from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
-from iiwa_dnn.robot.obstacles import Box
+from iiwa_dnn.robot.obstacles import Box, box_around
 from iiwa_dnn.robot.robot import Robot, file_of, urdf_of
 from iiwa_dnn.robot.shapes import read_shapes
 
@@ -169,12 +169,10 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
     upper = np.minimum(model.upperPositionLimit, np.pi)
     postures = np.random.default_rng(0).uniform(lower, upper, (samples, robot.dof))
     distances = _distances(robot, whole, pairs, np.vstack([robot.start_posture(), postures]))
-    columns: dict[tuple[str, str], list[int]] = {}
-    for column, (i, k) in enumerate(pairs):
-        links = (whole.capsules[i].link, whole.capsules[k].link)
-        columns.setdefault(links, []).append(column)
+    links = [(whole.capsules[i].link, whole.capsules[k].link) for i, k in pairs]
     left_out = []
-    for (first, second), chosen in columns.items():
+    for first, second in dict.fromkeys(links):
+        chosen = [column for column, each in enumerate(links) if each == (first, second)]
         at_start, *nearest = distances[:, chosen].min(axis=1)
         reason = ""
         if model.parents[_joint(robot, second)] == _joint(robot, first):
@@ -210,13 +208,11 @@ def coal_geometry(
     """Describe capsules and pairs to coal, for `pinocchio.computeDistances`."""
     geometry = pin.GeometryModel()
     for i, capsule in enumerate(model.capsules):
-        a = np.array(capsule.a)
-        b = np.array(capsule.b)
-        length = float(np.linalg.norm(b - a))
-        shape = coal.Capsule(capsule.radius, length) if length else coal.Sphere(capsule.radius)
-        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), b - a).matrix()
+        center, rotation, half = box_around(capsule.a, capsule.b)
+        body = coal.Capsule(capsule.radius, 2.0 * half[2])
+        shape = body if half.any() else coal.Sphere(capsule.radius)
         frame = robot.model.frames[robot.frame_id(capsule.link)]
-        pose = frame.placement * pin.SE3(turn if length else np.eye(3), 0.5 * (a + b))
+        pose = frame.placement * pin.SE3(rotation, center)
         name = f"{capsule.link}_{i}"
         geometry.addGeometryObject(pin.GeometryObject(name, frame.parentJoint, pose, shape))
     for i, k in pairs:

@@ -372,5 +372,5 @@ def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
     assert Controller(robot, coarse, dt=1e-3).program.rate_limits is not None
     with pytest.raises(InvalidInputError, match=r"at 0\.08 s a step"):
         Controller(robot.with_limits(velocity=9.0), coarse, dt=0.08).control_step  # noqa: B018
-    with pytest.raises(InvalidInputError, match="jerk: joint 1: 0 is not above 0"):
+    with pytest.raises(InvalidInputError, match="jerk: joint 'iiwa7_joint_1': 0 is not above 0"):
         robot.with_limits(jerk=0.0)
