@@ -443,25 +443,32 @@ def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
     """Return the settings in JSON types, after a check of what the metrics need of them."""
     try:
         settings: dict[str, Any] = plain(record.settings)
-        limits = (*LIMITS, "torque_max") if len(record.torque) else LIMITS
-        lists = {f"settings[{key!r}]": (settings[key], sizes.get("n", 0)) for key in limits}
-        rows = settings.get("rows") or []
-        lists["settings['rows']"] = (rows, sizes.get("m", len(rows)))
-        lists["settings['check']['solvers']"] = (settings["check"]["solvers"], sizes.get("k", 0))
-        for name, (values, length) in lists.items():
+        for name, (values, length) in _lists(settings, record, sizes).items():
             if len(values) != length:
                 raise InvalidInputError(name, f"must hold {length} entries", values)
+        for key in ("dt", "duration", "tol"):
+            checks.not_negative(f"settings[{key!r}]", settings[key])
         checks.one_of("settings['mode']", settings["mode"], MODES)
-        for key in ("dt", "duration"):
-            checks.positive(f"settings[{key!r}]", settings[key])
-        missing = [key for key in ("robot", "status", "tol") if settings[key] is None]
+        checks.positive("settings['dt']", settings["dt"])
         pairs = settings["collisions"]["pairs"] if len(record.nearest) else ()
     except KeyError as error:
         raise InvalidInputError("settings", f"{error} is missing", record.settings) from error
     except TypeError as error:
         raise InvalidInputError("settings", str(error), record.settings) from error
-    if missing:
-        raise InvalidInputError("settings", f"{missing[0]} is missing", record.settings)
     if len(record.distance) != len(record.nearest) or record.nearest.max(initial=-1) >= len(pairs):
         raise InvalidInputError("nearest", "must count the pairs of the distances", record.nearest)
     return settings
+
+
+def _lists(
+    settings: Mapping[str, Any], record: Record, sizes: Mapping[str, int]
+) -> dict[str, tuple[Any, int]]:
+    """Return the lists of the settings, and the lengths that the arrays ask for."""
+    limits = (*LIMITS, "torque_max") if len(record.torque) else LIMITS
+    lists = {f"settings[{key!r}]": (settings[key], sizes.get("n", 0)) for key in limits}
+    rows = settings.get("rows") or []
+    solvers = settings["check"]["solvers"]
+    return lists | {
+        "settings['rows']": (rows, sizes.get("m", len(rows))),
+        "settings['check']['solvers']": (solvers, sizes.get("k", 0)),
+    }

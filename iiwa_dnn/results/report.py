@@ -179,22 +179,12 @@ def settings_lines(metrics: Mapping[str, Any]) -> str:
 
 
 def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
-    """Yield the results of a run: quantity, value in words, and unit.
-
-    A count of zero steps that a policy decided is left out, and a number that does not exist.
-    """
+    """Yield the results of a run: quantity, value in words, and unit."""
     settings = metrics["settings"]
     steps = f"{metrics['steps']:,} steps of {_text(metrics['dt_s'])} s"
     yield "run", f"{settings['robot']}, {settings['mode']}, {steps}", ""
     yield "cross-check", _checked(metrics), ""
-    for name, place, unit in _RESULTS:
-        value = _at(metrics, place)
-        if value is None or (value == 0 and place.startswith("incidents.")):
-            continue
-        shown = percent(value) if place == "path_completed" else _text(value)
-        if paper and place in paper:
-            shown += f" (the paper's {_text(paper[place])})"
-        yield name, shown, _unit(settings, place, unit)
+    yield from _numbers(metrics, paper or {})
     near = metrics.get("collisions")
     if near is not None:
         allowed = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
@@ -206,6 +196,21 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
     for verb, keys in _SPELLS.items():
         found = [spell for key in keys for spell in metrics.get("incidents", {}).get(key, ())]
         yield from _spells(verb, sorted(found, key=lambda spell: -spell["steps"]))
+
+
+def _numbers(metrics: Mapping[str, Any], paper: Mapping[str, float]) -> Iterator[Row]:
+    """Yield the numbers of a run, without those that do not exist and counts of no steps."""
+    settings = metrics["settings"]
+    for name, place, unit in _RESULTS:
+        value = _at(metrics, place)
+        if value is None or (value == 0 and place.startswith("incidents.")):
+            continue
+        if place.startswith("network_") and not _is_implicit(settings):
+            name = name.replace("linear systems", "network sub-steps")
+        shown = percent(value) if place == "path_completed" else _text(value)
+        if place in paper:
+            shown += f" (the paper's {_text(paper[place])})"
+        yield name, shown, _unit(settings, place, unit)
 
 
 def _at(metrics: Mapping[str, Any], place: str) -> Any:
@@ -283,6 +288,12 @@ def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
         return {"identity": unit, "inertia": "J"}.get(str(known.get("kinetic")), "")
     free = place == "max_orientation_error_rad" and known.get("orientation") == "none"
     return f"{unit} (orientation free)" if free else unit
+
+
+def _is_implicit(settings: Mapping[str, Any]) -> bool:
+    """Test whether each iteration of the network's integrator solves a linear system."""
+    integrator = settings.get("integrator")
+    return isinstance(integrator, Mapping) and integrator.get("name") == "ImplicitEuler"
 
 
 def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:

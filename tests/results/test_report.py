@@ -187,6 +187,15 @@ def test_units_depend_on_the_scheme(scheme, unit):
     assert "orientation free" not in summary(compute_metrics(make_record()))
 
 
+def test_work_is_called_what_it_is(tmp_path):
+    work = {"iterations": np.arange(10)}
+    for name, called in {"ImplicitEuler": "linear systems", "RK4": "network sub-steps"}.items():
+        record = make_record(**work, settings={"integrator": {"name": name}})
+        table = rows_of(report(record, tmp_path))
+        assert table[f"{called} a step, mean"] == ["4.5"]
+        assert table[f"{called} a step, most"] == ["9"]
+
+
 def test_cells_do_not_break_a_table(tmp_path):
     record = make_record(settings={"status": "a | b\nc", "motion": "x|y", "left": None})
     table = rows_of(report(record, tmp_path))
