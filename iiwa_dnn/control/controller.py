@@ -24,10 +24,10 @@ from iiwa_dnn.control.paths import (
     warn_if_unstable,
     warn_if_unwatched,
 )
-from iiwa_dnn.control.policies import POLICIES, Action, Policy
+from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
 from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import SAMPLE, WRITE, ControlStep
-from iiwa_dnn.control.yielding import guard_step, yield_step
+from iiwa_dnn.control.yielding import BRAKE, guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
@@ -220,16 +220,16 @@ class Controller:
         program.kinematics.update(joints)
         if program.refreshed:
             program.refresh(joints, state.past[LAST], layout.targets(row), t, self.dt)
-        asks = state.halted is None
-        network = self._warm_state(step) if asks else None
+        state.past[Q] = joints
+        asks = state.halted is None and not state.yields
+        network = self._warm_state(step)
         if network is not None:
             clock = (t, state.delay)
             if step.run(
-                row, step.arrays, joints, state.past, state.following, network, clock, begin
+                row, step.arrays, state.past, state.following, network, clock, begin, asks
             ) and self._is_stoppable(step):
                 return Command(row, layout)
             return self._yield(step, row)
-        state.past[Q] = joints
         return self._compute_in_python(step, row, t, begin, asks)
 
     def _compute_in_python(
@@ -293,11 +293,13 @@ class Controller:
         checks.finite_array("q", state.past[Q], (layout.dof,))
         checks.finite_array("target", targets, targets.shape)
         goes_on = halted is None and self.mode == "converged"
-        action = Action[self.policy.upper()] if goes_on else Action.STOP
+        action = int(Action[self.policy.upper()]) if goes_on else BRAKE
         n, m, p = layout.sizes
         network = self._warm_state(step)
         if network is None or not is_projection(self.solver.network):
             network = np.zeros(3 * n + m + p)
+        if state.relaxed.size != step.relaxed_size:
+            state.relaxed = np.zeros(step.relaxed_size)
         taken = yield_step(
             row,
             step.arrays,
@@ -305,9 +307,11 @@ class Controller:
             state.following,
             network,
             step.yielding,
-            int(action),
-            not goes_on,
+            state.relaxed,
+            action,
         )
+        kind = layout.view(row, "decision")[3]
+        state.yields = ProgramKind.OWN < kind < ProgramKind.STOPPED
         if halted is not None:
             layout.view(row, "blocking")[:] = halted
         return Command(row, layout, Action(taken))

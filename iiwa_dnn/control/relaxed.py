@@ -46,7 +46,7 @@ from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import VECTOR, outlived
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.layout import QPViews, Sizes, compiled, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import StepProgram
@@ -130,6 +130,16 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
     )
 
 
+def relaxed_size(sizes: Sizes) -> int:
+    """Count the numbers of the states with which relaxed programs of a step's sizes are solved.
+
+    They are of the search of the scaling factor, which has one variable more, and of the softened
+    program.
+    """
+    n, m, p = sizes
+    return (3 * n + 3 + m + p) + (3 * n + m + p)
+
+
 @compiled
 def settled(
     qp: QPViews,
@@ -161,12 +171,36 @@ def settled(
 
 
 @compiled
-def scaling_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vector) -> float:
+def settled_again(
+    qp: QPViews,
+    yielding: Yielding,
+    state: Vector,
+    point: Vector,
+    figures: Vector,
+    tolerances: float,
+) -> bool:
+    """Settle the network from its last state or, if need be, from a cold start, as `settled`.
+
+    Where that fails, the state is cold again.
+    """
+    for _ in range(2):
+        if settled(qp, yielding, state, point, figures, tolerances):
+            return True
+        for i in range(state.size):
+            state[i] = 0.0
+    return False
+
+
+@compiled
+def scaling_factor(
+    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector
+) -> float:
     """Compute the largest factor of the task velocity that the limits allow.
 
     Args:
         qp: The step's program, of n variables, m inequality and p equality rows.
         yielding: Which rows are the task's, and how the network settles.
+        state: State of the network that solves it, (3 n + 3 + m + p,), advanced.
         point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
             overwritten.
         figures: Figures of the step's answer, (5,), as of `settled`.
@@ -188,7 +222,7 @@ def scaling_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vect
             wider.A[j, qp.q.size] = -qp.b[j] / longest
             for i in range(qp.q.size):
                 wider.A[j, i] = qp.A[j, i]
-    factor: float = _search(wider, yielding, point, figures)
+    factor: float = _search(wider, yielding, state, point, figures)
     outlived(data)
     return factor
 
@@ -197,7 +231,8 @@ def scaling_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vect
 def retreat_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vector) -> float:
     """Compute the largest factor of the negative right-hand sides h that the other limits allow.
 
-    Arguments and result are those of `scaling_factor`; 1 if no row asks for motion.
+    Arguments and result are those of `scaling_factor`, from a cold start; 1 if no row asks for
+    motion.
     """
     asks = 0
     for j in range(qp.h.size):
@@ -211,7 +246,8 @@ def retreat_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vect
         if qp.h[j] < 0.0:
             wider.G[j, qp.q.size] = -qp.h[j]
             wider.h[j] = 0.0
-    factor: float = _search(wider, yielding, point, figures)
+    state = np.zeros(3 * wider.q.size + wider.h.size + wider.b.size)
+    factor: float = _search(wider, yielding, state, point, figures)
     outlived(data)
     return factor
 
@@ -259,11 +295,12 @@ def _begin_search(qp: QPViews, weights: Vector, wider: QPViews, longest: float) 
 
 
 @compiled
-def _search(wider: QPViews, yielding: Yielding, point: Vector, figures: Vector) -> float:
+def _search(
+    wider: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector
+) -> float:
     """Settle the network on a factor's search, and return the factor, or -1."""
     n = wider.q.size
-    state = np.zeros(3 * n + wider.h.size + wider.b.size)
-    if not settled(wider, yielding, state, point, figures, STAGNANT):
+    if not settled_again(wider, yielding, state, point, figures, STAGNANT):
         return -1.0
     factor: float = point[n - 1] / wider.ub[n - 1]
     return min(max(factor, 0.0), 1.0)

@@ -21,11 +21,13 @@ class ControllerState:
         following: The same for the next step, (5, n).
         delay: Time by which the reference's clock is behind [s].
         begun: Whether a first step was taken.
+        yields: Whether the task yielded at the last step.
+        relaxed: States of the networks of relaxed programs, (size,).
         halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
             step brakes; None: it did not.
     """
 
-    __slots__ = ("begun", "delay", "following", "halted", "past")
+    __slots__ = ("begun", "delay", "following", "halted", "past", "relaxed", "yields")
 
     def __init__(self, dof: int) -> None:
         """Start at rest."""
@@ -38,6 +40,8 @@ class ControllerState:
         """Forget the commands and the clock."""
         self.past[LAST:] = 0.0
         self.delay = 0.0
+        self.yields = False
+        self.relaxed: Vector = np.zeros(0)
         self.halted: Vector | None = None
 
     def send(self, dq: Vector) -> None:

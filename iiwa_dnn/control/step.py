@@ -19,10 +19,11 @@ from iiwa_dnn.control.command import (
     PLACEMENT,
     SOLVED,
     RowLayout,
+    RowViews,
     row_views,
 )
-from iiwa_dnn.control.relaxed import make_yielding
-from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
+from iiwa_dnn.control.relaxed import make_yielding, relaxed_size
+from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED
 from iiwa_dnn.control.yielding import with_limits
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
 from iiwa_dnn.networks.solver import DNNSolver
@@ -63,6 +64,7 @@ class ControlStep:
             and the whole program is, else a later one.
         run: `control_step`, entered without looking at the types of its arguments again.
         yielding: What relaxed programs need beside a step's own.
+        relaxed_size: Numbers of the states of their networks.
     """
 
     def __init__(
@@ -95,6 +97,7 @@ class ControlStep:
             check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
         self.run = self._entry()
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
+        self.relaxed_size = relaxed_size(program.sizes)
 
     @property
     def yields(self) -> bool:
@@ -138,8 +141,8 @@ class ControlStep:
         vector = types.float64[::1]
         matrix = types.float64[:, ::1]
         clock = types.UniTuple(types.float64, 2)
-        arguments = (vector, typeof(self.arrays), vector, matrix, matrix, vector, clock)
-        return control_step.compile((*arguments, types.int64))
+        arguments = (vector, typeof(self.arrays), matrix, matrix, vector, clock)
+        return control_step.compile((*arguments, types.int64, types.boolean))
 
 
 PATH = Signature(types.void, types.float64, VECTOR, VECTOR)
@@ -150,27 +153,27 @@ _enter_path = PATH.enter
 def control_step(
     row: Vector,
     arrays: ProgramArrays,
-    q: Vector,
     past: Matrix,
     following: Matrix,
     state: Vector,
     clock: tuple[float, float],
     begin: int,
+    asks: bool,
 ) -> bool:
     """Write targets, program and answer of one control step into a row.
 
     Args:
         row: The row, (width,); what comes before `begin` is in it already.
         arrays: Arrays of the loop.
-        q: Joint positions [rad], (dof,), at which the kinematics are.
-        past: `ControllerState.past`, (5, dof); the joint positions are noted in it.
+        past: `ControllerState.past`, (5, dof); the kinematics are at its joint positions.
         following: `ControllerState.following`, (5, dof), overwritten.
         state: The network's state, (size,), advanced.
         clock: Time, and time by which the reference's clock is behind [s].
         begin: `SAMPLE`, `WRITE` or `ANSWER`.
+        asks: Whether the network is asked: not if the task yielded at the last step.
 
     Returns:
-        False if the network did not settle or diverged; `state` is then as it was.
+        False if the network was not asked, did not settle or diverged; `state` is then as it was.
     """
     row = borrowed(row)
     past = borrowed(past)
@@ -186,7 +189,6 @@ def control_step(
     qp = qp_views(views.program, n, m, p)
     t, delay = clock
     for i in range(dof):
-        past[Q, i] = q[i]
         for k in range(PAST):
             views.past[k, i] = past[k, i]
     if begin == SAMPLE:
@@ -196,6 +198,11 @@ def control_step(
     for i in range(dof):
         views.bounds[0, i] = qp.lb[i]
         views.bounds[1, i] = qp.ub[i]
+    for i in range(PLACEMENT):
+        views.placement[i] = arrays.placements[table[0, 5], i]
+    clear_answer(views)
+    if not asks:
+        return False
     own = constants[table[network, 4] : table[network, 5]]
     address = table[network, 1]
     rates = table[network, 2]
@@ -206,12 +213,8 @@ def control_step(
     views.figures[2] = primal
     views.figures[3] = dual
     views.figures[4] = gap
-    views.decision[0] = 0.0
     views.decision[1] = 1.0
     views.decision[2] = status_of(primal, dual, gap, own, state)
-    views.decision[3] = 0.0
-    for i in range(PLACEMENT):
-        views.placement[i] = arrays.placements[table[0, 5], i]
     if views.decision[2] >= NOT_SETTLED:
         for i in range(state.size):
             state[i] = before[i]
@@ -223,6 +226,15 @@ def control_step(
         following[WANTED, i] = past[WANTED, i]
     following[REST, 0] = 0.0
     return True
+
+
+@compiled
+def clear_answer(views: RowViews) -> None:
+    """Note that no answer was asked for: no figures, and no decision."""
+    for k in range(views.figures.size):
+        views.figures[k] = 0.0
+    for k in range(views.decision.size):
+        views.decision[k] = 0.0
 
 
 @compiled

@@ -27,7 +27,7 @@ from iiwa_dnn.control.relaxed import (
     retreat_factor,
     scale_task,
     scaling_factor,
-    settled,
+    settled_again,
     soften_task,
 )
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
@@ -40,22 +40,26 @@ from iiwa_dnn.control.stopping import (
     next_velocity,
     stopping_time,
 )
+from iiwa_dnn.networks.integrators.base import BUDGET, TOLERANCE, enter_answer
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import outlived
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
-from iiwa_dnn.qp.residuals import point_residuals
+from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
-ATTEMPTS = 7
-"""Programs at most: the step's own with a budget of its own, the searches of two factors, the own
-program or the scaled one, the softened one, and the points nearest to two commands."""
+ATTEMPTS = 13
+"""Programs at most: the step's own with a budget of its own; from a last state and from a cold
+start the search of the scaling factor, the task as it is, the scaled and the softened program; the
+search of the retreat's factor; the points nearest to two commands, and the step's own once more."""
 
 NONE = int(Action.NONE)
 SLOW = int(Action.SLOW)
 RELAX = int(Action.RELAX)
 STOP = int(Action.STOP)
+BRAKE = -1
+"""No policy: the arm goes to rest."""
 
 OWN = int(ProgramKind.OWN)
 SCALED = int(ProgramKind.SCALED)
@@ -66,6 +70,10 @@ STOPPED = int(ProgramKind.STOPPED)
 CREEP = 0.1
 """Scaling factor below which the task is softened, and share of a period by which the clock then
 advances: an arm that rests in a singular or unreachable pose does not hold its target there."""
+
+NEAR = 5.0
+"""Linear systems for the step's own program from the answer within wider bounds: where its own
+bounds leave room for the task, that is near."""
 
 FEASIBLE = 1.0 - 1e-9
 """Scaling factor above which the step's own program has a solution."""
@@ -99,10 +107,10 @@ def yield_step(
     following: Matrix,
     state: Vector,
     yielding: Yielding,
+    relaxed: Vector,
     action: int,
-    brakes: bool,
 ) -> int:
-    """Answer a step for which the network has no answer.
+    """Answer a step for which the network has no answer, or whose task yielded at the last step.
 
     Args:
         row: The row, (width,), with program and targets; its figures are those of that attempt.
@@ -111,8 +119,9 @@ def yield_step(
         following: `ControllerState.following`, (5, dof), overwritten.
         state: The network's state, (size,), advanced.
         yielding: Weights, limits and settings of the relaxed programs.
-        action: Action that the policy asks for.
-        brakes: Whether the arm goes to rest, whatever has a solution.
+        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
+        action: Action that the policy asks for; `BRAKE`: the arm goes to rest, whatever has a
+            solution.
 
     Returns:
         The action that was taken.
@@ -130,12 +139,15 @@ def yield_step(
         views.blocking[k] = 0.0
     kind = STOPPED
     factor = 0.0
-    if not brakes:
-        _widen_bounds(qp, yielding.limits, past[Q])
-        kind, factor = _answer_relaxed(views, qp, yielding, state, action)
-    x = views.point[: qp.q.size].copy()
     rest = 0.0
-    if kind != STOPPED:
+    if action != BRAKE:
+        _widen_bounds(qp, yielding.limits, past[Q])
+        kind, factor = _answer_relaxed(views, qp, yielding, state, relaxed, action)
+    if kind == SCALED and factor == 1.0:
+        rest = _answer_own(views, qp, own, instant, yielding, state)
+        kind = OWN if rest >= 0.0 else SCALED
+    x = views.point[: qp.q.size].copy()
+    if kind != STOPPED and kind != OWN:
         limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
         rest = _approach(views, limits, instant, yielding, x)
         if _note_missing(views, x[:dof]) > 0:
@@ -155,6 +167,42 @@ def yield_step(
         following[LAST, i] = x[i]
     outlived(data)
     return int(views.decision[0])
+
+
+@compiled
+def _answer_own(
+    views: RowViews,
+    qp: QPViews,
+    own: QPViews,
+    instant: Instant,
+    yielding: Yielding,
+    state: Vector,
+) -> float:
+    """Answer a step's own program, which has a solution within wider bounds, within its own.
+
+    Returns:
+        Periods until a braking motion from the answer rests, 0 where none is asked for; -1 if there
+        is no answer, or the arm cannot stop from it: program and answer are then as before.
+    """
+    settings = yielding.settings.copy()
+    settings[BUDGET] = NEAR
+    tried = state.copy()
+    point = np.empty(views.point.size)
+    systems, _, primal, dual, gap = enter_answer(yielding.answer, own, 0, settings, tried, point)
+    views.figures[0] += systems
+    if not within(primal, dual, gap, settings[TOLERANCE]):
+        return -1.0
+    rest = _stopping_time(instant, yielding, point)
+    if rest < 0.0:
+        return rest
+    for k in range(point.size):
+        views.point[k] = point[k]
+    for k in range(state.size):
+        state[k] = tried[k]
+    for i in range(qp.q.size):
+        qp.lb[i] = own.lb[i]
+        qp.ub[i] = own.ub[i]
+    return rest
 
 
 @compiled
@@ -220,7 +268,12 @@ def _widen_bounds(qp: QPViews, limits: Vector, q: Vector) -> None:
 
 @compiled
 def _answer_relaxed(
-    views: RowViews, qp: QPViews, yielding: Yielding, state: Vector, action: int
+    views: RowViews,
+    qp: QPViews,
+    yielding: Yielding,
+    state: Vector,
+    relaxed: Vector,
+    action: int,
 ) -> tuple[int, float]:
     """Turn a step's program into the first relaxed one that has a solution, and answer it.
 
@@ -229,7 +282,8 @@ def _answer_relaxed(
     """
     n = qp.q.size
     point = np.empty(2 * n + 2 + qp.h.size + qp.b.size)
-    factor = scaling_factor(qp, yielding, point, views.figures)
+    size = 3 * n + 3 + qp.h.size + qp.b.size
+    factor = scaling_factor(qp, yielding, relaxed[:size], point, views.figures)
     note_blocking(point, n, qp.h.size, 1, views.blocking)
     if factor >= FEASIBLE and _answered(views, qp, yielding, state):
         return OWN if yielding.limits.size == 0 else SCALED, 1.0
@@ -243,7 +297,7 @@ def _answer_relaxed(
             qp.b[j] = asked[j]
     if action == STOP:
         return STOPPED, 0.0
-    return _answer_softened(views, qp, yielding, state, point), 0.0
+    return _answer_softened(views, qp, yielding, relaxed[size:], point), 0.0
 
 
 @compiled
@@ -267,14 +321,9 @@ def _answer_softened(
 
 @compiled
 def _answered(views: RowViews, qp: QPViews, yielding: Yielding, state: Vector) -> bool:
-    """Let the network answer a program from a cold start; it is cold again where that fails."""
-    for i in range(state.size):
-        state[i] = 0.0
-    if settled(qp, yielding, state, views.point, views.figures, 1.0):
-        return True
-    for i in range(state.size):
-        state[i] = 0.0
-    return False
+    """Let a network answer a program from its last state (size,) or a cold start."""
+    found: bool = settled_again(qp, yielding, state, views.point, views.figures, 1.0)
+    return found
 
 
 @compiled
@@ -349,9 +398,7 @@ def _approach(
         else:
             _step_towards(limits, instant, yielding, x)
         nearest_within(limits, x, yielding, views.figures)
-    if not yielding.stop:
-        return 0.0
-    rest: float = enter_stopping_time(yielding.stop, instant, yielding, x[: instant.q.size])
+    rest = _stopping_time(instant, yielding, x)
     if rest < 0.0:
         rest = _make_stoppable(views, limits, instant, yielding, x)
     return rest
@@ -364,6 +411,18 @@ def _has_couplings(weights: Vector) -> bool:
     for j in range(weights.size):
         count += weights[j] == 0.0
     return count > 0
+
+
+@compiled
+def _stopping_time(instant: Instant, yielding: Yielding, x: Vector) -> float:
+    """Compute the periods of the motion to rest from a command x (n,); 0 if none is asked for.
+
+    It is -1 if the motion breaks a limit, or brings a pair too near.
+    """
+    if not yielding.stop:
+        return 0.0
+    rest: float = enter_stopping_time(yielding.stop, instant, yielding, x[: instant.q.size])
+    return rest
 
 
 @compiled
@@ -419,11 +478,11 @@ def _make_stoppable(
     for share in TOWARDS:
         for i in range(dof):
             x[i] = brake[i] + share * (wanted[i] - brake[i])
-        rest: float = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
+        rest = _stopping_time(instant, yielding, x)
         if rest >= 0.0:
             return rest
     if not _has_couplings(yielding.weights) and _go_away(limits, instant.last, x[:dof]):
-        rest = enter_stopping_time(yielding.stop, instant, yielding, x[:dof])
+        rest = _stopping_time(instant, yielding, x)
         if rest >= 0.0:
             return rest
     for i in range(dof):

@@ -13,7 +13,7 @@ from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import BUDGET
 from iiwa_dnn.control.step import ANSWER, ControlStep, control_step, sample_targets
-from iiwa_dnn.control.yielding import ATTEMPTS, guard_step, yield_step
+from iiwa_dnn.control.yielding import ATTEMPTS, BRAKE, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
@@ -40,12 +40,14 @@ _FIELDS = {
     "past": "joint positions, last command, the one before, and a wanted one",
     "following": "the same for the next step",
     "state": "of the network",
+    "relaxed": "of the networks of relaxed programs",
     "jacobian": "joint Jacobian, row by row",
     "placements": "of the frames",
     "inertia": "joint-space inertia matrix",
     "constants": "of the parts: obstacles that move are among them",
     "steps": "steps since controller_init",
     "delay": "time by which the reference's clock is behind [s]",
+    "yields": "1 if the task yielded at the last step",
 }
 """Numbers of the struct in C, in their order; those of length 0 are left out."""
 
@@ -98,10 +100,9 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "past_size": lengths["past"],
         "size": _DOUBLE * sum(lengths.values()),
         "actions": _actions(),
-        "policy": _action(controller).value,
+        "policy": _action(controller),
         "cold": f"    double cold[{3 * n + m + p}] = {{0}};\n" * (not is_warm),
         "state": "c->state" if is_warm else "cold",
-        "brakes": str(controller.mode != "converged").lower(),
         "guard": _GUARD * bool(step.yielding.stop),
         "point_size": 2 * n + m + p,
         "active_size": n + m,
@@ -175,8 +176,10 @@ def _lengths(controller: Controller, moves: bool) -> dict[str, int]:
         "placements": PLACEMENT * controller.robot.model.nframes,
         "inertia": dof * dof * program.needs_inertia,
         "constants": step.arrays.constants.size * moves,
+        "relaxed": step.relaxed_size,
         "steps": 1,
         "delay": 1,
+        "yields": 1,
     }
 
 
@@ -208,11 +211,11 @@ def _translate_step(
     following = _array("following", 5, dof)
     targets = _array("targets", len(program.target_frames), TARGET_SIZE)
     t = Value(DOUBLE, "t")
-    own = [_array("state", lengths["state"]), clock, integer(ANSWER)]
-    translator.function(control_step, [row, arrays, _array("q", dof), past, following, *own])
+    own = [_array("state", lengths["state"]), clock, integer(ANSWER), Value(BOOL, "asks")]
+    translator.function(control_step, [row, arrays, past, following, *own])
     n, m, p = program.sizes
-    policy = [integer(_action(controller)), Value(BOOL, "brakes")]
-    own = [_array("state", 3 * n + m + p), yielding, *policy]
+    relaxed = _array("relaxed", lengths["relaxed"])
+    own = [_array("state", 3 * n + m + p), yielding, relaxed, integer(_action(controller))]
     translator.function(yield_step, [row, arrays, past, following, *own])
     data = _array("data", program.data_size)
     translator.function(write_program, [data, arrays, past, targets, t])
@@ -311,10 +314,10 @@ def _systems(controller: Controller) -> int:
     return own + (ATTEMPTS - 1) * BUDGET
 
 
-def _action(controller: Controller) -> Action:
-    """Return the action that a controller's policy asks for at a step without a solution."""
+def _action(controller: Controller) -> int:
+    """Return the code of what a controller's policy asks for at a step without a solution."""
     if controller.mode == "continuous":
-        return Action.STOP
+        return BRAKE
     return {"slow": Action.SLOW, "relax": Action.RELAX}.get(controller.policy, Action.STOP)
 
 

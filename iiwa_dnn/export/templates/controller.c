@@ -14,8 +14,6 @@
 #define AT_DECISION @at_decision@
 #define AT_DQ @at_dq@
 #define POLICY @policy@
-/* Whether a network that diverged brings the arm to rest, whatever has a solution. */
-#define BRAKES @brakes@
 #define ANSWER 2
 
 /* The size that the header states. */
@@ -77,10 +75,11 @@ int controller_step(struct controller *c, const double *q, const double *target,
     }
 @move@    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
     const bool solved = control_step(
-        c->row, &arrays, q, c->past, c->following, c->state, clock, ANSWER)@guard@;
+        c->row, &arrays, c->past, c->following, c->state, clock, ANSWER, c->yields == 0.0)@guard@;
     if (!solved) {
 @cold@        action = yield_step(
-            c->row, &arrays, c->past, c->following, @state@, &yielding, POLICY, BRAKES);
+            c->row, &arrays, c->past, c->following, @state@, &yielding, c->relaxed, POLICY);
+        c->yields = c->row[AT_DECISION + 3] > 0.0 && c->row[AT_DECISION + 3] < 4.0;
     }
     if (action != 0) {
         c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);
