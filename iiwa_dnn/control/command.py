@@ -9,7 +9,6 @@ import numpy as np
 from numba import types
 
 from iiwa_dnn.control.policies import Action, ProgramKind, Resolution
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR
 from iiwa_dnn.qp.layout import Sizes, inlined, offsets
@@ -144,22 +143,13 @@ class RowLayout:
         """Return the targets of a row, (k, 18)."""
         return row[self.columns["targets"]].reshape(-1, TARGET_SIZE)
 
-    def fill(self, row: Vector, qp: QP, solution: Solution) -> None:
-        """Write a program and its answer into a row (width,), without an action.
-
-        Raises:
-            InvalidInputError: The program has another shape than the others.
-        """
-        if qp.sizes != self.sizes:
-            problem = f"built a program of sizes {qp.sizes} after others of {self.sizes}"
-            raise InvalidInputError("scheme", problem)
+    def fill(self, row: Vector, solution: Solution) -> None:
+        """Write the answer to the program of a row (width,) into it, without an action."""
         figures = (solution.iterations, solution.network_time, *solution.residuals)
-        self.view(row, "program")[:] = qp.data
         self.view(row, "point")[:] = solution.point
         self.view(row, "figures")[:] = figures
         status = STATUSES.index(solution.status)
         self.view(row, "decision")[:] = (Action.NONE, 1.0, status, ProgramKind.OWN)
-        self.view(row, "bounds").reshape(BOUNDS, -1)[:] = (qp.lb[: self.dof], qp.ub[: self.dof])
 
     def bound_multipliers(self, rows: Matrix, tol: float) -> Matrix:
         """Return the multipliers of the joints' active bounds, (..., dof), as `Solution.z_box`.

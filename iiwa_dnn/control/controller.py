@@ -26,7 +26,7 @@ from iiwa_dnn.control.paths import (
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
 from iiwa_dnn.control.state import LAST, ControllerState, Q
-from iiwa_dnn.control.step import SAMPLE, WRITE, ControlStep
+from iiwa_dnn.control.step import ControlStep
 from iiwa_dnn.control.yielding import BRAKE, guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
@@ -36,12 +36,14 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.base import targets_of
 from iiwa_dnn.schemes.foreign import composed
-from iiwa_dnn.schemes.program import StepProgram, write_program
+from iiwa_dnn.schemes.program import StepProgram
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
 
 _FLOAT = np.dtype(np.float64)
+
+_NOTHING = np.zeros(0)
 
 
 class Controller:
@@ -212,10 +214,9 @@ class Controller:
         if not _is_plain(q, layout.dof):
             joints = checks.finite_array("q", q, (layout.dof,))
         row = np.empty(layout.width)
-        begin = step.begin
-        if begin != SAMPLE or target is not None:
+        samples = step.samples and target is None
+        if not samples:
             layout.targets(row)[:] = self.targets(t - state.delay, target)
-            begin = WRITE
         program = step.program
         program.kinematics.update(joints)
         if program.refreshed:
@@ -223,48 +224,35 @@ class Controller:
         state.past[Q] = joints
         asks = state.halted is None and not state.yields
         network = self._warm_state(step)
-        if network is not None:
-            clock = (t, state.delay)
-            if step.run(
-                row, step.arrays, state.past, state.following, network, clock, begin, asks
-            ) and self._is_stoppable(step):
-                return Command(row, layout)
-            return self._yield(step, row)
-        return self._compute_in_python(step, row, t, begin, asks)
-
-    def _compute_in_python(
-        self, step: ControlStep, row: Vector, t: float, begin: int, asks: bool
-    ) -> Command:
-        """Compute the first command, one without a compiled form, or one whose task yields."""
-        layout = step.layout
-        program = step.program
-        state = self._state
-        solver = self.solver
-        if begin == SAMPLE:
-            layout.targets(row)[:] = self.targets(t - state.delay)
-        targets = layout.targets(row)
-        data = layout.view(row, "program")
-        write_program(data, step.arrays, state.past, targets, float(t))
-        qp = QP.from_data(data, layout.sizes)
-        if not asks:
-            layout.view(row, "decision")[:] = 0.0  # the network was not asked
-            layout.view(row, "figures")[:] = 0.0
-            return self._yield(step, row)
-        if self.mode == "converged":
-            solution = solver.solve(qp)
-            solved = solution.status is Status.SOLVED
-        else:
-            solution = solver.advance(qp, self.dt)
-            solved = solution.status is Status.ADVANCED
-        layout.fill(row, qp, solution)
-        layout.view(row, "placement")[:] = program.placement
-        layout.view(row, "past")[:] = state.past[: LAST + 2].ravel()
-        dq = layout.view(row, "dq")
-        dq[:] = layout.view(row, "point")[: layout.dof]
-        state.send(dq)
+        solved = step.run(
+            row,
+            step.arrays,
+            state.past,
+            state.following,
+            _NOTHING if network is None else network,
+            (t, state.delay),
+            samples,
+            asks and network is not None,
+        )
+        if asks and network is None:
+            solved = self._ask(step, row)
         if solved and self._is_stoppable(step):
             return Command(row, layout)
         return self._yield(step, row)
+
+    def _ask(self, step: ControlStep, row: Vector) -> bool:
+        """Ask a network that is not compiled, or has no state yet, for the answer to a program."""
+        layout = step.layout
+        qp = QP.from_data(layout.view(row, "program"), layout.sizes)
+        if self.mode == "converged":
+            solution = self.solver.solve(qp)
+        else:
+            solution = self.solver.advance(qp, self.dt)
+        layout.fill(row, solution)
+        dq = layout.view(row, "dq")
+        dq[:] = layout.view(row, "point")[: layout.dof]
+        self._state.send(dq)
+        return solution.status in (Status.SOLVED, Status.ADVANCED)
 
     def _warm_state(self, step: ControlStep) -> Vector | None:
         """Return the state from which a compiled network starts, (size,); None if it has none."""

@@ -47,9 +47,6 @@ from iiwa_dnn.schemes.program import (
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
 
-SAMPLE, WRITE, ANSWER = range(3)
-"""Where a control step begins: at the targets, at the program, at the answer."""
-
 
 class ControlStep:
     """A control step laid out for a scheme, references and a network.
@@ -59,9 +56,8 @@ class ControlStep:
         layout: Columns of the rows that are written.
         arrays: Arrays that stay the same from step to step.
         has_network: Whether the network is compiled.
-        samples: Whether all references are compiled.
-        begin: Stage at which the compiled step begins: `SAMPLE` if all references are compiled
-            and the whole program is, else a later one.
+        samples: Whether the compiled step samples the targets: all references are compiled, and no
+            part is refreshed by the targets of a step.
         run: `control_step`, entered without looking at the types of its arguments again.
         yielding: What relaxed programs need beside a step's own.
         relaxed_size: Numbers of the states of their networks.
@@ -90,8 +86,7 @@ class ControlStep:
         names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
-        self.samples = self._add_paths(references)
-        self.begin = SAMPLE if self.samples and not program.reads_targets else WRITE
+        self.samples = self._add_paths(references) and not program.reads_targets
         self.arrays = program.arrays(dt)
         if program.rate_limits is not None:
             check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
@@ -142,7 +137,7 @@ class ControlStep:
         matrix = types.float64[:, ::1]
         clock = types.UniTuple(types.float64, 2)
         arguments = (vector, typeof(self.arrays), matrix, matrix, vector, clock)
-        return control_step.compile((*arguments, types.int64, types.boolean))
+        return control_step.compile((*arguments, types.boolean, types.boolean))
 
 
 PATH = Signature(types.void, types.float64, VECTOR, VECTOR)
@@ -157,19 +152,19 @@ def control_step(
     following: Matrix,
     state: Vector,
     clock: tuple[float, float],
-    begin: int,
+    samples: bool,
     asks: bool,
 ) -> bool:
     """Write targets, program and answer of one control step into a row.
 
     Args:
-        row: The row, (width,); what comes before `begin` is in it already.
+        row: The row, (width,), with the targets unless they are sampled.
         arrays: Arrays of the loop.
         past: `ControllerState.past`, (5, dof); the kinematics are at its joint positions.
         following: `ControllerState.following`, (5, dof), overwritten.
         state: The network's state, (size,), advanced.
         clock: Time, and time by which the reference's clock is behind [s].
-        begin: `SAMPLE`, `WRITE` or `ANSWER`.
+        samples: Whether the references are asked for the targets.
         asks: Whether the network is asked: not if the task yielded at the last step.
 
     Returns:
@@ -191,10 +186,9 @@ def control_step(
     for i in range(dof):
         for k in range(PAST):
             views.past[k, i] = past[k, i]
-    if begin == SAMPLE:
+    if samples:
         sample_targets(arrays, t - delay, views.targets)
-    if begin <= WRITE:
-        assemble(step_views(arrays, past, views.targets, t), arrays, qp)
+    assemble(step_views(arrays, past, views.targets, t), arrays, qp)
     for i in range(dof):
         views.bounds[0, i] = qp.lb[i]
         views.bounds[1, i] = qp.ub[i]

@@ -12,7 +12,7 @@ from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import BUDGET
-from iiwa_dnn.control.step import ANSWER, ControlStep, control_step, sample_targets
+from iiwa_dnn.control.step import ControlStep, control_step, sample_targets
 from iiwa_dnn.control.yielding import ATTEMPTS, BRAKE, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
@@ -26,7 +26,7 @@ from iiwa_dnn.qp.layout import Sizes, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import prove_point
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.program import StepProgram, write_program
+from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _DOUBLE = 8
@@ -211,14 +211,12 @@ def _translate_step(
     following = _array("following", 5, dof)
     targets = _array("targets", len(program.target_frames), TARGET_SIZE)
     t = Value(DOUBLE, "t")
-    own = [_array("state", lengths["state"]), clock, integer(ANSWER), Value(BOOL, "asks")]
+    own = [_array("state", lengths["state"]), clock, Value(BOOL, "samples"), Value(BOOL, "asks")]
     translator.function(control_step, [row, arrays, past, following, *own])
     n, m, p = program.sizes
     relaxed = _array("relaxed", lengths["relaxed"])
     own = [_array("state", 3 * n + m + p), yielding, relaxed, integer(_action(controller))]
     translator.function(yield_step, [row, arrays, past, following, *own])
-    data = _array("data", program.data_size)
-    translator.function(write_program, [data, arrays, past, targets, t])
     if step.yielding.stop:
         translator.function(guard_step, [arrays, past, following, yielding])
     if step.samples:

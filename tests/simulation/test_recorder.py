@@ -138,7 +138,8 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
         point = np.concatenate([x, z, z_box])
         answer = Solution(point, qp.sizes, Status.SOLVED, 0, 0.0, 0.0, 0.0, 0.0)
         row = np.zeros(layout.width)
-        layout.fill(row, qp, answer)
+        layout.view(row, "program")[:] = qp.data
+        layout.fill(row, answer)
         assert_array_equal(layout.row_multipliers(row, 1e-9), active_rows)
         assert_array_equal(layout.bound_multipliers(row[np.newaxis], 1e-9), [active_bounds])
 

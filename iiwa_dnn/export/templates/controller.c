@@ -14,7 +14,6 @@
 #define AT_DECISION @at_decision@
 #define AT_DQ @at_dq@
 #define POLICY @policy@
-#define ANSWER 2
 
 /* The size that the header states. */
 typedef char controller_size[sizeof(struct controller) == CONTROLLER_SIZE ? 1 : -1];
@@ -73,9 +72,8 @@ int controller_step(struct controller *c, const double *q, const double *target,
     for (int i = 0; i < CONTROLLER_DOF; i++) {
         c->past[i] = q[i];
     }
-@move@    write_program(c->row, &arrays, c->past, c->row + AT_TARGETS, t);
-    const bool solved = control_step(
-        c->row, &arrays, c->past, c->following, c->state, clock, ANSWER, c->yields == 0.0)@guard@;
+@move@    const bool solved = control_step(
+        c->row, &arrays, c->past, c->following, c->state, clock, false, c->yields == 0.0)@guard@;
     if (!solved) {
 @cold@        action = yield_step(
             c->row, &arrays, c->past, c->following, @state@, &yielding, c->relaxed, POLICY);
