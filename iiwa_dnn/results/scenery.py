@@ -43,12 +43,9 @@ _NO_CONTACT: dict[str, Any] = {"contype": 0, "conaffinity": 0}
 
 
 def obstacles_of(record: Record) -> list[Obstacle]:
-    """Return the obstacles of a record that can be drawn: no half-spaces.
-
-    A motion that is a function is not in the record; such an obstacle is shown where it began.
-    """
+    """Return the obstacles of a record that can be drawn: no half-spaces."""
     tables = record.settings.get("collisions", {}).get("obstacles", [])
-    made = [make_obstacle({k: v for k, v in t.items() if k != "motion"}) for t in tables]
+    made = map(make_obstacle, tables)
     return [obstacle for obstacle in made if not isinstance(obstacle, HalfSpace)]
 
 
