@@ -17,14 +17,12 @@ from iiwa_dnn.control.yielding import ATTEMPTS, BRAKE, guard_step, yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kinematics import kinematics_code
 from iiwa_dnn.export.translator import Translator
-from iiwa_dnn.export.values import BOOL, DOUBLE, INT, Array, Known, Tuple, Value, integer
+from iiwa_dnn.export.values import BOOL, DOUBLE, Array, Known, Tuple, Value, integer
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.qp import Vector
-from iiwa_dnn.qp.layout import Sizes, qp_views
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.proof import prove_point
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.step import TARGET_SIZE
@@ -105,14 +103,12 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "state": "c->state" if is_warm else "cold",
         "guard": _GUARD * bool(step.yielding.stop),
         "point_size": 2 * n + m + p,
-        "active_size": n + m,
         "arrays": arrays_set,
         "yielding": yielding_set,
         "move_function": _move_function(translator, motions, lengths["constants"]),
         "move": "    move_obstacles(c->constants, t);\n" * bool(motions),
         "start": "    start_constants(c->constants);\n" * bool(motions),
         "code": translator.text(),
-        "bound_code": _bound(program.sizes, program.data_size),
         "kinematics": kinematics_code(robot, program.kinematics.frame_ids, program.needs_inertia),
         "inertia": ", c->inertia" * program.needs_inertia,
         "has_reference": step.samples,
@@ -221,18 +217,6 @@ def _translate_step(
         translator.function(guard_step, [arrays, past, following, yielding])
     if step.samples:
         translator.function(sample_targets, [arrays, t, targets])
-
-
-def _bound(sizes: Sizes, data_size: int) -> str:
-    """Translate the proof of an answer, as a text of its own."""
-    n, m, p = sizes
-    translator = Translator()
-    views = translator.function(qp_views, [_array("data", data_size), *map(integer, sizes)])
-    assert views is not None
-    active = Value(Array(INT, (n + m,)), "active")
-    point = _array("point", 2 * n + m + p)
-    translator.function(prove_point, [Value(views.result, "qp", pointer=True), point, active])
-    return translator.text()
 
 
 def _handed(

@@ -27,7 +27,6 @@ STEPS = 500
 _FILES = (
     "controller.h",
     "controller.c",
-    "controller_bound.c",
     "test_controller.c",
     "Makefile",
     "example.c",

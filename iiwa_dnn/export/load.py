@@ -82,15 +82,6 @@ class ExportedController:
         action = step(self._memory, _pointer(joints), _pointer(wanted), _pointer(dq))
         return ExportedCommand(dq, int(action))
 
-    def bound(self) -> float:
-        """Bound the distance of the last command from the exact solution of its program [rad/s].
-
-        All rounding is counted; inf where nothing is proven.
-        """
-        prove = self._library.controller_bound
-        prove.restype = ctypes.c_double
-        return float(prove(self._memory))
-
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)
@@ -121,8 +112,7 @@ def load(
         raise FileError(folder / "controller.h", one_line(error)) from error
     with tempfile.TemporaryDirectory() as place:
         library = Path(place) / "controller.so"
-        sources = ["controller.c", "controller_bound.c"]
-        _compile(folder, library, (*flags, "-shared", "-fPIC"), sources, compiler)
+        _compile(folder, library, (*flags, "-shared", "-fPIC"), ["controller.c"], compiler)
         # The system keeps the file as long as it is loaded.
         return ExportedController(ctypes.CDLL(str(library)), header)
 

@@ -22,7 +22,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.proof import point_of, prove_block
+from iiwa_dnn.qp.proof import point_of, prove_point
 from iiwa_dnn.qp.residuals import largest_residuals
 
 OPTIONS: dict[str, dict[str, Any]] = {
@@ -292,13 +292,11 @@ def _proven(
 ) -> tuple[Vector, Vector, Vector, NDArray[np.int8]]:
     """Prove answers (N, n) or (N, 2 n + m + p): bounds, nothing on the objective, residuals."""
     n, m, p = sizes
-    count = len(answers)
-    bounds = np.full(count, np.nan)
-    points = np.zeros((count, 2 * n + m + p))
+    points = np.zeros((len(answers), 2 * n + m + p))
     points[:, : answers.shape[1]] = answers
-    reasons = np.empty(count, dtype=np.int64)
-    active = np.empty((count, n + m), dtype=np.int64)
-    prove_block(np.ascontiguousarray(programs), n, m, points, bounds, reasons, active)
+    qps = [QP.from_data(data, sizes) for data in programs]
+    proofs = [prove_point(qp, point) for qp, point in zip(qps, points, strict=True)]
+    bounds = np.array([proof.bound for proof in proofs])
     proven = bounds < np.inf
     judge = np.where(proven, 0, -1).astype(np.int8)
-    return bounds, np.full(count, np.nan), np.where(proven, 0.0, np.inf), judge
+    return bounds, np.full(bounds.size, np.nan), np.where(proven, 0.0, np.inf), judge

@@ -1,14 +1,34 @@
 r"""Proof of an answer: a rigorous bound on its distance from the exact solution of the program.
 
-The active set of the answer gives a square linear system, whose exact solution
-`iiwa_dnn.qp.enclosure` encloses. Where all other rows and bounds hold at every point of the
-enclosure and the multipliers of the active ones have the right sign, that exact solution is the
-program's, for its cost is convex (`iiwa_dnn.qp.curvature`). Where a multiplier's interval reaches
-:math:`\varepsilon_j` beyond zero, it is the exact solution :math:`u` of a program with another
-cost vector, :math:`\|\Delta q\|_1 \le \sum_j \varepsilon_j \|C_j\|_1`, and the program's own is
-within :math:`\|\Delta q\| / \sigma` of it, for a curvature :math:`\sigma` along the equality rows.
+The active set of the answer gives a square linear system. With an approximate inverse R of its
+matrix K and a guess :math:`\tilde u`,
 
-docs/proof.md has the theorem, with all roundings.
+.. math::
+
+    u - \tilde u = R (r - K \tilde u) + (I - R K)(u - \tilde u) ,
+
+so that for row sums :math:`\alpha_i` of :math:`|I - R K|` below one, :math:`\alpha = \max_i
+\alpha_i`, :math:`\rho \ge |r - K \tilde u|` and :math:`\beta = |R| \rho`
+
+.. math::
+
+    |u_i - \tilde u_i| \le \beta_i + \alpha_i \, \max_k \beta_k / (1 - \alpha) .
+
+Where all other rows and bounds hold at every point of this enclosure and the multipliers of the
+active ones have the right sign, its exact solution is the program's, for its cost is convex. Where
+a multiplier's interval reaches :math:`\varepsilon_j` beyond zero, it is the exact solution of a
+program with another cost vector, :math:`\|\Delta q\|_1 \le \sum_j \varepsilon_j \|C_j\|_1`, and the
+program's own is within :math:`\|\Delta q\| / \sigma` of it, for a curvature :math:`\sigma` along
+the equality rows: a Cholesky factor of :math:`P + \varrho A^T A - s I` that runs to its end shows
+it.
+
+Rounding is counted by the standard model, for which it makes no difference in which order a sum is
+taken and whether a product and a sum are rounded once or twice. docs/proof.md has the theorem.
+
+Sources: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken",
+Computing 4 (1969); S. M. Rump, "Verification methods: rigorous results using floating-point
+arithmetic", Acta Numerica 19 (2010), and "Verification of positive definiteness", BIT Numerical
+Mathematics 46 (2006).
 """
 
 from __future__ import annotations
@@ -20,33 +40,36 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.certificates import infeasibility_radius
-from iiwa_dnn.qp.curvature import least_curvature
-from iiwa_dnn.qp.enclosure import IntVector, enclose, evaluate, symmetric_part, unit_of
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled, larger, qp_views
+from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
 if TYPE_CHECKING:
     import qpsolvers
 
+IntVector = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
 ROUNDS = 5
 """Active sets that are tried, each out of the signs of the one before."""
 
-PROVEN, WEAK, FLAT, DEPENDENT, UNDECIDED, NOT_CONVEX, CROSSED, FAR, INFEASIBLE = range(9)
+CONTRACTION = 0.5
+"""Largest row sum of abs(I - R K) with which an enclosure is taken."""
 
-REASONS = (
-    "",
-    "a multiplier may be zero: the bound is that of the curvature, the active set is not proven",
-    "a multiplier may be zero, and no curvature of the cost is shown along the equality rows",
-    "the active rows are linearly dependent, or nearly so",
-    "the sign of an inactive row's slack is not decided",
-    "the cost is not shown to be convex",
-    "a lower bound exceeds its upper bound, or is no number",
-    "the answer is not finite",
-    "proven: no point satisfies the constraints",
-)
-"""Reasons by their number; the first two come with a finite bound."""
+_ROUNDING = 2.0**-53
+_TINY = 1e-290
+"""Bound on what underflow takes from a sum."""
+_SHARE = 0.9
+"""Share of the smallest eigenvalue that is shown as the curvature."""
 
+WEAK = "a multiplier may be zero: the bound is that of the curvature, the active set is not proven"
+FLAT = "a multiplier may be zero, and no curvature of the cost is shown along the equality rows"
+DEPENDENT = "the active rows are linearly dependent, or nearly so"
+UNDECIDED = "the sign of an inactive row's slack is not decided"
+NOT_CONVEX = "the cost is not shown to be convex"
+CROSSED = "a lower bound exceeds its upper bound, or is no number"
+FAR = "the answer is not finite"
+INFEASIBLE = "proven: no point satisfies the constraints"
 NO_ANSWER = (
     "the solver found no answer, and handed over no certificate that there is none; "
     "iiwa_dnn.solve_problem looks for one, which is proven in place of an answer"
@@ -93,23 +116,19 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     if not isinstance(qp, QP):
         qp = QP.from_qpsolvers(qp)
     n, m, p = qp.sizes
-    active = np.zeros((1, n + m), dtype=np.int64)
+    nothing = np.zeros(n + m, dtype=np.int64)
     extras: Any = getattr(solution, "extras", None) or {}
     certificate: Any = getattr(solution, "certificate", extras.get("certificate"))
     is_farkas = certificate is not None and np.size(certificate) == n + m + p
-    if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: m + p]) == np.inf:
-        return Proof(np.inf, active[0], REASONS[INFEASIBLE])
+    if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: p + m]) == np.inf:
+        return Proof(np.inf, nothing, INFEASIBLE)
     if "last_x" in extras:
-        return Proof(np.inf, active[0], f"there is no answer: {extras['status']}")
+        return Proof(np.inf, nothing, f"there is no answer: {extras['status']}")
     unsolved = not (isinstance(solution, Solution) or getattr(solution, "found", True))
     if unsolved and solution.x is None:
-        return Proof(np.inf, active[0], NO_ANSWER)
-    point = point_of(solution, qp)
-    bound = np.empty(1)
-    reason = np.empty(1, dtype=np.int64)
-    prove_block(qp.data[np.newaxis], n, m, point[np.newaxis], bound, reason, active)
-    words = NO_ANSWER if unsolved and bound[0] == np.inf else REASONS[reason[0]]
-    return Proof(float(bound[0]), active[0], words)
+        return Proof(np.inf, nothing, NO_ANSWER)
+    proof = prove_point(qp, point_of(solution, qp))
+    return proof._replace(reason=NO_ANSWER) if unsolved and proof.bound == np.inf else proof
 
 
 def point_of(solution: Any, qp: QP) -> Vector:
@@ -134,251 +153,176 @@ def point_of(solution: Any, qp: QP) -> Vector:
     return point
 
 
-@compiled
-def prove_block(
-    programs: Matrix,
-    n: int,
-    m: int,
-    points: Matrix,
-    bounds: Vector,
-    reasons: IntVector,
-    active: NDArray[np.int64],
-) -> None:
-    """Prove N answers of programs with n variables and m inequality rows.
+class _Rows:
+    """All rows of a program as ``rows x <= limits``, the first ones equalities.
 
-    Args:
-        programs: A `QP.data` in each row, (N, size).
-        n: Number of variables.
-        m: Number of inequality rows.
-        points: The answers ``[x | y | z | z_box]``, (N, 2 n + m + p).
-        bounds: Bound of each answer, (N,), overwritten.
-        reasons: Number of its reason in `REASONS`, (N,), overwritten.
-        active: Its active set, (N, n + m), overwritten.
-    """
-    for k in range(bounds.size):
-        qp = qp_views(programs[k], n, m, points.shape[1] - 2 * n - m)
-        bounds[k], reasons[k] = prove_point(qp, points[k], active[k])
-
-
-@compiled
-def prove_point(qp: QPViews, point: Vector, active: IntVector) -> tuple[float, int]:
-    """Bound the distance of a point from the exact solution.
-
-    Args:
-        qp: The program.
-        point: ``[x | y | z | z_box]``, (2 n + m + p,).
-        active: The active set as in `Proof`, (n + m,), overwritten.
-
-    Returns:
-        The bound, inf where none is proven, and the number of the reason in `REASONS`.
-    """
-    S = np.empty((qp.q.size, qp.q.size))
-    u = np.empty(qp.q.size + qp.b.size + qp.h.size)
-    error = np.empty(qp.q.size + qp.b.size + qp.h.size)
-    following = np.empty(qp.q.size + qp.h.size, np.int64)
-    symmetric_part(qp.P, S)
-    _guess(qp, point, active)
-    for attempt in range(ROUNDS):
-        _begin(qp, point, active, u)
-        if not enclose(qp, S, active, u, error):
-            return np.inf, DEPENDENT
-        left, opened, weak, missing = _judge(qp, S, u, error, active, following)
-        if left < 0:
-            return np.inf, CROSSED
-        if opened == 0 and (left == 0 or attempt == ROUNDS - 1):
-            return _distance(qp, S, point, u, error, weak, missing)
-        for k in range(active.size):
-            active[k] = following[k]
-    return np.inf, UNDECIDED
-
-
-@compiled
-def _guess(qp: QPViews, point: Vector, active: IntVector) -> None:
-    """Write the active set of a point (2 n + m + p,): multipliers that are above their slacks."""
-    n = qp.q.size
-    p = qp.b.size
-    m = qp.h.size
-    for i in range(n):
-        multiplier = point[n + p + m + i]
-        active[i] = 0
-        if qp.lb[i] == qp.ub[i] or multiplier > qp.ub[i] - point[i]:
-            active[i] = 1
-        elif -multiplier > point[i] - qp.lb[i]:
-            active[i] = -1
-    for j in range(m):
-        slack = qp.h[j]
-        for i in range(n):
-            slack -= qp.G[j, i] * point[i]
-        active[n + j] = 1 if point[n + p + j] > slack else 0
-
-
-@compiled
-def _begin(qp: QPViews, point: Vector, active: IntVector, u: Vector) -> None:
-    """Write a first ``[x | y | z]``, (n + p + m,): the point with the active bounds in it."""
-    n = qp.q.size
-    p = qp.b.size
-    for k in range(u.size):
-        u[k] = point[k]
-    for i in range(n):
-        if active[i] > 0:
-            u[i] = qp.ub[i]
-        elif active[i] < 0:
-            u[i] = qp.lb[i]
-    for j in range(qp.h.size):
-        if active[n + j] == 0:
-            u[n + p + j] = 0.0
-
-
-Signs = tuple[int, int, int, float]
-"""How many multipliers are negative; how many slacks are not shown to be positive; how many
-multipliers are not; and by how much in all, times the absolute values of their rows."""
-
-
-@compiled
-def _judge(
-    qp: QPViews, S: Matrix, u: Vector, error: Vector, active: IntVector, following: IntVector
-) -> Signs:
-    """Look at the signs of all slacks and multipliers over an enclosure.
-
-    Args:
-        qp: The program.
+    Attributes:
+        rows: ``[A; G; I; -I]``, (k, n).
+        limits: ``[b; h; ub; -lb]``, (k,).
+        equal: Rows that hold as equations: those of A, and upper bounds that are lower ones too.
+        usable: Rows that limit anything: a lower bound that is an upper one is counted there.
+        unit: Bound on the relative rounding of all sums, (k + n + 16) 2^-53.
         S: Symmetric part of P, (n, n).
-        u: Center of the enclosure, ``[x | y | z]`` of size n + p + m.
-        error: Its radii, likewise.
-        active: The active set, (n + m,).
-        following: The active set that the signs ask for, (n + m,), overwritten.
+    """
+
+    def __init__(self, qp: QP) -> None:
+        n, m, p = qp.sizes
+        eye = np.eye(n)
+        self.rows = np.vstack([qp.A, qp.G, eye, -eye])
+        self.limits = np.concatenate([qp.b, qp.h, qp.ub, -qp.lb])
+        fixed = qp.lb == qp.ub
+        self.equal = np.concatenate([np.ones(p, bool), np.zeros(m, bool), fixed, np.zeros(n, bool)])
+        self.usable = self.limits != np.inf
+        self.usable[p + m + n :] &= ~fixed
+        self.unit = (self.limits.size + n + 16) * _ROUNDING
+        both = qp.P + qp.P.T
+        # An entry that is too small to be halved becomes NaN, and nothing is proven.
+        self.S = np.where(0.5 * both + 0.5 * both == both, 0.5 * both, np.nan)
+
+
+def prove_point(qp: QP, point: Vector) -> Proof:
+    """Bound the distance of a point ``[x | y | z | z_box]``, (2 n + m + p,), from the solution."""
+    n, m, _ = qp.sizes
+    if not (qp.lb <= qp.ub).all():
+        return Proof(np.inf, np.zeros(n + m, dtype=np.int64), CROSSED)
+    with np.errstate(all="ignore"):
+        return _proved(qp, _Rows(qp), point)
+
+
+def _proved(qp: QP, rows: _Rows, point: Vector) -> Proof:
+    """Try one active set after another, from that of a point (2 n + m + p,)."""
+    n, m, p = qp.sizes
+    x = point[:n]
+    multipliers = np.concatenate([point[n:], -point[n + p + m :]])
+    active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
+    active[p + m + n :] &= ~active[p + m : p + m + n]
+    for attempt in range(ROUNDS):
+        kept = _independent(rows, active)
+        enclosure = _enclose(rows.S, qp.q, rows.rows[kept], rows.limits[kept], rows.unit)
+        if enclosure is None:
+            return Proof(np.inf, _signed(qp, active), DEPENDENT)
+        u, error = enclosure
+        joins = rows.usable & ~active & ~_is_clear(rows, u[:n], error[:n])
+        uncertain = np.where(rows.equal[kept], -np.inf, error[n:] - u[n:])
+        leaving = kept[uncertain > 2.0 * error[n:]]
+        if not joins.any() and (not leaving.size or attempt == ROUNDS - 1):
+            distance = (1.0 + rows.unit) * (np.abs(x - u[:n]) + error[:n])
+            missing = np.maximum(uncertain, 0.0) @ np.abs(rows.rows[kept]).sum(axis=1)
+            weak = bool((uncertain >= 0.0).any())
+            bound, reason = _bound(qp, rows, float(distance.max()), float(missing), weak)
+            return Proof(bound, _signed(qp, active), reason)
+        active = active | joins
+        active[leaving] = False
+    return Proof(np.inf, _signed(qp, active), UNDECIDED)
+
+
+def _signed(qp: QP, active: Mask) -> IntVector:
+    """Return an active set of all rows (k,) as in `Proof`, (n + m,)."""
+    _, m, p = qp.sizes
+    upper, lower = np.split(active[p + m :].astype(np.int64), 2)
+    return np.concatenate([upper - lower, active[p : p + m].astype(np.int64)])
+
+
+def _independent(rows: _Rows, active: Mask) -> IntVector:
+    """List the active rows, without those that say 0 = 0 or repeat another one to the last bit."""
+    used = np.flatnonzero(active)
+    lines = np.column_stack([rows.rows[used], rows.limits[used]])
+    _, first = np.unique(lines, axis=0, return_index=True)
+    kept = np.sort(first)
+    independent: IntVector = used[kept[np.any(lines[kept] != 0.0, axis=1)]]
+    return independent
+
+
+def _is_clear(rows: _Rows, x: Vector, error: Vector) -> Mask:
+    """Test which rows (k,) hold with a margin at all points within an error of x, (n,) both."""
+    spread = rows.unit * np.abs(x) + error
+    reach = np.abs(rows.rows) @ spread + rows.unit * np.abs(rows.limits) + _TINY
+    clear: Mask = rows.limits - rows.rows @ x > (1.0 + rows.unit) * reach
+    return clear
+
+
+def _enclose(
+    S: Matrix, q: Vector, C: Matrix, d: Vector, unit: float
+) -> tuple[Vector, Vector] | None:
+    """Solve [[S, C^T], [C, 0]] u = [-q; d] and bound the error of each unknown.
+
+    Args:
+        S: Symmetric part of P, (n, n).
+        q: Cost vector, (n,).
+        C: Active rows, (k, n).
+        d: Their limits, (k,).
+        unit: Bound on the relative rounding of a sum.
 
     Returns:
-        The signs; the first number is -1 if two bounds cross.
+        Center and radii, (n + k,) both; None if it is not shown that there is exactly one solution.
     """
-    unit = unit_of(qp)
-    spread = np.empty(u.size)
-    value = np.empty(u.size)
-    reach = np.empty(u.size)
-    for k in range(u.size):
-        spread[k] = unit * abs(u[k]) + error[k]
-    evaluate(qp, S, u, spread, value, reach)
-    for k in range(active.size):
-        following[k] = active[k]
-    left, opened, weak, missing = _judge_bounds(qp, u, error, value, reach, following)
-    if left < 0:
-        return left, opened, weak, missing
-    released, added, doubtful, lacking = _judge_rows(qp, u, error, value, reach, following)
-    missing = (1.0 + unit) * (missing + lacking)
-    return left + released, opened + added, weak + doubtful, missing
+    k = d.size
+    K = np.block([[S, C.T], [C, np.zeros((k, k))]])
+    r = np.concatenate([-q, d])
+    try:
+        R = np.linalg.inv(K)
+    except np.linalg.LinAlgError:
+        return None
+    u = R @ r
+    u += R @ (r - K @ u)
+    size = np.abs(R)
+    defect = np.abs(np.eye(r.size) - R @ K).sum(axis=1)
+    alpha = (1.0 + unit) * (defect + unit * (1.0 + size @ np.abs(K).sum(axis=1)) + _TINY)
+    largest = float(alpha.max())
+    if not largest < CONTRACTION:
+        return None
+    rho = np.abs(r - K @ u) + unit * (np.abs(K) @ np.abs(u) + np.abs(r)) + _TINY
+    beta = (1.0 + unit) * (size @ ((1.0 + unit) * rho) + _TINY)
+    error = (1.0 + unit) * (beta + alpha * beta.max() / (1.0 - largest))
+    return (u, error) if np.isfinite(error).all() else None
 
 
-@compiled
-def _judge_rows(
-    qp: QPViews, u: Vector, error: Vector, value: Vector, reach: Vector, following: IntVector
-) -> Signs:
-    """Look at the signs of the rows' slacks and multipliers, as `_judge` does at all.
+def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> tuple[float, str]:
+    """Bound the distance from the program's solution, by that from an enclosure's; and the reason.
 
-    All vectors are those of `_judge`, (n + p + m,), and `following` (n + m,) is updated.
+    Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
     """
-    left = 0
-    opened = 0
-    weak = 0
-    missing = 0.0
-    n = qp.q.size
-    p = qp.b.size
-    for j in range(qp.h.size):
-        at = n + p + j
-        if following[n + j] != 0 and error[at] == 0.0 and u[at] >= 0.0:
-            continue  # it repeats another active row, and keeps the multiplier that it came with
-        if following[n + j] != 0:
-            sign = _sign(u[at], error[at])
-            if sign <= 0:
-                weak += 1
-                missing += larger(0.0, error[at] - u[at]) * _length(qp.G, j)
-            if sign < 0:
-                left += 1
-                following[n + j] = 0
-        elif qp.h[j] < np.inf and not value[at] + reach[at] < 0.0:
-            opened += 1
-            following[n + j] = 1
-    return left, opened, weak, missing
+    unit = rows.unit
+    if not weak:
+        if _curvature(rows.S, qp.A, unit, 0.0) < 0.0:
+            return np.inf, NOT_CONVEX
+        return (distance, "") if distance < np.inf else (np.inf, FAR)
+    curvature = _curvature(rows.S, qp.A, unit, _SHARE)
+    if not curvature > 0.0:
+        convex = _curvature(rows.S, qp.A, unit, 0.0) >= 0.0
+        return np.inf, FLAT if convex else NOT_CONVEX
+    bound = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
+    return (bound, WEAK) if bound < np.inf else (np.inf, FAR)
 
 
-@compiled
-def _judge_bounds(
-    qp: QPViews, u: Vector, error: Vector, value: Vector, reach: Vector, following: IntVector
-) -> Signs:
-    """Look at the signs of the bounds' slacks and multipliers, as `_judge` does at all.
+def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
+    r"""Bound the curvature of the cost along the steps that keep the equality rows.
 
-    All vectors begin with the n variables, (size,).
+    Args:
+        S: Symmetric part of P, (n, n).
+        A: Equality rows, (p, n).
+        unit: Bound on the relative rounding of a sum.
+        share: Share of the smallest eigenvalue to be shown; 0 asks for semidefiniteness alone,
+            to which a variable without cost does no harm.
+
+    Returns:
+        sigma with :math:`d^T P d \ge \sigma \|d\|^2` where A d = 0; negative if none is shown.
     """
-    left = 0
-    opened = 0
-    weak = 0
-    missing = 0.0
-    for i in range(qp.q.size):
-        side = following[i]
-        if not qp.lb[i] <= qp.ub[i]:
-            return -1, opened, weak, missing
-        if side == 0:
-            if not u[i] + error[i] < qp.ub[i]:
-                following[i] = 1
-                opened += 1
-            elif not u[i] - error[i] > qp.lb[i]:
-                following[i] = -1
-                opened += 1
-        elif qp.lb[i] < qp.ub[i]:
-            multiplier = -side * value[i]
-            sign = _sign(multiplier, reach[i])
-            if sign <= 0:
-                weak += 1
-                missing += larger(0.0, reach[i] - multiplier)
-            if sign < 0:
-                left += 1
-                following[i] = 0
-    return left, opened, weak, missing
-
-
-@compiled
-def _sign(center: float, radius: float) -> int:
-    """Return the sign of all numbers of an interval; 0 if they have none in common."""
-    if center - radius > 0.0:
-        return 1
-    return -1 if center + radius < 0.0 else 0
-
-
-@compiled
-def _length(rows: Matrix, j: int) -> float:
-    """Add up the absolute values of row j of a matrix (k, n)."""
-    total = 0.0
-    for i in range(rows.shape[1]):
-        total += abs(rows[j, i])
-    return total
-
-
-@compiled
-def _distance(
-    qp: QPViews,
-    S: Matrix,
-    point: Vector,
-    u: Vector,
-    error: Vector,
-    weak: int,
-    missing: float,
-) -> tuple[float, int]:
-    """Bound the distance of a point from the solution, as `prove_point` returns it.
-
-    S is (n, n), the others begin with the n variables, (size,).
-    """
-    curvature = least_curvature(qp, S, weak > 0)
-    if not curvature >= 0.0:
-        return np.inf, NOT_CONVEX
-    unit = unit_of(qp)
-    largest = 0.0
-    for i in range(qp.q.size):
-        largest = larger(largest, (1.0 + unit) * (abs(point[i] - u[i]) + error[i]))
-    reason = PROVEN
-    if weak > 0:
-        if not curvature > 0.0:
-            return np.inf, FLAT
-        reason = WEAK
-        largest = (1.0 + unit) * (largest + missing / curvature)
-    if not largest < np.inf:
-        return np.inf, FAR
-    return largest, reason
+    trace = float(np.trace(S))
+    squares = float((A * A).sum())
+    for weight in (0.0, trace / squares) if squares > 0.0 else (0.0,):
+        M = S + weight * (A.T @ A)
+        filling = np.where(np.any(S != 0.0, axis=1), 0.0, trace + (trace == 0.0))
+        if share == 0.0:
+            M = M + np.diag(filling)
+        size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
+        loss = 2.0 * unit * float(size) + _TINY
+        shift = 2.0 * loss
+        try:
+            if share > 0.0:
+                shift = max(shift, share * float(np.linalg.eigvalsh(M)[0]))
+            np.linalg.cholesky(M - shift * np.eye(len(S)))
+            return (1.0 - unit) * (shift - loss)
+        except np.linalg.LinAlgError:
+            continue
+    return -1.0

@@ -134,7 +134,7 @@ MADE = {**{k: v for k, v in SETTINGS.items() if k not in SHOWN_BY_OTHERS}, **COM
 def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str], Path]) -> None:
     controller, q0 = MADE[name]()
     folder = folders(name)
-    run("gcc", *WARNINGS, "-fsyntax-only", folder / "controller.c", folder / "controller_bound.c")
+    run("gcc", *WARNINGS, "-fsyntax-only", folder / "controller.c")
     exported = loaded(folder, QUICKEST)
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     dt = controller.dt
@@ -467,37 +467,3 @@ def test_errors_of_loading(heart: Path, exported: ExportedController, tmp_path: 
 
 FUSED = ("-O1", "-fexpensive-optimizations", "-mfma", "-ffp-contract=fast")
 """Flags with which gcc rounds a product and its sum at once; it does not without optimization."""
-
-
-@pytest.mark.parametrize(
-    ("name", "flags"),
-    [("velocity limits active", QUICK), ("velocity limits active", FUSED), ("two arms", QUICK)],
-    ids=["velocity limits active", "fused", "two arms"],
-)
-def test_the_bound_of_a_command_is_pythons(
-    name: str, flags: tuple[str, ...], folders: Callable[[str], Path]
-) -> None:
-    controller, q0 = MADE[name]()
-    exported = load(folders(name), flags, "gcc")
-    assert exported.bound() == np.inf  # no command yet
-    controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
-    layout = controller.layout
-    q = q0.copy()
-    proven = 0
-    for k in range(60):
-        targets = controller.targets(k * controller.dt - controller.delay)
-        dq, _ = exported.step(q, targets)
-        row = np.array(exported._memory[: layout.width])
-        point = layout.view(row, "point").copy()
-        point[: dq.size] = dq
-        qp = iiwa_dnn.QP.from_data(layout.view(row, "program").copy(), layout.sizes)
-        bound = iiwa_dnn.prove(qp, _solution(point, layout.sizes)).bound
-        # The centers of both enclosures differ by the rounding of another order.
-        np.testing.assert_allclose(exported.bound(), bound, rtol=1e-6)
-        proven += bound < 1e-6
-        q = q + controller.dt * dq
-    assert proven == 60
-
-
-def _solution(point: np.ndarray, sizes: tuple[int, int, int]) -> iiwa_dnn.Solution:
-    return iiwa_dnn.Solution(point, sizes, iiwa_dnn.Status.SOLVED, 1, 0.0, 0.0, 0.0, 0.0)

@@ -34,12 +34,6 @@ void controller_init(struct controller *c);
  * command does all that the tasks ask, else an action.
  */
 int controller_step(struct controller *c, const double *q, const double *target, double *dq);
-
-/* Bound the largest distance [rad/s] of a joint of the last command from the exact solution of its
- * program, the one in the row: the step's own, or the relaxed one of an action. All rounding is
- * counted; INFINITY where nothing is proven. On request: in controller_bound.c.
- */
-double controller_bound(const struct controller *c);
 @target_declaration@
 #ifdef __cplusplus
 }
