@@ -25,20 +25,15 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.qp import Vector
-from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.costs import KINETICS, CyclicMotion, Kinetic, KineticEnergy
+from iiwa_dnn.schemes.costs import CyclicMotion, Kinetic, KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
 
 Tracking = Literal["paper", "next"]
 TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
-
-RANK_TOLERANCE = 1e-10
-"""Singular values below this share of the largest count as zero: the block's rows are dependent."""
 
 
 @dataclass(frozen=True)
@@ -83,10 +78,7 @@ class DoubleIndicator(Scheme):
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
-        checks.one_of("orientation", self.orientation, ORIENTATIONS)
-        checks.one_of("kinetic", self.kinetic, KINETICS)
-        for name in ("drift_gain", "position_gain", "orientation_gain"):
-            checks.not_negative(name, getattr(self, name))
+        checks.not_negative("drift_gain", self.drift_gain)
         checks.positive("limit_gain", self.limit_gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
         if self.next_gain is not None:
@@ -96,10 +88,10 @@ class DoubleIndicator(Scheme):
         if isinstance(self.extra_limits, Limit):
             problem = f"must be a tuple of limits, not {self.extra_limits!r}"
             raise InvalidInputError("extra_limits", problem, self.extra_limits)
-        gains = (self.position_gain, self.orientation_gain)
+        tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
         if self.ahead:
-            gains = (np.inf if self.next_gain is None else self.next_gain,) * 2
-        tasks = tip_tasks(*gains, self.orientation)
+            gain = np.inf if self.next_gain is None else self.next_gain
+            tasks = [replace(task, gain=gain) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)
@@ -138,17 +130,8 @@ class PseudoInverse(Scheme):
     orientation: Orientation = "so3"
 
     def __post_init__(self) -> None:
-        for name in ("position_gain", "orientation_gain"):
-            checks.not_negative(name, getattr(self, name))
-        checks.one_of("orientation", self.orientation, ORIENTATIONS)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
         self._compose([KineticEnergy()], tasks, [])
-
-    def velocity(self, conf: Configuration, target: Target) -> Vector:
-        """Compute the closed form A^+ b [rad/s], (n,), by numpy's singular value decomposition."""
-        qp = self.build_qp(conf, target)
-        velocity: Vector = np.linalg.pinv(qp.A, rcond=RANK_TOLERANCE) @ qp.b
-        return velocity
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
@@ -159,6 +142,9 @@ def tip_tasks(
     position_gain: float, orientation_gain: float, orientation: Orientation
 ) -> list[PositionTask | OrientationTask]:
     """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
+    checks.one_of("orientation", orientation, ORIENTATIONS)
+    checks.not_negative("position_gain", position_gain)
+    checks.not_negative("orientation_gain", orientation_gain)
     position = PositionTask(gain=position_gain)
     if orientation == "none":
         return [position]

@@ -27,11 +27,16 @@ class _Builder:
         return self._qp
 
 
-class BuiltCost(Cost):
-    """Cost of the programs that an object builds."""
+class _Built:
+    """Base of the parts of such programs."""
 
-    def __init__(self, builder: _Builder) -> None:
+    def __init__(self, builder: _Builder, rows: int = 0) -> None:
         self._builder = builder
+        self.rows = rows
+
+
+class BuiltCost(_Built, Cost):
+    """Cost of the programs that an object builds."""
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""
@@ -39,12 +44,8 @@ class BuiltCost(Cost):
         return qp.P, qp.q
 
 
-class BuiltRows(Task):
+class BuiltRows(_Built, Task):
     """Equality rows of the programs that an object builds."""
-
-    def __init__(self, builder: _Builder, rows: int) -> None:
-        self._builder = builder
-        self.rows = rows
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
@@ -52,12 +53,8 @@ class BuiltRows(Task):
         return qp.A, qp.b
 
 
-class BuiltLimits(Limit):
+class BuiltLimits(_Built, Limit):
     """Inequality rows and bounds of the programs that an object builds."""
-
-    def __init__(self, builder: _Builder, rows: int) -> None:
-        self._builder = builder
-        self.rows = rows
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,)."""

@@ -1,7 +1,7 @@
 """Names of a controller's limits, and the kind of a joint's bound.
 
-With acceleration or jerk limits a bound is made of all of them at once. It is said to be of the
-first limit, in the order of `iiwa_dnn.naming.KINDS`, without which it would be another one.
+With acceleration or jerk limits a bound is made of all of them at once. It is said to be of the one
+whose own bound it equals, or of a position.
 """
 
 from typing import Any
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import Matrix
-from iiwa_dnn.schemes.motion_limits import joint_bounds
+from iiwa_dnn.schemes.motion_limits import SHARE, approach
 from iiwa_dnn.schemes.program import StepProgram
 
 Signs = NDArray[Any]
@@ -62,7 +62,7 @@ class LimitNames:
 
 
 def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, dt: float) -> int:
-    """Tell the kind of one bound.
+    """Tell the kind of one bound: that of the first candidate which it equals, else a position.
 
     Args:
         value: The bound [rad/s].
@@ -72,40 +72,17 @@ def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, 
         i: The joint.
         dt: Control period [s].
     """
-    q = past[0, i]
-    last = past[1, i]
-    before = past[2, i]
-    velocity = limits[2, i]
+    _, _, velocity, acceleration, jerk, braking = limits[:, i]
+    last = sign * past[1, i]
+    fastest = velocity
+    if jerk < np.inf:  # the velocity after which the acceleration can still be taken back in time
+        unit = dt * dt * min(jerk, braking / dt / SHARE, velocity / (dt * dt) / SHARE)
+        fastest = last + unit * approach((velocity - last) / unit)
+    candidates = {
+        VELOCITY: fastest,
+        ACCELERATION: last + acceleration * dt,
+        JERK: 2.0 * last - sign * past[2, i] + jerk * dt * dt,
+    }
     close = _CLOSE * velocity
-    rates = (velocity, limits[3, i], limits[4, i], limits[5, i])
-    if rates[1] == np.inf and rates[2] == np.inf:
-        return VELOCITY if abs(value) >= velocity - close else POSITION
-    above = limits[1, i] - q
-    below = q - limits[0, i]
-    if abs(_side(sign, last, before, above, below, rates, dt) - value) > close:
-        return POSITION  # a tighter bound, of another limit
-    for kind in range(POSITION, JERK):
-        if kind == POSITION:
-            above = np.inf
-            below = np.inf
-        elif kind == VELOCITY:
-            rates = (np.inf, *rates[1:])
-        else:
-            rates = (np.inf, np.inf, rates[2], np.inf)
-        if not abs(_side(sign, last, before, above, below, rates, dt) - value) <= close:
-            return kind
-    return JERK
-
-
-def _side(
-    sign: float,
-    last: float,
-    before: float,
-    above: float,
-    below: float,
-    rates: tuple[float, float, float, float],
-    dt: float,
-) -> float:
-    """Compute `joint_bounds` on one side."""
-    lower, upper = joint_bounds(last, before, above, below, rates, dt)
-    return upper if sign > 0.0 else lower
+    found = [kind for kind, bound in candidates.items() if abs(bound - sign * value) <= close]
+    return found[0] if found else POSITION
