@@ -42,7 +42,7 @@ $(PACKAGES): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRA
 
 $(STAMP): $(PACKAGES)
 	@echo 'setup: compiling the numerical code, once; two or three minutes'
-	$(VENV_PYTHON) -m iiwa_dnn warm-up
+	$(VENV_PYTHON) scripts/warm_up.py
 	@touch $@
 
 heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart

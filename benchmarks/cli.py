@@ -4,33 +4,38 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
+import tyro
 from tqdm import tqdm
 
 from iiwa_dnn import checks
-from iiwa_dnn.app.command_line import print_lines, run_command
-from iiwa_dnn.app.folders import claim_folder, save_settings
-from iiwa_dnn.app.options import RunOptions
+from iiwa_dnn.app.command_line import guard
 from iiwa_dnn.errors import MissingDependencyError
+from iiwa_dnn.files import prepare_folder
 
 
 @dataclass(frozen=True)
-class BenchSettings(RunOptions):
+class BenchOptions:
+    """Options of every measurement that leaves a folder."""
+
+    out: Path = Path("runs/bench")  # folder of the results
+    quiet: bool = False  # print nothing but where the report is
+
+
+@dataclass(frozen=True)
+class BenchSettings(BenchOptions):
     """Measure this package's solver beside DAQP, quadprog, PIQP, ProxQP and OSQP."""
 
-    command: ClassVar[str] = "solvers"
-    out: Path = Path("runs/bench")  # folder of the results
     steps: int = 5000  # number of steps in a stream of programs
     cold: int = 1000  # number of random programs of each size
     batch: int = 100_000  # number of programs in the batch
 
 
 @dataclass(frozen=True)
-class BenchLoopSettings(RunOptions):
+class BenchLoopSettings(BenchOptions):
     """Measure the control loop beside its peers', whole runs, start-up and memory."""
 
-    command: ClassVar[str] = "loop"
     out: Path = Path("runs/bench_loop")  # folder of the results
     steps: int = 10_000  # number of steps beside the peers
     period: float = 1e-3  # control period of these steps [s]
@@ -43,10 +48,9 @@ class BenchLoopSettings(RunOptions):
 
 
 @dataclass(frozen=True)
-class BenchTargetsSettings(RunOptions):
+class BenchTargetsSettings(BenchOptions):
     """Measure six kinds of targets beside Pink and mink: error, jerk, frozen steps and times."""
 
-    command: ClassVar[str] = "targets"
     out: Path = Path("runs/bench_targets")  # folder of the results
     steps: int = 10_000  # number of steps of each loop towards each kind of target
     period: float = 1e-3  # control period [s]
@@ -56,21 +60,20 @@ class BenchTargetsSettings(RunOptions):
 def _targets(options: BenchTargetsSettings) -> int:
     checks.integer("--steps", options.steps, 50)
     checks.positive("--period", options.period)
-    folder = claim_folder(options)
+    folder = prepare_folder(options.out)
     from benchmarks.target_table import STREAMS, measure_targets, save
 
     with tqdm(total=options.steps * len(STREAMS), unit="step", disable=options.quiet) as bar:
         python = None if options.mink_python is None else Path(options.mink_python)
         rows = measure_targets(options.steps, options.period, python, bar.update)
     print(save(rows, options.period, folder))
-    save_settings(options, folder)
     return 0
 
 
 def _solvers(options: BenchSettings) -> int:
     for name in ("steps", "cold", "batch"):
         checks.integer(f"--{name}", getattr(options, name), 50)
-    folder = claim_folder(options)
+    folder = prepare_folder(options.out)
     # Here, since the peers are in an extra.
     from benchmarks.measurement import CHUNK, measure_batch, measure_known, measure_stream
     from benchmarks.peers import PEERS
@@ -105,8 +108,6 @@ def _solvers(options: BenchSettings) -> int:
         for entry in measured:
             print(f"{entry['name']:20} {verdict(entry['rows'])}")
     print(written[0])
-    save_settings(options, folder)
-    print_lines(options)
     return 0
 
 
@@ -116,7 +117,7 @@ def _loop(options: BenchLoopSettings) -> int:
     checks.positive("--duration", options.duration)
     checks.positive("--dt", options.dt)
     checks.positive("--period", options.period)
-    folder = claim_folder(options)
+    folder = prepare_folder(options.out)
     try:
         from benchmarks.control import measure_own_part, measure_runs, measure_steps, profile_step
     except ImportError as error:
@@ -147,20 +148,18 @@ def _loop(options: BenchLoopSettings) -> int:
         "memory": measure_memory(0.2 * options.duration),
     }
     print(save_loop_report(results, folder)[0])
-    save_settings(options, folder)
-    print_lines(options)
     return 0
 
 
-def _command(kind: type[Any], run: Callable[[Any], int]) -> Callable[..., int]:
+def _command(kind: type[Any], run: Callable[[Any], int], name: str) -> Callable[..., int]:
     """Return a command: its words (None: the process's own) and its name in messages to code."""
 
-    def command(arguments: Sequence[str] | None = None, prog: str = f"bench_{kind.command}") -> int:
-        return run_command(kind, prog, run, arguments)
+    def command(arguments: Sequence[str] | None = None, prog: str = f"bench_{name}") -> int:
+        return guard(prog, lambda: run(tyro.cli(kind, args=arguments, prog=prog)))
 
     return command
 
 
-bench_solvers = _command(BenchSettings, _solvers)
-bench_loop = _command(BenchLoopSettings, _loop)
-bench_targets = _command(BenchTargetsSettings, _targets)
+bench_solvers = _command(BenchSettings, _solvers, "solvers")
+bench_loop = _command(BenchLoopSettings, _loop, "loop")
+bench_targets = _command(BenchTargetsSettings, _targets, "targets")

@@ -122,6 +122,12 @@ def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
 
 
+def parse_toml(text: str) -> dict[str, Any]:
+    """Read TOML out of a text; what is not TOML is a ValueError."""
+    tables: dict[str, Any] = tomllib.loads(text)
+    return tables
+
+
 def plain(value: object) -> Any:
     """Return a value in the types that JSON has, as it would come back from a JSON file.
 

@@ -2,7 +2,7 @@
 
 import sys
 
-from iiwa_dnn.app.main import run
+from iiwa_dnn.app.main import main
 
 if __name__ == "__main__":
-    sys.exit(run("track", prog="track_heart"))
+    sys.exit(main(["track", *sys.argv[1:]]))

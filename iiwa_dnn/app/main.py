@@ -1,54 +1,141 @@
 """``iiwa-dnn COMMAND``: the command line of the package."""
 
 import sys
+import time
 from collections.abc import Sequence
-from contextlib import suppress
+from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from importlib.metadata import version
-from typing import Annotated, Any, Union
+from pathlib import Path
+from typing import Annotated, Any
 
-import tyro
+from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional
+from tyro.extras import subcommand_cli_from_dict
 
-from iiwa_dnn.app.command_line import fail, run_command
-from iiwa_dnn.app.options import COMMANDS
-from iiwa_dnn.errors import NotFoundError
+from iiwa_dnn.app.command_line import guard
+from iiwa_dnn.app.words import GROUP, Count, Export, Flag, Number, Physics, SweepWords, Track, shown
 
 PROG = "iiwa-dnn"
+Names = Annotated[tuple[str, ...], shown("NAME ...")]
+Sweeping = Annotated[SweepWords, GROUP]
+EVERY = SweepWords()
+
+
+def paper(
+    sweep: Sweeping = EVERY,
+    *,
+    quick: Flag = False,
+    seeds: Count = None,
+    duration: Number = None,
+    weight: Number = None,
+) -> int:
+    """Run every experiment of the paper, each number beside the paper's.
+
+    Args:
+        sweep: words of all sweeps
+        quick: run 1 s and 5 seeds only, to see that all works
+        seeds: number of noises in Table II (100)
+        duration: length of each run [s] (10)
+        weight: weight xi in [0, 1] of the one column of Table I to run
+    """
+    from iiwa_dnn.app import paper
+    from iiwa_dnn.studies.runs import FULL, QUICK
+
+    scope = QUICK if quick else FULL
+    scope = replace(scope, seeds=seeds or scope.seeds, duration=duration or scope.duration)
+    return paper.run(sweep, scope, weight)
+
+
+def atlas(
+    sweep: Sweeping = EVERY,
+    *,
+    whole: Flag = False,
+    seeds: Count = None,
+    other_seeds: Count = None,
+    networks: Names = (),
+    schemes: Names = (),
+    disturbances: Names = (),
+    work: Annotated[tuple[float, ...], shown("X ...")] = (3e3, 1e4, 3e4),
+) -> int:
+    """Compare the networks of the field, and yours, at equal work.
+
+    A part of one's own is named as module:NAME or file.py:NAME.
+
+    Args:
+        sweep: words of all sweeps
+        whole: run 100 seeds and all schemes: hours in place of minutes
+        seeds: number of noises with the first scheme (5, whole: 100)
+        other_seeds: number of noises with the other schemes and budgets (3)
+        networks: networks (all; beside your own too)
+        schemes: schemes (the first; whole: all)
+        disturbances: disturbances (all)
+        work: work a control period [operations] (3e3 1e4 3e4)
+    """
+    from iiwa_dnn.app import atlas
+
+    parts = (networks, schemes, disturbances)
+    return atlas.run(sweep, atlas.size_of(whole, seeds, other_seeds, work, *parts))
+
+
+def view(
+    run: Positional[Path],
+    *,
+    robot: Annotated[str | None, shown("NAME")] = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+) -> int:
+    """Replay a run in the browser.
+
+    Args:
+        run: folder or record of a run
+        robot: robot of the run, by name or file, if its own is elsewhere now
+        host: address of the page; 0.0.0.0 lets other machines in
+        port: port of the page; 0 takes a free one
+    """
+    from iiwa_dnn.app.replay import open_replay
+
+    replay = open_replay(run, robot, host, port)
+    print(f"open http://{host}:{replay.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
+    while True:
+        time.sleep(1 / 30)
+        replay.tick(1 / 30)
+
+
+COMMANDS: dict[str, Any] = {
+    "track": Track,
+    "physics": Physics,
+    "paper": paper,
+    "atlas": atlas,
+    "export": Export,
+    "view": view,
+}
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run a command by its words; None: the words of the process.
 
     Returns:
-        The command's exit code; 2 for an unknown command, after one line on standard error.
+        The command's exit code.
 
     Raises:
-        SystemExit: As in `iiwa_dnn.app.command_line.run_command`.
+        SystemExit: As in `iiwa_dnn.app.command_line.guard`.
     """
-    name, *rest = (sys.argv[1:] if words is None else words) or ["--help"]
-    if name in COMMANDS:
-        return run(name, rest)
-    if name == "--version":
+    given = list(sys.argv[1:] if words is None else words) or ["--help"]
+    if given == ["--version"]:
         print(PROG, version(PROG))
-    elif name in ("-h", "--help"):
-        describe_commands("--help")
-    else:
-        return fail(PROG, NotFoundError("command", name, COMMANDS))
-    return 0
+        return 0
+    return guard(f"{PROG} {given[0]}", partial(_run, given))
 
 
-def run(name: str, words: Sequence[str] | None = None, prog: str | None = None) -> int:
-    """Run one of `COMMANDS`, the function ``run`` of the module of its name; as `run_command`."""
-    module = import_module(f"iiwa_dnn.app.{name.replace('-', '_')}")
-    return run_command(COMMANDS[name], prog or f"{PROG} {name}", module.run, words)
-
-
-def describe_commands(*words: str) -> None:
-    """Print the list of all commands, or their completion for a shell, by tyro's own options."""
-    kinds: Any = tuple(
-        Annotated[kind, tyro.conf.subcommand(name, description=str(kind.__doc__).splitlines()[0])]
-        for name, kind in COMMANDS.items()
-    )
+def _run(words: Sequence[str]) -> int:
+    """Read the words of a command and carry it out."""
     about = "Robot arms driven by dynamic neural networks that solve a program at every step."
-    with suppress(SystemExit):
-        tyro.cli(Union[kinds], prog=PROG, description=about, args=words)  # noqa: UP007
+    config = (OmitArgPrefixes, FlagCreatePairsOff)
+    done: Any = subcommand_cli_from_dict(
+        COMMANDS, prog=PROG, description=about, args=words, config=config
+    )
+    if isinstance(done, Track):
+        done = getattr(import_module("iiwa_dnn.app.track"), words[0])(done)
+    code: int = done
+    return code

@@ -12,59 +12,57 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from iiwa_dnn.app.command_line import print_lines
-from iiwa_dnn.app.folders import run_sweep
-from iiwa_dnn.app.options import PaperOptions
+from iiwa_dnn.app.command_line import run_sweep
+from iiwa_dnn.app.words import SweepWords
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.studies import ablation, paper, table1, table2
 from iiwa_dnn.studies.paper_plots import save_paper_figures
 from iiwa_dnn.studies.paper_report import column_report, findings, write_paper_report
-from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, measure
+from iiwa_dnn.studies.runs import HeartRun, Scope, measure
 from iiwa_dnn.studies.sweeps import fingerprint
 
 EXPERIMENTS = {"table1": table1, "table2": table2, "ablation": ablation}
 
 
-def run(options: PaperOptions) -> int:
+def run(words: SweepWords, scope: Scope, weight: float | None = None) -> int:
+    """Run every experiment of the paper, or one column of Table I; return the exit code."""
+    return _run_all(words, scope) if weight is None else _run_column(words, scope, weight)
+
+
+def _run_all(words: SweepWords, scope: Scope) -> int:
     """Run every experiment of the paper, write tables, figures and report; return the exit code."""
     began = time.perf_counter()
-    scope = _scope(options)
-    if options.weight is not None:
-        return _run_column(options, scope, options.weight)
     figures = figure_runs(scope)
     parts = {name: module.cells(scope) for name, module in EXPERIMENTS.items()}
     runs = [*chain(*(part.values() for part in parts.values())), *figures.values()]
-    cells = [run.settings() for run in runs]
-    sweep, results = run_sweep(options, measure, cells, options.dask)
+    sweep, results = run_sweep(words, "paper", measure, [run.settings() for run in runs])
     remaining = iter(results)
     tables = {
         name: EXPERIMENTS[name].tabulate(scope, dict(zip(part, remaining, strict=False)))
         for name, part in parts.items()
     }
+    folder = sweep.folder.parent
     for name, table in tables.items():
-        write_json(options.out / f"{name}.json", table)
-    drawn = []
-    if options.plots:
-        records = {name: sweep.record(cell.settings()) for name, cell in figures.items()}
-        drawn = save_paper_figures(records["noise, filter"], records, tables, options.out)
+        write_json(folder / f"{name}.json", table)
+    records = {name: sweep.record(cell.settings()) for name, cell in figures.items()}
+    drawn = save_paper_figures(records["noise, filter"], records, tables, folder)
     head = _head(scope, results, time.perf_counter() - began)
-    write_paper_report(options.out, tables, head, drawn)
-    lines = [f"{name:<14}{value}" for name, value in head.items()] if options.verbose else []
-    said = [*findings(tables), *_caveats(scope), f"written to {options.out}"]
-    print_lines(options, *lines, *said)
+    write_paper_report(folder, tables, head, drawn)
+    if not words.quiet:
+        print(*findings(tables), *_caveats(scope), f"written to {folder}", sep="\n")
     return _exit_code(results)
 
 
-def _run_column(options: PaperOptions, scope: Scope, weight: float) -> int:
+def _run_column(words: SweepWords, scope: Scope, weight: float) -> int:
     """Run one column of Table I, write and print it; return the exit code."""
     runs = table1.column_cells(scope, weight)
-    cells = [run.settings() for run in runs.values()]
-    _, results = run_sweep(options, measure, cells, options.dask)
+    sweep, results = run_sweep(words, "paper", measure, [run.settings() for run in runs.values()])
     table = table1.tabulate_column(scope, weight, dict(zip(runs, results, strict=True)))
     lines = [column_report(table), *_caveats(scope)]
-    file = options.out / f"table1_{weight:g}.md"
+    file = sweep.folder.with_name(f"table1_{weight:g}.md")
     write_text(file, "\n\n".join(lines) + "\n")
-    print_lines(options, *lines, f"written to {file}")
+    if not words.quiet:
+        print(*lines, f"written to {file}", sep="\n")
     return _exit_code(results)
 
 
@@ -86,13 +84,6 @@ def _caveats(scope: Scope) -> list[str]:
         f"Runs of {scope.duration:g} s: less than the heart's {period:g} s does not close it, so "
         "the drift is another, and no figure is the paper's."
     ]
-
-
-def _scope(options: PaperOptions) -> Scope:
-    """Return the size of the sweep that the options describe."""
-    values: dict[str, Any] = {"seeds": options.seeds, "duration": options.duration}
-    changes = {name: value for name, value in values.items() if value is not None}
-    return replace(QUICK if options.quick else FULL, **changes)
 
 
 def figure_runs(scope: Scope) -> dict[str, HeartRun]:

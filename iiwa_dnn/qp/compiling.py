@@ -12,7 +12,7 @@ from numba.core import cgutils, event
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic
 
-NOTICE = "iiwa_dnn: compiling at first use, up to 20 s, once; `iiwa-dnn warm-up` does it ahead"
+NOTICE = "iiwa_dnn: compiling at first use, up to 20 s, once; `make setup` does it ahead"
 
 
 class Watch(event.Listener):

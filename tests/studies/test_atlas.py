@@ -209,9 +209,9 @@ def test_parts_of_ones_own_come_from_files_and_from_modules(
     monkeypatch.setattr(atlas, "DURATION", 0.02)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "atlas_parts.py").write_text(OUTSIDE, encoding="utf-8")
-    words = ["atlas", "--out", "a", "--seeds", "2", "--workers", "1", "--work", "3e3", "--no-plots"]
+    words = ["atlas", "--out", "a", "--seeds", "2", "--workers", "1", "--work", "3e3"]
     words += ["--networks", "dual", "atlas_parts:Slow", "atlas_parts.py:Slow"]
-    words += ["--schemes", "atlas_parts:scheme", "--references", "heart", "atlas_parts.py:small"]
+    words += ["--schemes", "atlas_parts:scheme"]
     words += ["--disturbances", "none", "atlas_parts:Push"]
     assert main(words) == 0
     report = capsys.readouterr().out
@@ -237,7 +237,6 @@ def test_parts_of_ones_own_come_from_files_and_from_modules(
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
         ("--schemes", "other", "no scheme 'other'"),
         ("--schemes", "math:pi", "scheme: math:pi is no Scheme"),
-        ("--references", "math:pi", "reference: math:pi is no Reference"),
         ("--disturbances", "math:pi", "disturbance: math:pi is no Disturbance: 3.14"),
         ("--work", "-1", "work: must be a finite number above 0"),
         ("--seeds", "0", "seeds: "),

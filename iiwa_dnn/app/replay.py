@@ -1,0 +1,248 @@
+"""The replay of a run in the browser, with its path, errors and verdict."""
+
+from __future__ import annotations
+
+import socket
+from contextlib import redirect_stdout, suppress
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from iiwa_dnn.app.command_line import SETTINGS_FILE
+from iiwa_dnn.app.settings import load
+from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
+from iiwa_dnn.files import one_line, read_toml
+from iiwa_dnn.naming import describe, in_the_way
+from iiwa_dnn.qp.program import Matrix
+from iiwa_dnn.results.failures import failures
+from iiwa_dnn.results.metrics import ACTIONS, limits, orientation_error, position_error
+from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.scenery import obstacles_of
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.obstacles import Obstacle, outline
+from iiwa_dnn.robot.robot import urdf_of
+from iiwa_dnn.robot.shapes import read_shapes
+
+PIECES = 300
+"""Straight pieces of a drawn path, points of the curve, and parts of the time bar."""
+
+LEAST = 1e-15
+"""Least value of the curve [m]: smaller ones are rounding errors."""
+
+_STYLE = """<style>
+[style*="max-height: 60%"] { max-height: 40% !important }
+[style*="max-height: 60%"], [style*="max-height: 60%"] [style*="width: 20em"] {
+    width: 100% !important }
+</style>"""
+"""On a phone viser's controls would cover 60 % of the height, and leave a strip beside them."""
+
+SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
+
+
+def open_replay(run: Path, robot: str | None, host: str, port: int) -> Replay:
+    """Serve the page of a run, by its folder or its record.
+
+    Raises:
+        FileError: There is no record.
+        IiwaDnnError: As of `robot_of` and `serve`.
+    """
+    file = run / "record.npz" if run.is_dir() else run
+    if not file.exists():
+        raise FileError(file, "no such file: not the folder of a run")
+    record = Record.load(file)
+    return Replay(robot_of(record, file.with_name(SETTINGS_FILE), robot), record, host, port)
+
+
+def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
+    """Load the robot of a record as a settings file describes it, else the record itself.
+
+    Raises:
+        InvalidInputError: The robot does not have as many joints as the record.
+    """
+    kept = record.settings
+    table = {
+        "name": kept["robot"],
+        "tip": kept.get("tip"),
+        "locked": list(kept.get("locked") or ()),
+    }
+    if settings.is_file():
+        table = read_toml(settings).get("robot", {})
+    robot = load({**table, "name": name or table["name"]})
+    if robot.dof != record.dof:
+        problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
+        raise InvalidInputError("--robot", problem, name)
+    return robot
+
+
+def serve(title: str, host: str, port: int) -> Any:
+    """Serve an empty page that asks for nothing from elsewhere.
+
+    Raises:
+        MissingDependencyError: viser is not installed.
+        InvalidInputError: The address cannot be listened on.
+    """
+    viser = import_extra("viser", "pip install 'iiwa-dnn[view]'")
+    try:
+        with socket.create_server((host, port)) as probe:  # viser would take another one silently
+            free = probe.getsockname()[1]
+    except (OSError, OverflowError) as error:
+        problem = f"cannot listen on {host}:{port}: {one_line(error)}"
+        raise InvalidInputError("port", problem, port) from error
+    with redirect_stdout(StringIO()):  # its banner
+        server = viser.ViserServer(host=host, port=free, label=title, verbose=False)
+    server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
+    server.gui.add_html(_STYLE)
+    server.scene.set_up_direction("+z")
+    server.scene.add_grid("/floor", width=3.0, height=3.0, cell_size=0.1, section_size=0.5)
+    return server
+
+
+def show_robot(server: Any, robot: Robot) -> Any:
+    """Put a robot on a page, frames where it has no shapes; return Pinocchio's visualizer."""
+    from pinocchio.visualize import ViserVisualizer
+
+    shapes = pin.GeometryModel()
+    with suppress(ValueError):  # a mesh is missing
+        for shape in read_shapes(robot, pin.GeometryType.VISUAL, urdf_of(robot)):
+            shapes.addGeometryObject(shape)
+    visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)
+    visualizer.initViewer(viewer=server, loadModel=True)
+    visualizer.displayFrames(shapes.ngeoms == 0)
+    return visualizer
+
+
+def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:
+    """Draw a path through points (M, 3) [m], or draw it anew."""
+    chosen = points[np.linspace(0, len(points) - 1, min(len(points), PIECES + 1)).astype(int)]
+    pieces = np.stack([chosen[:-1], chosen[1:]], axis=1)
+    style: Any = {"thickness": 3.0, "thickness_units": "screen"}
+    server.scene.add_line_segments(f"/{name}", pieces, color, **style)
+
+
+def largest(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return where each of `PIECES` stretches of values (M,) begins, and its largest value."""
+    count = len(values)
+    starts = np.linspace(0, count, min(PIECES, count), endpoint=False).astype(int)
+    return starts, np.maximum.reduceat(values, starts)
+
+
+class Replay:
+    """A page that replays a record, in one state for all browsers.
+
+    Attributes:
+        server: The page's ``viser.ViserServer``.
+        record: The run.
+        playing: Checkbox: the time passes, and begins again at the end.
+        clock: Slider: the present time of the record [s].
+        marks: Bar below it, red where a policy acted.
+        speed: Menu: seconds of the record in a second.
+    """
+
+    def __init__(
+        self, robot: Robot, record: Record, host: str = "127.0.0.1", port: int = 8080
+    ) -> None:
+        """Serve the page; `tick` moves it. Errors as of `serve`."""
+        self.record = record
+        self._errors = np.linalg.norm(position_error(record), axis=1)
+        self._angles = orientation_error(record)
+        self.server = serve(f"{robot.name} · iiwa_dnn", host, port)
+        self._visualizer = show_robot(self.server, robot)
+        self._add_scene()
+        gui = self.server.gui
+        start = float(record.t[0])
+        length = max(float(record.t[-1]) - start, 1e-6)
+        self.playing = gui.add_checkbox("play", False)
+        self.clock = gui.add_slider("time [s]", start, start + length, 1e-3 * length, start)
+        _, acts = largest(record.filled("action"))
+        colors = np.where(acts > 0, "#d6001c", "#e5e7ec")
+        marks = "".join(f'<i style="flex:1;background:{color}"></i>' for color in colors)
+        self.marks = gui.add_html(
+            f'<div style="display:flex;height:6px;margin:0 1em">{marks}</div>'
+        )
+        self.speed = gui.add_dropdown("speed", SPEEDS, initial_value="1")
+        verdict = failures(record) or ["completed within all limits"]
+        gui.add_markdown("\n".join(f"- {line}" for line in verdict))
+        self._readout = gui.add_markdown("")
+        self._add_curve()
+        self.show()
+
+    def _add_scene(self) -> None:
+        """Draw the path, the target and the obstacles, and aim the camera."""
+        path = self.record.position_desired
+        scene = self.server.scene
+        draw_path(self.server, "desired", path, (70, 80, 100))
+        self._target = scene.add_frame("/target", axes_length=0.06, axes_radius=0.002)
+        self._obstacles: list[tuple[Obstacle, Any]] = []
+        for obstacle in obstacles_of(self.record):
+            name = f"/obstacle_{len(self._obstacles)}"
+            mesh = scene.add_mesh_simple(name, *outline(obstacle), color=(64, 115, 191))
+            self._obstacles.append((obstacle, mesh))
+        middle = path.mean(axis=0)
+        side = np.array([middle[1], -middle[0], 0.0])  # across the way from the base to the path
+        view = 1.6 * side + 0.4 * middle + [0.0, 0.0, 0.6]
+        self.server.initial_camera.look_at = tuple(0.6 * middle + [0.0, 0.0, 0.2])
+        self.server.initial_camera.position = tuple(0.6 * middle + view)
+
+        def step_back(client: Any) -> None:
+            if client.camera.aspect < 1.0:  # a phone, upright
+                client.camera.position = tuple(0.6 * middle + 2.0 * view)
+                client.camera.look_at = tuple(0.6 * middle - [0.0, 0.0, 0.2])
+
+        self.server.on_client_connect(step_back)
+
+    def _add_curve(self) -> None:
+        """Draw the largest position error of each stretch of time, on a logarithmic axis."""
+        from viser import uplot  # of an extra
+
+        starts, errors = largest(np.maximum(self._errors, LEAST))
+        self.server.gui.add_uplot(
+            (self.record.t[starts], errors),
+            (uplot.Series(), uplot.Series(stroke="#d6001c", width=1)),
+            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(distr=3, log=10)},
+            title="position error [m]",
+            legend=uplot.Legend(show=False),
+            height=170,
+        )
+
+    def tick(self, elapsed: float) -> None:
+        """Let `elapsed` seconds pass, and show the state if the time has changed."""
+        if self.playing.value:
+            passed = self.clock.value - self.clock.min + float(self.speed.value) * elapsed
+            self.clock.value = self.clock.min + passed % (self.clock.max - self.clock.min)
+        if self.clock.value != self._shown:
+            self.show()
+
+    def show(self) -> None:
+        """Show the sample at the present time."""
+        record = self.record
+        self._shown = self.clock.value
+        k = int(np.searchsorted(record.t, self._shown).clip(0, record.steps))
+        self._visualizer.display(record.q[k])
+        self._target.position = record.position_desired[k]
+        self._target.wxyz = pin.Quaternion(record.rotation_desired[k]).coeffs()[[3, 0, 1, 2]]
+        for obstacle, mesh in self._obstacles:
+            mesh.position = obstacle.shift(self._shown)
+        draw_path(self.server, "drawn", record.position[: k + 2], (220, 0, 30))
+        self._readout.content = "\n".join(f"| {row} |" for row in self._rows(k))
+
+    def _rows(self, k: int) -> list[str]:
+        """Return the values of a sample as the rows of a table in Markdown."""
+        record = self.record
+        step = min(k, record.steps - 1)
+        acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
+        against = in_the_way({"rows": (), **record.settings}, *acting)
+        action = ACTIONS.get(int(record.filled("action")[step]), "none")
+        bounds = zip(limits(record, "q_lower", -np.inf), limits(record, "q_upper"), strict=True)
+        joints = zip(record.settings["joints"], record.q[k], bounds, strict=True)
+        return [
+            f"position error | {self._errors[k]:.3g} m",
+            "---|---",
+            f"orientation error | {self._angles[k]:.3g} rad",
+            f"KKT residual | {record.kkt_residual[step]:.1e}",
+            f"gap to the reference | {record.crosscheck_gap[step]:.1e} rad/s",
+            f"policy | {', '.join([action, *map(describe, against)])}",
+            *(f"{name} [rad] | {q:+.3f} in [{low:.2f}, {up:.2f}]" for name, q, (low, up) in joints),
+        ]

@@ -1,0 +1,106 @@
+"""Drag a target in the browser and let the arm follow it: python scripts/live.py [ROBOT].
+
+Controller, limits and cross-check run live. Beside the target there is a ball to drag against the
+arm, which gives way to it by its redundancy first.
+"""
+
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import tyro
+
+import iiwa_dnn
+from iiwa_dnn.app.command_line import run_script
+from iiwa_dnn.app.replay import serve, show_robot
+
+DT = 5e-3  # control period [s]
+STEPS = 8  # of a tick: at 25 pictures a second the arm moves in real time
+SPEED = 0.25  # of the target and of the ball [m/s]: the limit for robots beside people
+RADIUS = 0.08  # of the ball [m]
+SLIDERS = {"weight": 1.0, "drift_gain": 30.0, "position_gain": 30.0, "orientation_gain": 30.0}
+
+
+class Live:
+    """A page on which an arm follows a target and keeps away from a ball."""
+
+    def __init__(self, robot, host="127.0.0.1", port=8080):
+        """Serve the page; `tick` moves it."""
+        self.robot = robot
+        self.q = np.array(robot.start_posture())
+        start = iiwa_dnn.Configuration(robot, self.q)
+        self.goal = iiwa_dnn.MovingTarget(start, speed=SPEED, rate=1.0)
+        self.center = start.position + [0.0, 0.0, 0.5]  # of the ball [m]
+        scheme = iiwa_dnn.DoubleIndicator(home=tuple(self.q), extra_limits=(self.avoid(),))
+        self.controller = iiwa_dnn.Controller(robot, scheme, self.goal, dt=DT)
+        self.controller.warm_up(self.q)
+        self.check = iiwa_dnn.CrossCheck()
+        self.steps = 0
+        self.server = serve(f"{robot.name} · live", host, port)
+        self.arm = show_robot(self.server, robot)
+        scene = self.server.scene
+        self.target = scene.add_transform_controls("/target", scale=0.2, position=start.position)
+        self.target.wxyz = pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]]
+        self.ball = scene.add_transform_controls(
+            "/ball", scale=0.15, disable_rotations=True, position=self.center
+        )
+        self.sphere = scene.add_icosphere("/sphere", RADIUS, color=(64, 115, 191))
+        gui = self.server.gui
+        self.sliders = {
+            name: gui.add_slider(name, 0.0, most, 0.01, getattr(scheme, name))
+            for name, most in SLIDERS.items()
+        }
+        self.state = gui.add_markdown("")
+
+    def avoid(self):
+        """Return the limit that keeps the arm away from the ball."""
+        ball = iiwa_dnn.Sphere(self.center.tolist(), RADIUS)
+        return iiwa_dnn.CollisionAvoidance([ball], self_collision=False, distance=0.03)
+
+    def tick(self):
+        """Take the steps of a picture, check the last one, and show it."""
+        way = np.asarray(self.ball.position) - self.center
+        most = SPEED * STEPS * DT  # of the ball's way in a tick
+        self.center = self.center + way * min(1.0, most / max(np.linalg.norm(way), 1e-9))
+        chosen = {name: slider.value for name, slider in self.sliders.items()}
+        scheme = replace(self.controller.scheme, **chosen, extra_limits=(self.avoid(),))
+        if scheme != self.controller.scheme:
+            self.controller.scheme = scheme
+        w, x, y, z = map(float, self.target.wxyz)
+        rotation = pin.Quaternion(w, x, y, z).normalized().matrix()
+        self.goal.set(self.target.position, rotation)
+        for _ in range(STEPS):
+            command = self.controller.step(self.q, self.steps * DT)
+            self.q = self.q + DT * command.dq
+            self.steps += 1
+        self.arm.display(self.q)
+        self.sphere.position = self.center
+        gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
+        tip = iiwa_dnn.Configuration(self.robot, self.q).position
+        distance = np.linalg.norm(tip - self.target.position)
+        done = "as wanted" if command.ok else f"held back: {command.resolution}"
+        self.state.content = (
+            f"distance to the target {distance:.2g} m\n\n"
+            f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
+        )
+
+
+def main(
+    robot: tyro.conf.Positional[str] = "iiwa7",
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    seconds: float = np.inf,
+):
+    """Serve the page for so many seconds, or until Ctrl-C; 0.0.0.0 as host lets others in."""
+    page = Live(iiwa_dnn.load_robot(robot), host, port)
+    print(f"open http://{host}:{page.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
+    end = time.monotonic() + seconds
+    while (began := time.monotonic()) < end:
+        page.tick()
+        time.sleep(max(0.0, began + STEPS * DT - time.monotonic()))
+
+
+if __name__ == "__main__":
+    sys.exit(run_script(main))

@@ -1,0 +1,35 @@
+"""Commands called in this process, and what they leave."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from iiwa_dnn.app.main import main
+
+SHORT = ("--dt", "1e-3", "--duration", "0.05")
+QUICK = (*SHORT, "--no-plots")
+
+
+def call(*words: object) -> int:
+    """The exit code, whether the parser ends the process or the function returns."""
+    try:
+        return main(list(map(str, words)))
+    except SystemExit as end:
+        return int(str(end.code))
+
+
+def results(folder: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Record and metrics, read with numpy and json alone."""
+    with np.load(folder / "record.npz", allow_pickle=False) as archive:
+        arrays = dict(archive)
+    return arrays, json.loads((folder / "metrics.json").read_text())
+
+
+def track(folder: Path, *words: object) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """A quick run that succeeds, without figures."""
+    assert call("track", *QUICK, *words, "--out", folder) == 0
+    return results(folder)
