@@ -128,10 +128,10 @@ def residual(axes, record):
 def scenes(csv):
     """List name, picture and records of each scene, the latter to be made."""
     error = partial(figure, plots.draw_error)
-    push = ("--push", "20", "0", "0", "--no-pictures", "--no-video")
+    push = ("--push", "20", "0", "0")
     return (
         ("heart", arm, lambda: run("track")),
-        ("csv", arm, lambda: run("track", "--reference", csv)),
+        ("csv", arm, lambda: run("track", csv)),
         ("turning", partial(figure, turned), lambda: example("own_orientation.py")),
         ("obstacle", partial(arm, face_on=False), lambda: example("avoid_obstacle.py")),
         ("clearance", partial(figure, elbow), lambda: example("own_parts.py")),

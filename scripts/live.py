@@ -14,7 +14,7 @@ import tyro
 
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.app.replay import serve, show_robot
+from iiwa_dnn.app.replay import aim, serve, show_robot
 
 DT = 5e-3  # control period [s]
 STEPS = 8  # of a tick: at 25 pictures a second the arm moves in real time
@@ -40,6 +40,7 @@ class Live:
         self.steps = 0
         self.server = serve(f"{robot.name} · live", host, port)
         self.arm = show_robot(self.server, robot)
+        aim(self.server, start.position)
         scene = self.server.scene
         self.target = scene.add_transform_controls("/target", scale=0.2, position=start.position)
         self.target.wxyz = pin.Quaternion(start.rotation).coeffs()[[3, 0, 1, 2]]
@@ -80,7 +81,8 @@ class Live:
         gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
         tip = iiwa_dnn.Configuration(self.robot, self.q).position
         distance = np.linalg.norm(tip - self.target.position)
-        done = "as wanted" if command.ok else f"held back: {command.resolution}"
+        against = ", ".join(command.resolution.against) if command.resolution else ""
+        done = "as wanted" if command.ok else f"held back by {against or 'a singular pose'}"
         self.state.content = (
             f"distance to the target {distance:.2g} m\n\n"
             f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"

@@ -12,14 +12,17 @@ import importlib
 import io
 import operator
 import re
+import shlex
 import sys
 import types
 from pathlib import Path
 
 import pytest
+import tyro
 
 import iiwa_dnn
 from helpers_export import compile_quickly
+from iiwa_dnn.app.main import COMMANDS, CONFIG
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
@@ -33,7 +36,7 @@ WITH_CODE = (
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
 _RAW_LINK = re.compile(r'<a href="([^"#:]+)"')
-_RUN = re.compile(r"^iiwa-dnn ((?:track|physics)\b(?!.*--help|.*--settings)[^#\n]*)", re.MULTILINE)
+_RUN = re.compile(r"^iiwa-dnn ((?:track|physics|export) (?!--help).*|track)$", re.MULTILINE)
 _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
 
 
@@ -99,17 +102,17 @@ def test_links_and_named_tests_exist(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
-def test_no_command_of_a_page_is_refused_since_the_one_before_has_its_folder(path: Path) -> None:
+def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(path: Path) -> None:
     """A folder belongs to one run: other settings need another ``--out``."""
-    owners = {"runs/heart": ["track"]}  # make heart, the first thing that a reader does
+    owners = {Path("runs/heart"): ["track"]}  # make heart, the first thing that a reader does
     for line in _RUN.findall(path.read_text(encoding="utf-8")):
-        words = line.split()
-        out = "runs/heart" if words[0] == "track" else f"runs/{words[0]}"
-        if "--out" in words:
-            at = words.index("--out")
-            out = words[at + 1]
-            del words[at : at + 2]
-        assert owners.setdefault(out, words) == words, f"{path.name}: iiwa-dnn {line}"
+        words = shlex.split(line, comments=True)
+        options = tyro.cli(COMMANDS[words[0]], args=words[1:], config=CONFIG)
+        if options.config is None and words[0] != "export":
+            name = options.reference.path or options.reference.name or "heart"
+            out = Path("runs") / ("physics" if words[0] == "physics" else Path(name).stem)
+            owner = owners.setdefault(options.out or out, words)
+            assert owner == words, f"{path.name}: iiwa-dnn {line}"
 
 
 def test_the_api_page_and_the_table_of_contents_are_complete() -> None:

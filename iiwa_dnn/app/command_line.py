@@ -13,6 +13,7 @@ import tomli_w
 import tyro
 from tqdm import tqdm
 
+from iiwa_dnn import checks
 from iiwa_dnn.app.words import SweepWords
 from iiwa_dnn.errors import FileError, IiwaDnnError, NoSolutionError
 from iiwa_dnn.files import one_line, prepare_folder, write_text
@@ -93,6 +94,7 @@ def run_sweep(
 
     Errors as of `claim_folder` and `Sweep.run`.
     """
+    checks.integer("workers", 1 if words.workers is None else words.workers, 1)
     settings = {"command": name}
     folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
     write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))

@@ -17,6 +17,7 @@ from iiwa_dnn.app.command_line import guard
 from iiwa_dnn.app.words import GROUP, Count, Export, Flag, Number, Physics, SweepWords, Track, shown
 
 PROG = "iiwa-dnn"
+CONFIG = (OmitArgPrefixes, FlagCreatePairsOff)
 Names = Annotated[tuple[str, ...], shown("NAME ...")]
 Sweeping = Annotated[SweepWords, GROUP]
 EVERY = SweepWords()
@@ -42,9 +43,9 @@ def paper(
     from iiwa_dnn.app import paper
     from iiwa_dnn.studies.runs import FULL, QUICK
 
-    scope = QUICK if quick else FULL
-    scope = replace(scope, seeds=seeds or scope.seeds, duration=duration or scope.duration)
-    return paper.run(sweep, scope, weight)
+    sizes = {"seeds": seeds, "duration": duration}
+    given = {name: size for name, size in sizes.items() if size is not None}
+    return paper.run(sweep, replace(QUICK if quick else FULL, **given), weight)
 
 
 def atlas(
@@ -131,9 +132,8 @@ def main(words: Sequence[str] | None = None) -> int:
 def _run(words: Sequence[str]) -> int:
     """Read the words of a command and carry it out."""
     about = "Robot arms driven by dynamic neural networks that solve a program at every step."
-    config = (OmitArgPrefixes, FlagCreatePairsOff)
     done: Any = subcommand_cli_from_dict(
-        COMMANDS, prog=PROG, description=about, args=words, config=config
+        COMMANDS, prog=PROG, description=about, args=words, config=CONFIG
     )
     if isinstance(done, Track):
         done = getattr(import_module("iiwa_dnn.app.track"), words[0])(done)

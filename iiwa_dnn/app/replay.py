@@ -16,7 +16,7 @@ from iiwa_dnn.app.settings import load
 from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way
-from iiwa_dnn.qp.program import Matrix
+from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import ACTIONS, limits, orientation_error, position_error
 from iiwa_dnn.results.record import FloatArray, Record
@@ -114,6 +114,22 @@ def show_robot(server: Any, robot: Robot) -> Any:
     return visualizer
 
 
+def aim(server: Any, point: Vector) -> None:
+    """Aim the cameras at the arm and a point in front of it (3,) [m]; on a phone from afar."""
+    middle = 0.6 * point + [0.0, 0.0, 0.2]
+    side = np.array([point[1], -point[0], 0.0])  # across the way from the base to the point
+    view = 1.6 * side + 0.4 * point + [0.0, 0.0, 0.4]
+    server.initial_camera.look_at = tuple(middle)
+    server.initial_camera.position = tuple(middle + view)
+
+    def step_back(client: Any) -> None:
+        if client.camera.aspect < 1.0:
+            client.camera.position = tuple(middle + 1.8 * view)
+            client.camera.look_at = tuple(middle - [0.0, 0.0, 0.4])
+
+    server.on_client_connect(step_back)
+
+
 def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int]) -> None:
     """Draw a path through points (M, 3) [m], or draw it anew."""
     chosen = points[np.linspace(0, len(points) - 1, min(len(points), PIECES + 1)).astype(int)]
@@ -180,29 +196,18 @@ class Replay:
             name = f"/obstacle_{len(self._obstacles)}"
             mesh = scene.add_mesh_simple(name, *outline(obstacle), color=(64, 115, 191))
             self._obstacles.append((obstacle, mesh))
-        middle = path.mean(axis=0)
-        side = np.array([middle[1], -middle[0], 0.0])  # across the way from the base to the path
-        view = 1.6 * side + 0.4 * middle + [0.0, 0.0, 0.6]
-        self.server.initial_camera.look_at = tuple(0.6 * middle + [0.0, 0.0, 0.2])
-        self.server.initial_camera.position = tuple(0.6 * middle + view)
-
-        def step_back(client: Any) -> None:
-            if client.camera.aspect < 1.0:  # a phone, upright
-                client.camera.position = tuple(0.6 * middle + 2.0 * view)
-                client.camera.look_at = tuple(0.6 * middle - [0.0, 0.0, 0.2])
-
-        self.server.on_client_connect(step_back)
+        aim(self.server, path.mean(axis=0))
 
     def _add_curve(self) -> None:
-        """Draw the largest position error of each stretch of time, on a logarithmic axis."""
+        """Draw the largest position error of each stretch of time, by its decimal logarithm."""
         from viser import uplot  # of an extra
 
         starts, errors = largest(np.maximum(self._errors, LEAST))
         self.server.gui.add_uplot(
-            (self.record.t[starts], errors),
+            (self.record.t[starts], np.log10(errors)),
             (uplot.Series(), uplot.Series(stroke="#d6001c", width=1)),
-            scales={"x": uplot.Scale(time=False), "y": uplot.Scale(distr=3, log=10)},
-            title="position error [m]",
+            scales={"x": uplot.Scale(time=False)},
+            title="position error, decimal logarithm [m]",
             legend=uplot.Legend(show=False),
             height=170,
         )
