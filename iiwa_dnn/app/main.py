@@ -43,9 +43,10 @@ def paper(
     from iiwa_dnn.app import paper
     from iiwa_dnn.studies.runs import FULL, QUICK
 
-    sizes = {"seeds": seeds, "duration": duration}
-    given = {name: size for name, size in sizes.items() if size is not None}
-    return paper.run(sweep, replace(QUICK if quick else FULL, **given), weight)
+    scope = QUICK if quick else FULL
+    scope = replace(scope, seeds=scope.seeds if seeds is None else seeds)
+    scope = replace(scope, duration=scope.duration if duration is None else duration)
+    return paper.run(sweep, scope, weight)
 
 
 def atlas(

@@ -39,7 +39,11 @@ def test_a_run_writes_record_metrics_report_settings_and_figures(
     assert "verdict" in captured.out
     assert captured.out.endswith(f"written to {folder}\n")
     files = {"record.npz", "metrics.json", "report.md", "settings.toml"}
-    assert {path.name for path in folder.iterdir()} == {*files, "convergence.png", "convergence.pdf"}
+    assert {path.name for path in folder.iterdir()} == {
+        *files,
+        "convergence.png",
+        "convergence.pdf",
+    }
     assert "(convergence.png)" in (folder / "report.md").read_text()
 
 
