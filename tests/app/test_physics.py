@@ -83,6 +83,7 @@ def test_the_words_of_track_hold_in_physics_too_and_the_check_can_fail(
 ) -> None:
     words = ("circle", "--lock", "iiwa7_joint_3", "--noise", "1e-3", "--filter-window", "2")
     words += ("--policy", "relax", "--set", "scheme.position_gain=5", "--check", "none")
+    words += ("--set", "reference.radius=0.01")
     assert call(*DRY, *words, "--out", tmp_path / "circle") == 0
     record = Record.load(tmp_path / "circle" / "record.npz")
     assert record.dof == 6
