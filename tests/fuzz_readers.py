@@ -26,7 +26,7 @@ from iiwa_dnn.references import Waypoints
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.report import settings_lines, summary
+from iiwa_dnn.results.report import summary
 from iiwa_dnn.robot import load_robot
 
 ROOT = Path(__file__).parents[1]
@@ -144,7 +144,7 @@ def read_record(path: Path) -> None:
     """A record that is taken for one has metrics and a verdict, too."""
     record = Record.load(path)
     metrics = compute_metrics(record)
-    text = summary(metrics, failures(record)) + settings_lines(metrics) + repr(record)
+    text = summary(metrics, failures(record)) + repr(record)
     assert "\n" not in repr(record), text
 
 

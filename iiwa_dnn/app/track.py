@@ -20,6 +20,7 @@ from iiwa_dnn.results.pictures import import_encoder, save_moments, save_video
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.offscreen import opengl_library
 from iiwa_dnn.simulation import Disturbances, count_steps, simulate
+from iiwa_dnn.studies.paper import published
 
 
 def track(options: Track) -> int:
@@ -52,11 +53,12 @@ def _draw(options: Track, more: Tables, pictured: bool) -> int:
     with progress_bar(steps, "step", options.quiet) as bar:
         record = simulate(**arguments, progress=bar.update, far_start=True)
     draw_more = partial(save_moments, robot) if pictured else None
-    metrics = save_run(record, folder, plots=options.plots, more=draw_more)
+    beside = published(record.settings)
+    metrics = save_run(record, folder, plots=options.plots, more=draw_more, paper=beside)
     write_text(folder / SETTINGS_FILE, tomli_w.dumps(tables))
     if pictured:
         save_video(robot, record, folder / "video.mp4")
-    reasons = failures(record)
+    reasons = failures(metrics)
     if not options.quiet:
         print(summary(metrics, reasons), f"written to {folder}", sep="\n")
     elif reasons:

@@ -125,22 +125,17 @@ def import_encoder() -> Any:
     return import_extra("imageio.v2", _REMEDY)
 
 
-def frame_times(record: Record) -> list[float]:
-    """Return the times of the video's pictures [s], evenly spaced over the run."""
-    count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
-    return list(map(float, np.linspace(record.t[0], record.t[-1], count)))
-
-
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
     """Draw the video's pictures, (HEIGHT, WIDTH, 3): the arm, beside it the path, the time."""
     from PIL import Image as PillowImage, ImageDraw, ImageFont
 
     font = ImageFont.load_default(22)
+    count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
     with ExitStack() as stack:
         left = WIDTH - SIDE
         arm = stack.enter_context(ArmRenderer(robot, record, left, HEIGHT, "arm", smooth=False))
         path = stack.enter_context(ArmRenderer(robot, record, SIDE, HEIGHT, "path"))
-        for t in frame_times(record):
+        for t in np.linspace(record.t[0], record.t[-1], count):
             sample = sample_at(record, t)
             frame = np.hstack([arm.draw(sample), path.draw(sample)])
             frame[:, left : left + 2] = 160  # a border

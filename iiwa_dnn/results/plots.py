@@ -17,7 +17,6 @@ import numpy as np
 
 from iiwa_dnn.files import prepare_folder, write_atomically
 from iiwa_dnn.naming import describe, short_names
-from iiwa_dnn.results.envelope import BUCKETS, envelope
 from iiwa_dnn.results.metrics import (
     blocking_limits,
     frame_errors,
@@ -33,6 +32,7 @@ if TYPE_CHECKING:
 
 COLUMN = 3.5  # width in a two-column journal [in]
 DOUBLE_COLUMN = 7.0
+BUCKETS = 700  # stretches of a curve: one for each pixel across a column at 200 dots an inch
 STYLE = Path(__file__).with_name("style.mplstyle")
 CAPTIONS = {
     "overview": "Path, joint angles and velocities with the joints' limits near them, errors and "
@@ -103,6 +103,22 @@ def new_figure(width: float, height: float) -> Figure:
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def envelope(
+    t: FloatArray, curve: FloatArray, buckets: int = BUCKETS
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Sum up a curve (M,) over times [s] (M,) in stretches of equal length; no spike is lost.
+
+    Returns:
+        Mean time, and mean, least and greatest value of each stretch, (min(M, buckets),) each.
+    """
+    if len(curve) <= buckets:
+        return t, curve, curve, curve
+    starts = np.linspace(0, len(curve), buckets, endpoint=False).astype(int)
+    counts = np.diff(starts, append=len(curve))
+    times, mean = (np.add.reduceat(values, starts) / counts for values in (t, curve))
+    return times, mean, np.minimum.reduceat(curve, starts), np.maximum.reduceat(curve, starts)
 
 
 def overview_figure(record: Record) -> Figure:

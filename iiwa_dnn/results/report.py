@@ -173,11 +173,6 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
     return "\n".join([*first, *aligned]).replace("²", "^2").replace("³", "^3")
 
 
-def settings_lines(metrics: Mapping[str, Any]) -> str:
-    """List the settings among the metrics of a run, one a line, in the words of its report."""
-    return "\n".join(f"{name}: {value}" for name, value in _named(metrics["settings"]))
-
-
 def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
     """Yield the results of a run: quantity, value in words, and unit."""
     settings = metrics["settings"]

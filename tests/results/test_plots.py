@@ -16,7 +16,6 @@ from matplotlib import image
 from helpers_records import draw_only, heart_record, make_record
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results import plots
-from iiwa_dnn.results.envelope import envelope
 from iiwa_dnn.results.plots import (
     convergence_figure,
     draw_blocking,
@@ -24,6 +23,7 @@ from iiwa_dnn.results.plots import (
     draw_error,
     draw_joints,
     draw_path_time,
+    envelope,
     new_figure,
     overview_figure,
     save_figures,

@@ -15,7 +15,6 @@ from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record, cut
-from iiwa_dnn.results.table import save_csv
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 NEAR = {"pairs": [["a", "b"], ["a", "c"]], "distance": 0.02}
@@ -156,20 +155,6 @@ def test_the_gap_is_the_largest_over_the_solvers(heart):
     # NaN of one solver does not hide the other's answer; inf (no answer) shows.
     np.testing.assert_array_equal(heart.crosscheck_gap[2:6], [1e-9, 1e-9, np.inf, np.nan])
     assert np.isnan(make_record(solvers=()).crosscheck_gap).all()
-
-
-def test_a_csv_file_holds_every_digit(heart, tmp_path):
-    save_csv(heart, tmp_path / "heart.csv")
-    table = np.genfromtxt(tmp_path / "heart.csv", delimiter=",", names=True)
-    for name, values in {
-        "t": heart.t, "q7": heart.q[:, 6], "position2": heart.position[:, 1],
-        "rotation6": heart.rotation[:, 1, 2], "dq3": [*heart.dq[:, 2], np.nan],
-        "kkt_residual": [*heart.kkt_residual, np.nan],
-    }.items():  # fmt: skip
-        np.testing.assert_array_equal(table[name], values)
-    assert len(table.dtype) == sum(getattr(heart, name)[:1].size for name in COLUMNS)
-    save_csv(make_record(steps=0), tmp_path / "none.csv")
-    assert len((tmp_path / "none.csv").read_text().splitlines()) == 2
 
 
 CHECK = {"solvers": ["proxqp"], "tolerance": 1e-6, "reference_tolerance": 1e-8}
