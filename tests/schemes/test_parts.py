@@ -198,7 +198,7 @@ def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
         Scheme(limits=JointLimits())  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"^extra_limits: must be a tuple"):
         DoubleIndicator(extra_limits=AccelerationLimits(5.0))  # type: ignore[arg-type]
-    with pytest.raises(InvalidInputError, match=r"^network: must be an object"):
+    with pytest.raises(InvalidInputError, match=r"^network: must be an iiwa_dnn.Network"):
         DNNSolver(ProjectionNetwork)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"^solver: must be an iiwa_dnn.DNNSolver"):
         Controller(paper_robot(), DoubleIndicator(), solver=ProjectionNetwork())  # type: ignore[arg-type]
