@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import pinocchio as pin
-
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP
 from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
 from iiwa_dnn.robot.robot import Robot
-from iiwa_dnn.robot.shapes import STICK_COLOR, visual_shapes
+from iiwa_dnn.robot.shapes import visual_meshes
 
 if TYPE_CHECKING:
     import mujoco
@@ -69,31 +67,19 @@ def add_obstacles(mj: Any, spec: mujoco.MjSpec, record: Record) -> list[Obstacle
 def add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
     """Add the meshes of a robot, or sticks where it has no shapes; its primitives are there."""
     joints = {joint.name: joint.parent for joint in spec.joints}
-    for i, shape in enumerate(visual_shapes(robot)):
-        if shape.mesh is None and shape.color != STICK_COLOR:
-            continue
-        form: dict[str, Any]
-        if shape.mesh is None:
-            radius, length = shape.size
-            form = {"type": mj.mjtGeom.mjGEOM_CYLINDER, "size": [radius, 0.5 * length, 0.0]}
-        else:
-            corners, faces = shape.mesh
-            shell = mj.mjtMeshInertia.mjMESH_INERTIA_SHELL
-            form = {"type": mj.mjtGeom.mjGEOM_MESH, "meshname": f"shape_{i}"}
-            spec.add_mesh(
-                name=f"shape_{i}",
-                uservert=corners.ravel(),
-                userface=faces.ravel(),
-                inertia=shell,
-            )
-        x, y, z, w = pin.Quaternion(shape.rotation).coeffs()
-        body = joints[robot.model.names[shape.joint]] if shape.joint else spec.worldbody
+    for i, mesh in enumerate(visual_meshes(robot)):
+        spec.add_mesh(
+            name=f"mesh_{i}",
+            uservert=mesh.corners.ravel(),
+            userface=mesh.faces.ravel(),
+            inertia=mj.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+        )
+        body = joints[robot.model.names[mesh.joint]] if mesh.joint else spec.worldbody
         body.add_geom(
-            pos=shape.position,
-            quat=[w, x, y, z],
-            rgba=[*shape.color, 1.0],
+            type=mj.mjtGeom.mjGEOM_MESH,
+            meshname=f"mesh_{i}",
+            rgba=[*mesh.color, 1.0],
             group=VISUAL_GROUP,
-            **form,
             **_NO_CONTACT,
         )
 

@@ -14,7 +14,7 @@ import pytest
 import iiwa_dnn as d
 from helpers_kinematics import example_urdf
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.shapes import visual_shapes
+from iiwa_dnn.robot.shapes import visual_meshes
 
 FINGERS = ("panda_finger_joint1", "panda_finger_joint2")
 XACRO = """<?xml version="1.0"?>
@@ -125,7 +125,7 @@ def test_a_pinocchio_model_is_a_robot_too(unlimited: bool) -> None:
     reached = d.load_robot(arm, tip="effector_body")
     np.testing.assert_array_equal(reached.q_upper, arm.upperPositionLimit)
     with pytest.raises(d.InvalidInputError, match="must come from a URDF file"):
-        visual_shapes(robot)
+        visual_meshes(robot)
 
 
 def test_moments_of_inertia_that_no_body_has_are_raised() -> None:
@@ -152,12 +152,8 @@ def test_meshes_are_read_and_missing_ones_are_not_missed(tmp_path: Path) -> None
       <geometry> <mesh filename="package://meshes/corner.stl" scale="0.1 0.1 0.2"/> </geometry>
       </visual> </link> <joint name="joint" type="continuous"> <parent link="base"/>
       <child link="link"/> <origin xyz="0 0 0.4"/> <axis xyz="0 0 1"/> </joint> </robot>"""
-    (shape,) = visual_shapes(d.load_robot(written(tmp_path, "one.urdf", text)))
-    assert shape.kind == "mesh"
-    assert shape.mesh is not None
-    corners, faces = shape.mesh
-    assert faces.shape == (4, 3)
-    np.testing.assert_allclose(np.ptp(corners[faces].reshape(-1, 3), axis=0), [0.1, 0.1, 0.2])
-    missing = text.replace("corner.stl", "nothing.stl")
-    (stick,) = visual_shapes(d.load_robot(written(tmp_path, "none.urdf", missing)))
-    assert stick.kind == "cylinder"
+    (mesh,) = visual_meshes(d.load_robot(written(tmp_path, "one.urdf", text)))
+    assert mesh.faces.shape == (4, 3)
+    np.testing.assert_allclose(
+        np.ptp(mesh.corners[mesh.faces].reshape(-1, 3), axis=0), [0.1, 0.1, 0.2]
+    )

@@ -1,8 +1,9 @@
-"""The shapes that a robot is drawn with, against a second reader of the URDF."""
+"""The meshes that a robot is drawn with."""
 
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -10,73 +11,56 @@ import pytest
 import yourdfpy
 
 from helpers_kinematics import example_urdf
-from helpers_physics import START
-from iiwa_dnn import Configuration, InvalidInputError, load_robot
-from iiwa_dnn.robot.shapes import joint_poses, visual_shapes
+from iiwa_dnn import Configuration, InvalidInputError, Robot, load_robot
+from iiwa_dnn.robot.shapes import Mesh, visual_meshes
 
 
-def placed(robot, q) -> list[tuple[str, tuple[float, ...], np.ndarray]]:
-    """Kind, size and place in the world of every shape."""
-    poses = joint_poses(robot, q)
-    found = []
-    for shape in visual_shapes(robot):
-        pose = poses[shape.joint] * pin.SE3(shape.rotation, shape.position)
-        found.append((shape.kind, shape.size, pose.homogeneous))
-    return found
+def placed(robot: Robot, q: np.ndarray) -> list[np.ndarray]:
+    """Corners of every mesh in the world, (k, 3) each."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    poses = [data.oMi[mesh.joint] for mesh in visual_meshes(robot)]
+    meshes = zip(poses, visual_meshes(robot), strict=True)
+    return [mesh.corners @ pose.rotation.T + pose.translation for pose, mesh in meshes]
 
 
-def test_shapes_are_where_yourdfpy_has_them():
-    robot = load_robot("iiwa7")
-    other = yourdfpy.URDF.load(str(robot.path), load_meshes=False, build_scene_graph=True)
-    other.update_cfg(START)
-    expected = []
-    for link in other.robot.links:
-        for visual in link.visuals:
-            origin = np.eye(4) if visual.origin is None else visual.origin
-            world = other.get_transform(link.name) @ origin
-            cylinder, sphere = visual.geometry.cylinder, visual.geometry.sphere
-            if cylinder is not None:
-                expected.append(("cylinder", (cylinder.radius, cylinder.length), world))
-            else:
-                expected.append(("sphere", (sphere.radius,), world))
-    found = placed(robot, START)
-    assert len(found) == len(expected) == 15
-    for (kind, size, pose), (kind2, size2, pose2) in zip(found, expected, strict=True):
-        assert kind == kind2
-        assert size == pytest.approx(size2)
-        np.testing.assert_allclose(pose, pose2, atol=1e-9)
-
-
-def test_colors_are_the_urdfs():
-    colors = {shape.color for shape in visual_shapes(load_robot("iiwa7"))}
-    rounded = {tuple(round(part, 3) for part in color) for color in colors}
-    assert rounded == {(1.0, 0.4, 0.0), (0.6, 0.6, 0.6)}
-
-
-def test_a_locked_joint_takes_its_shapes_along():
-    full, locked = load_robot("iiwa7"), load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    q = np.array([0.3, 0.5, 0.0, 1.0, 0.2, -0.4, 0.1])
-    for one, two in zip(placed(full, q), placed(locked, np.delete(q, 2)), strict=True):
-        np.testing.assert_allclose(one[2], two[2], atol=1e-12)
-
-
-def test_an_arm_without_its_meshes_is_drawn_with_sticks(tmp_path):
-    file = example_urdf("ur_description/urdf/ur5_robot.urdf")
-    assert {shape.kind for shape in visual_shapes(load_robot(file, tip="tool0"))} == {"mesh"}
-    alone = tmp_path / "ur5.urdf"
-    alone.write_bytes(file.read_bytes())
-    robot = load_robot(alone, tip="tool0")
+@pytest.mark.parametrize("name", ["ur5", "xarm7"])
+def test_meshes_are_where_yourdfpy_has_them(name: str) -> None:
+    example_urdf("ur_description/urdf/ur5_robot.urdf")
+    robot = load_robot(name)
     q = np.linspace(-1.0, 1.0, robot.dof)
-    found = placed(robot, q)
-    assert {kind for kind, _, _ in found} == {"cylinder"}
-    # Sticks from joint to joint reach the tip.
-    _, (_, length), pose = found[-1]
-    ends = pose[:3, 3] + np.outer([-0.5, 0.5], length * pose[:3, 2])
+    folder = str(robot.path.parents[3])
+    other = yourdfpy.URDF.load(
+        str(robot.path),
+        filename_handler=lambda fname: fname.replace("package://example-robot-data", folder),
+    )
+    other.update_cfg(dict(zip(robot.joint_names, q, strict=True)))
+    expected = np.array(other.scene.bounds)
+    corners = np.vstack(placed(robot, q))
+    np.testing.assert_allclose([corners.min(axis=0), corners.max(axis=0)], expected, atol=1e-5)
+
+
+def test_a_robot_of_primitives_has_no_meshes() -> None:
+    assert visual_meshes(load_robot("iiwa7")) == ()  # MuJoCo draws its cylinders and spheres
+
+
+@pytest.mark.parametrize("lost", ["meshes", "shapes"])
+def test_an_arm_without_its_shapes_is_drawn_with_sticks_to_its_tip(
+    lost: str, tmp_path: Path
+) -> None:
+    file = example_urdf("ur_description/urdf/ur5_robot.urdf")
+    alone = tmp_path / "ur5.urdf"
+    text = file.read_text()
+    alone.write_text(text if lost == "meshes" else text.replace("visual>", "seen>"))
+    robot = load_robot(alone, tip="tool0")
+    sticks: tuple[Mesh, ...] = visual_meshes(robot)
+    assert len(sticks) == robot.dof + 1
+    q = np.linspace(-1.0, 1.0, robot.dof)
+    last = placed(robot, q)[-1]
     tip = Configuration(robot, q).position
-    assert np.linalg.norm(ends - tip, axis=1).min() < 1e-12
+    assert np.linalg.norm(last - tip, axis=1).min() == pytest.approx(0.02, abs=1e-3)
 
 
-def test_a_robot_without_a_file():
-    robot = dataclasses.replace(load_robot("iiwa7"), path=None)
+def test_a_robot_without_a_file_has_none() -> None:
     with pytest.raises(InvalidInputError, match="URDF file"):
-        visual_shapes(robot)
+        visual_meshes(dataclasses.replace(load_robot("iiwa7"), path=None))
