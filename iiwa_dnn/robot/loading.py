@@ -27,14 +27,8 @@ _NO_LIMIT = 1e300
 def available_robots() -> tuple[str, ...]:
     """List the robots that `load_robot` knows by name: the package's own, then installed `ARMS`."""
     with contextlib.suppress(MissingDependencyError):
-        return (*package_robots(), *(name for name, arm in ARMS.items() if arm.path.is_file()))
-    return package_robots()
-
-
-def package_robots() -> tuple[str, ...]:
-    """List the robots that come with the package."""
-    files = robots_folder().glob("*/*.urdf")
-    return tuple(sorted(file.stem for file in files if file.parent.name == file.stem))
+        return (*TIPS, *(name for name, arm in ARMS.items() if arm.path.is_file()))
+    return tuple(TIPS)
 
 
 def load_robot(
@@ -121,9 +115,8 @@ def _find(source: object) -> tuple[Path | None, tuple[str, ...]]:
         return Path(name), ()
     if name in ARMS:
         return ARMS[name].path, (ARMS[name].tip,)
-    available = package_robots()
-    if name not in available:
-        raise NotFoundError("robot", name, (*available, *ARMS))
+    if name not in TIPS:
+        raise NotFoundError("robot", name, (*TIPS, *ARMS))
     return robots_folder() / name / f"{name}.urdf", TIPS[name]
 
 

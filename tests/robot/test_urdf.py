@@ -9,7 +9,8 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0, Array, dh_pose, rotation_angle
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.robot.loading import package_robots
+from iiwa_dnn.robot.arms import TIPS
+from iiwa_dnn.robot.loading import robots_folder
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +60,8 @@ def test_limits_are_the_data_sheets(robot: Robot) -> None:
 
 
 def test_robots_of_the_package_need_no_file_of_another_package() -> None:
-    for name in package_robots():
+    assert {path.stem for path in robots_folder().glob("*/*.urdf")} == set(TIPS)
+    for name in TIPS:
         root = ET.fromstring(load_robot(name).urdf)
         assert root.get("name") == name
         assert root.findall(".//visual")
