@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -10,15 +11,14 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import RATES, Network
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.base import ANSWER, CompiledAnswer, Settled
+from iiwa_dnn.networks.integrators.base import ANSWER, CompiledAnswer, Settled, answer_program
 from iiwa_dnn.networks.integrators.explicit import follow
-from iiwa_dnn.networks.integrators.implicit import settle, settle_program
+from iiwa_dnn.networks.integrators.implicit import settle_address, settle_program
 from iiwa_dnn.networks.integrators.scaling import equilibrate
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
 from iiwa_dnn.qp.layout import Sizes, Vector, check_size
 from iiwa_dnn.qp.program import QP
-from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
@@ -113,7 +113,7 @@ class DNNSolver:
         substeps = 0
         # A subclass may integrate in its own way.
         if duration == 0.0 and builtin and type(self.settler) is ImplicitEuler:
-            address = ANSWER.address(settle)
+            address = settle_address()
         elif duration > 0.0 and type(self.follower) is ExplicitEuler:
             substeps = self.follower.substeps or 0
             if not (substeps or builtin):
@@ -138,33 +138,44 @@ class DNNSolver:
         Returns:
             The solution; `found` only if every residual is at most `tol`.
         """
-        tol = self.tol
         state = self._take(qp)
         n, m, p = sizes = qp.sizes
         point = np.empty(2 * n + m + p)
-        settled = self._settle(qp, state, point)
-        if not within(*settled[2:], tol):
+        first = self._first_start
+        if first is None:
+            settled = self.settler.settle(self.network, qp, state, point, self.tol)
+        else:
+            settled = answer_program(qp.data, sizes, settle_address(), 0, first, state, point)
+        if not self._is_within(settled):
             if not math.isfinite(sum(settled[2:])):
                 return Solution(point, sizes, Status.NOT_FINITE, *settled)
             certificate = find_certificate(qp, point)
             if certificate is not None:
                 return Solution(point, sizes, certificate[0], *settled, certificate[1])
-            if is_projection(self.network):
+            if first is not None:
                 left = self.settler.max_steps - settled[0]
-                settled = settle_scaled(qp, state, point, tol, left, settled)
-            if not within(*settled[2:], tol):
+                settled = settle_scaled(qp, state, point, self.tol, left, settled)
+            if not self._is_within(settled):
                 return Solution(point, sizes, Status.NOT_SETTLED, *settled)
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
         self._keep(sizes, state)
         return Solution(point, sizes, Status.SOLVED, *settled)
 
-    def _settle(self, qp: QP, state: Vector, point: Vector) -> Settled:
-        """Settle a state (size,); of the budget, the second start of the projection keeps half."""
-        settler = self.settler
-        if type(settler) is ImplicitEuler and is_projection(self.network):
-            return settle_program(qp, state, point, self.tol, (settler.max_steps + 1) // 2)
-        return settler.settle(self.network, qp, state, point, self.tol)
+    @cached_property
+    def _first_start(self) -> Vector | None:
+        """Constants of the compiled `settle`, which leaves half of the budget to a second start.
+
+        None for another network or integrator.
+        """
+        if type(self.settler) is not ImplicitEuler or not is_projection(self.network):
+            return None
+        return np.array([self.tol, (self.settler.max_steps + 1) // 2])
+
+    def _is_within(self, settled: Settled) -> bool:
+        """Check that no residual is above the tolerance, and none NaN."""
+        tol = self.tol
+        return settled[2] <= tol and settled[3] <= tol and settled[4] <= tol
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.

@@ -19,7 +19,7 @@ _WORTH_A_PROCESS = 10_000
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
-Job = tuple[Matrix, Sizes, Matrix, bool]
+Job = tuple[Matrix, Sizes, Matrix]
 
 
 def _free_cores(programs: int) -> int:
@@ -70,15 +70,13 @@ class CheckPool:
         if kind is not None and self._executor is not None:
             self._executor.shutdown(wait=False, kill_workers=True)
 
-    def submit(
-        self, programs: Matrix, sizes: Sizes, answers: Matrix, by_cost: bool = False
-    ) -> None:
+    def submit(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged.
 
         The arguments are those of `CrossCheck.check_block`.
         """
         number = self._count
-        job = (programs, sizes, answers, by_cost)
+        job = (programs, sizes, answers)
         self._count += 1
         self._collect(only_done=True)
         if len(self._waiting) < _AHEAD * self.workers:

@@ -166,30 +166,23 @@ class CrossCheck:
         words = str(getattr(status, "name", status)).lower().replace("_", " ")
         return words.removeprefix(f"{name} ")
 
-    def check_block(
-        self, programs: Matrix, sizes: Sizes, answers: Matrix, by_cost: bool = False
-    ) -> Agreement:
+    def check_block(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.
 
         Args:
             programs: One `QP.data` a row.
             sizes: Their `QP.sizes`.
             answers: The answers to be judged: x (N, n), or points (N, 2 n + m + p).
-            by_cost: Measure the gap in x in the norm of P. Where it is above the tolerance and x is
-                not unique, since no cost acts along all directions, that is done anyhow. Such a
-                program has no proof: it is left empty.
 
         Returns:
             Gaps, residuals and judges, one row a program and one column a reference.
         """
         agreement = Agreement.empty(len(answers), len(self.solvers))
         for k, name in enumerate(self.solvers):
-            if name != PROOF:
-                found = self._compared(name, programs, sizes, answers[:, : sizes[0]], by_cost)
-            elif by_cost:
-                continue
-            else:
+            if name == PROOF:
                 found = _proven(programs, sizes, answers)
+            else:
+                found = self._compared(name, programs, sizes, answers[:, : sizes[0]])
             agreement.solution_gap[:, k] = found[0]
             agreement.objective_gap[:, k] = found[1]
             agreement.reference_residual[:, k] = found[2]
@@ -197,9 +190,13 @@ class CrossCheck:
         return agreement
 
     def _compared(
-        self, name: str, programs: Matrix, sizes: Sizes, x: Matrix, by_cost: bool
+        self, name: str, programs: Matrix, sizes: Sizes, x: Matrix
     ) -> tuple[Vector, Vector, Vector, NDArray[np.int8]]:
-        """Compare answers x (N, n) with those of a solver; returns the columns of `Agreement`."""
+        """Compare answers x (N, n) with those of a solver; returns the columns of `Agreement`.
+
+        Where the gap is above the tolerance and x is not unique, since no cost acts along all
+        directions, it is measured in the norm of P.
+        """
         n = sizes[0]
         points, residuals = _answers(name, programs, sizes)
         judge = np.where(residuals <= self.reference_tolerance, 0, -1).astype(np.int8)
@@ -217,7 +214,7 @@ class CrossCheck:
         curved = np.einsum("ij,ijk,ik->i", step, cost, x + references) / 2.0
         objective_gap = np.abs(curved + np.einsum("ij,ij->i", step, linear))
         gap = np.abs(step).max(axis=1)
-        loose = np.full(len(x), by_cost)
+        loose = np.zeros(len(x), dtype=bool)
         for i in np.flatnonzero(gap > self.tolerance):
             qp = QP.from_data(programs[i], sizes)
             curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)

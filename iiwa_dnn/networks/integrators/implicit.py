@@ -18,6 +18,7 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import ClassVar
 
 import numpy as np
@@ -194,10 +195,16 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     return systems, time, primal, dual, gap
 
 
+@cache
+def settle_address() -> int:
+    """Return the address of `settle`, compiled at the first call."""
+    return ANSWER.address(settle)
+
+
 def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
     """Settle the projection network from `state` (size,); see `settle`."""
     n, m, p = qp.sizes
     check_size("state", state, 3 * n + m + p)
     check_size("point", point, 2 * n + m + p)
     constants = np.array([tol, max_systems])
-    return answer_program(qp.data, qp.sizes, ANSWER.address(settle), 0, constants, state, point)
+    return answer_program(qp.data, qp.sizes, settle_address(), 0, constants, state, point)
