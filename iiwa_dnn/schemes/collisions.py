@@ -239,7 +239,7 @@ class CollisionAvoidance(Limit):
         return any(obstacle.moves for obstacle in self.obstacles)
 
     def refresh(self, step: Step, constants: Vector) -> None:
-        """Put the moving obstacles where they are at a step's time."""
+        """Put the moving obstacles in the constants, (k,), where they are at a step's time."""
         self.scene(step.robot).move(constants, step.t)
 
     def settings(self) -> dict[str, Any]:

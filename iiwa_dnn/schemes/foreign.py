@@ -68,7 +68,7 @@ class BuiltLimits(_Built, Limit):
 
 
 def composed(scheme: Any, robot: Robot, q: Vector) -> Scheme:
-    """Compose the scheme of an object with `build_qp`, from its program at joint positions q (n,).
+    """Compose the scheme of an object with `build_qp`, from its program at a q (n,) [rad].
 
     Raises:
         InvalidInputError: The program has another number of variables than the object states.

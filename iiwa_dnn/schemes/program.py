@@ -138,10 +138,7 @@ class StepProgram:
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
         self.table: Table = np.array([head, *(block[1:] for block in self.blocks)], dtype=np.int64)
         self.refreshed = [block for block in self.blocks if block.part.refreshes]
-        own = [part.frame_name(robot) for part in self.parts if not part.copies]
-        further = [name for part in self.parts for name in part.extra_frames(robot)]
-        frames = dict.fromkeys([robot.tip, *self.target_frames, *own, *further])
-        self.kinematics = Kinematics(robot, frames, self.needs_inertia)
+        self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
         if self.rate_limits is not None:
             for start, _ in self.constants_of(CollisionAvoidance):
                 self.constants[start + BRAKED] = 1.0
@@ -165,6 +162,13 @@ class StepProgram:
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
             first += rows
         return first
+
+    def _frames(self) -> list[str]:
+        """Return the names of the frames whose placements the kernels read, the tip's first."""
+        robot = self.robot
+        own = [part.frame_name(robot) for part in self.parts if not part.copies]
+        further = [name for part in self.parts for name in part.extra_frames(robot)]
+        return list(dict.fromkeys([robot.tip, *self.target_frames, *own, *further]))
 
     @property
     def parts(self) -> list[Part]:

@@ -1,5 +1,6 @@
 """Bodies and pairs of a scene, laid out for compiled code, and their distances."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -126,13 +127,14 @@ class PairConstants(NamedTuple):
 
 
 class _Body(NamedTuple):
-    """A box with a radius in a frame of the robot, or in the world; for links the joint too."""
+    """A box with a radius in a frame of the robot, or in the world; a joint or a speed moves it."""
 
     name: str
     frame: int
     box: PlacedBox
     radius: float
     joint: int = 0
+    speed: float = 0.0
 
 
 class _Row(NamedTuple):
@@ -154,15 +156,17 @@ def make_scene(
         FileError: The collision geometry of the robot cannot be read.
     """
     _check_velocity_limits(robot)
-    bodies = [_link(robot, capsule) for capsule in collision_model(robot).capsules]
+    model = collision_model(robot)
+    bodies = [_link(robot, capsule) for capsule in model.capsules]
     links = len(bodies)
     for number, obstacle in enumerate(obstacles, 1):
         name = f"{type(obstacle).__name__} {number}"
-        bodies.append(_Body(name, -1, obstacle.box, obstacle.thickness))
-    pairs = list(collision_model(robot).pairs(robot)) if self_collision else []
-    speeds = [0.0] * links + [obstacle.speed for obstacle in obstacles]
-    pairs += [(i, k) for i in range(links, len(bodies)) for k in range(links) if bodies[k].joint]
-    rows = [_row(robot, bodies, i, k, speeds[i]) for i, k in pairs]
+        body = _Body(name, -1, obstacle.box, obstacle.thickness, speed=obstacle.speed)
+        bodies.append(body)
+    pairs = list(model.pairs(robot)) if self_collision else []
+    carried = [k for k in range(links) if bodies[k].joint]
+    pairs += itertools.product(range(links, len(bodies)), carried)
+    rows = [_row(robot, bodies, i, k) for i, k in pairs]
     if not rows:
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
@@ -199,8 +203,8 @@ def _link(robot: Robot, capsule: LinkCapsule) -> _Body:
     return _Body(capsule.link, index, box_around(*ends), capsule.radius, joint)
 
 
-def _row(robot: Robot, bodies: list[_Body], i: int, k: int, speed: float) -> _Row:
-    """Lay the pair of two bodies out, of which the first may move by a speed [m/s] of its own."""
+def _row(robot: Robot, bodies: list[_Body], i: int, k: int) -> _Row:
+    """Lay the pair of two bodies out."""
     first = bodies[i]
     second = bodies[k]
     center, rotation, half = second.box
@@ -211,7 +215,7 @@ def _row(robot: Robot, bodies: list[_Body], i: int, k: int, speed: float) -> _Ro
     bounds = bounds_of_motion(robot, first.joint, second.joint, ends)
     ball = float(not first.box.half_extents.any())
     radii = first.radius + second.radius
-    constants = PairConstants(*bounds[:4], speed, k, i, ball, radii)
+    constants = PairConstants(*bounds[:4], first.speed, k, i, ball, radii)
     return _Row(Pair(first.name, second.name), constants, bounds.moves, bounds.radii)
 
 

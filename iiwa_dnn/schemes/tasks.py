@@ -310,7 +310,7 @@ class RelativePoseTask(FrameTask):
         return (self.base,)
 
     def constants(self, robot: Robot) -> Vector:
-        """Return those of a task of a frame; without a pose the gain is 0."""
+        """Return those of a task of a frame, (33,); without a pose the gain is 0."""
         found = self._constants(robot, self.base, self.pose)
         found[GAIN] *= self.pose is not None
         return found
