@@ -11,7 +11,6 @@ from typing import Any, NoReturn
 
 import tomli_w
 import tyro
-from tqdm import tqdm
 
 from iiwa_dnn import checks
 from iiwa_dnn.app.words import SweepWords
@@ -100,8 +99,3 @@ def run_sweep(
     write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))
     sweep = Sweep(task, folder / "cells")
     return sweep, sweep.run(cells, workers=words.workers, dask=words.dask, quiet=words.quiet)
-
-
-def progress_bar(total: int, unit: str, quiet: bool) -> Any:
-    """Return a progress bar; it is hidden if standard error is not a terminal."""
-    return tqdm(total=total, unit=unit, dynamic_ncols=True, disable=True if quiet else None)

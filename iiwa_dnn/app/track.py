@@ -7,8 +7,9 @@ from inspect import signature
 from pathlib import Path
 
 import tomli_w
+from tqdm import tqdm
 
-from iiwa_dnn.app.command_line import SETTINGS_FILE, claim_folder, progress_bar
+from iiwa_dnn.app.command_line import SETTINGS_FILE, claim_folder
 from iiwa_dnn.app.settings import Tables, build, read_tables
 from iiwa_dnn.app.words import Export, Physics, Track
 from iiwa_dnn.control.controller import Controller
@@ -50,7 +51,8 @@ def _draw(options: Track, more: Tables, pictured: bool) -> int:
     if pictured:  # before the run, what draws them is asked for
         opengl_library()
         import_encoder()
-    with progress_bar(steps, "step", options.quiet) as bar:
+    # Hidden if standard error is no terminal.
+    with tqdm(total=steps, unit="step", disable=True if options.quiet else None) as bar:
         record = simulate(**arguments, progress=bar.update, far_start=True)
     draw_more = partial(save_moments, robot) if pictured else None
     beside = published(record.settings)

@@ -56,19 +56,21 @@ def test_what_an_example_takes_is_told(name: str, example: Example, tmp_path: Pa
     ("arguments", "said"),
     [
         ("control_loop.py 0", "steps: must be a whole number of at least 1"),
-        ("own_parts.py x", "float: 'x'"),
-        ("faulty_joints.py 1 2", "'2'"),
+        ("own_parts.py x", "'x'"),
+        ("faulty_joints.py 1 2", "Unrecognized options: 2"),
     ],
 )
-def test_what_an_example_does_not_take_is_told_in_one_line(
+def test_what_an_example_does_not_take_is_told(
     arguments: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     name, *words = arguments.split()
     assert call(name, *words) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert error.startswith(f"{name.removesuffix('.py')}: error: ")
+    assert "Traceback" not in error
     assert said in error
+    if "must be" in said:  # the package's own error, in one line; a wrong word is told by tyro
+        assert error.count("\n") == 1
+        assert error.startswith(f"{name.removesuffix('.py')}: error: ")
 
 
 def test_a_control_loop(example: Example) -> None:
