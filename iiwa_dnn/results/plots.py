@@ -304,9 +304,10 @@ def draw_error(axes: Axes, record: Record, largest: float | None = None) -> None
 
 def draw_orientation_error(axes: Axes, record: Record) -> None:
     """Draw the angle between the tool's orientation and the desired one over time."""
-    # Without the start, where it is rounding: a log scale would show little else.
-    error = orientation_error(record)[1:, np.newaxis]
-    draw_log(axes, record.t[1:], error, ["angle to the target"])
+    error = orientation_error(record)
+    draw_log(axes, record.t, error[:, np.newaxis], ["angle to the target"])
+    if error.any():  # without the start, where it is rounding
+        axes.set_ylim(bottom=max(axes.get_ylim()[0], 1e-5 * np.nanmax(error)))
     _label(axes, record, "Orientation error [rad]")
 
 
