@@ -1,8 +1,4 @@
-"""The cross-check behind a running loop: blocks of programs, judged here or in other processes.
-
-Every block is judged exactly once, in order of its number, wherever that happens: the blocks of a
-worker that dies are judged again here.
-"""
+"""The cross-check behind a running loop: blocks of programs, judged here or in other processes."""
 
 from __future__ import annotations
 
@@ -19,22 +15,18 @@ _WORTH_A_PROCESS = 10_000
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
+_LOST = (BrokenProcessPool, OSError)
+"""Errors of workers that died, or of processes that are not to be had."""
+
 Job = tuple[Matrix, Sizes, Matrix]
-
-
-def _free_cores(programs: int) -> int:
-    """Count the cores that are worth a process for so many programs."""
-    import loky
-
-    return loky.cpu_count() - 1 if programs >= _WORTH_A_PROCESS else 0
 
 
 class CheckPool:
     """Judges blocks of programs while others are still being made.
 
     A block goes to a worker process that has room for it; where none has, the caller's own process
-    judges it at once. So all cores work, and the number of waiting blocks is bounded. Used as a
-    context, it ends its workers where an exception leaves it.
+    judges it at once, as it does the blocks of a worker that died. Used as a context, it ends its
+    workers where an exception leaves it.
 
     Attributes:
         check: The references and the tolerances.
@@ -50,13 +42,15 @@ class CheckPool:
             workers: Processes beside the caller's; None takes the cores that are free, or none
                 where so few programs would not repay them.
         """
+        import loky
+
+        if workers is None:
+            worth = check.asks_solvers and programs >= _WORTH_A_PROCESS
+            workers = loky.cpu_count() - 1 if worth else 0
         self.check = check
-        self.workers = 0
-        if check.asks_solvers:
-            self.workers = _free_cores(programs) if workers is None else workers
-        self._judged: dict[int, Agreement] = {}
+        self.workers = workers
+        self._verdicts: dict[int, Agreement] = {}
         self._waiting: dict[int, tuple[Future[Agreement], Job]] = {}
-        self._count = 0
         self._executor: Any = None
         # Signals interrupt the main thread alone: of workers that another one starts, none is lost.
         self._starter = ThreadPoolExecutor(1)
@@ -75,18 +69,26 @@ class CheckPool:
 
         The arguments are those of `CrossCheck.check_block`.
         """
-        number = self._count
         job = (programs, sizes, answers)
-        self._count += 1
-        self._collect(only_done=True)
+        number = len(self._verdicts) + len(self._waiting)
+        for waiting, (future, _) in list(self._waiting.items()):
+            if future.done():
+                self._collect(waiting)
         if len(self._waiting) < _AHEAD * self.workers:
             try:
                 future = self._starter.submit(self._hand_on, job).result()
                 self._waiting[number] = (future, job)
                 return
-            except (BrokenProcessPool, RuntimeError, OSError):
+            except (*_LOST, RuntimeError):
                 self.workers = 0  # no processes to be had: go on alone
-        self._judged[number] = self.check.check_block(*job)
+        self._verdicts[number] = self.check.check_block(*job)
+
+    def finish(self) -> Agreement:
+        """Wait for every block and return the verdicts in the order of the programs."""
+        for number in list(self._waiting):
+            self._collect(number)
+        parts = [verdict for _, verdict in sorted(self._verdicts.items())]
+        return Agreement.joined(parts, len(self.check.solvers))
 
     def _hand_on(self, job: Job) -> Future[Agreement]:
         """Hand a block to a worker; start the workers first where there are none."""
@@ -98,21 +100,11 @@ class CheckPool:
         future: Future[Agreement] = self._executor.submit(self.check.check_block, *job)
         return future
 
-    def finish(self) -> Agreement:
-        """Wait for every block and return the verdicts in the order of the programs."""
-        self._collect(only_done=False)
-        parts = [self._judged[number] for number in range(self._count)]
-        return Agreement.joined(parts, len(self.check.solvers))
-
-    def _collect(self, only_done: bool) -> None:
-        """Collect the verdicts of the workers; judge the blocks again that one has lost."""
-        for number, (future, job) in list(self._waiting.items()):
-            if only_done and not future.done():
-                continue
-            del self._waiting[number]
-            try:
-                verdict = future.result()
-            except (BrokenProcessPool, OSError):
-                self.workers = 0
-                verdict = self.check.check_block(*job)
-            self._judged[number] = verdict
+    def _collect(self, number: int) -> None:
+        """Collect a worker's verdict; judge the block again if the worker has lost it."""
+        future, job = self._waiting.pop(number)
+        try:
+            self._verdicts[number] = future.result()
+        except _LOST:
+            self.workers = 0
+            self._verdicts[number] = self.check.check_block(*job)

@@ -152,20 +152,6 @@ class CrossCheck:
         """
         return self.check_block(qp.data[np.newaxis], qp.sizes, np.asarray(answer)[np.newaxis])
 
-    def status(self, name: str, qp: QP) -> str:
-        """Ask the reference of this name for a program's solution; return its status in words."""
-        import qpsolvers
-
-        options = {} if name == "proxqp" else OPTIONS[name]
-        try:
-            with _silence():
-                solution = qpsolvers.solve_problem(qp.to_qpsolvers(), solver=name, **options)
-        except Exception:  # whatever a reference raises, it has no answer
-            return "refused"
-        status = getattr(solution.extras.get("info"), "status", "not solved")
-        words = str(getattr(status, "name", status)).lower().replace("_", " ")
-        return words.removeprefix(f"{name} ")
-
     def check_block(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> Agreement:
         """Ask every reference for the solutions of N programs of one shape and compare.
 
