@@ -51,7 +51,7 @@ heart: $(STAMP)  ## draw the heart, every step checked; results in runs/heart
 physics: $(STAMP)  ## draw the heart in physics, with pictures and a video; in runs/physics
 	$(VENV_PYTHON) -m iiwa_dnn physics $(ARGS)
 
-view: $(STAMP)  ## replay a run in the browser (ARGS=runs/heart), or drive the arm live
+view: $(STAMP)  ## replay a run in the browser: ARGS=runs/heart
 	$(VENV_PYTHON) -m iiwa_dnn view $(ARGS)
 
 # As many processes as cores: threads of theirs would only wait for each other.
