@@ -44,7 +44,6 @@ class Flow(NamedTuple):
         unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
         step: Bound on the stable steps of explicit Euler [rho], at a state or for all of them
             (None); 0 where none is known to be stable, as everywhere if this is None.
-        kernel: Address of a compiled function of the rates, and its constants (k,); None without.
         limit: `linear_limit` at a state, if it is not that of the derivative.
     """
 
@@ -52,7 +51,6 @@ class Flow(NamedTuple):
     jacobian: Callable[[Vector], Matrix] | None = None
     unknowns: Callable[[Vector], Vector] | None = None
     step: Callable[[Vector | None], float] | None = None
-    kernel: tuple[int, Vector] | None = None
     limit: Callable[[Vector], float] | None = None
 
     def derivative(self, state: Vector) -> Matrix:
@@ -105,19 +103,28 @@ def evaluate_rates(
     enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
-def compiled_flow(
-    qp: QP, function: Rates, constants: Vector, size: int, **parts: Callable[..., Any] | None
-) -> Flow:
-    """Make the flow of a compiled function with its constants (k,), for states (size,)."""
-    address = RATES.address(function)
+class CompiledRates:
+    """Rates of a compiled function for one program, which explicit steps enter by its address.
 
-    def rates(state: Vector) -> Vector:
-        check_size("state", state, size)
-        result = np.empty(size)
-        evaluate_rates(qp.data, qp.sizes, address, constants, state, result)
+    Attributes:
+        address: Address of the function.
+        constants: Its constants, (k,).
+    """
+
+    def __init__(self, qp: QP, function: Rates, constants: Vector, size: int) -> None:
+        """Take a function for states (size,) with its constants (k,)."""
+        self.address = RATES.address(function)
+        self.constants = constants
+        self._qp = qp
+        self._size = size
+
+    def __call__(self, state: Vector) -> Vector:
+        """Evaluate at a state (size,)."""
+        qp = self._qp
+        check_size("state", state, self._size)
+        result = np.empty(self._size)
+        evaluate_rates(qp.data, qp.sizes, self.address, self.constants, state, result)
         return result
-
-    return Flow(rates, kernel=(address, constants), **parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,7 +171,8 @@ class Network:
         function = type(self).compiled_rates
         if function is None:
             raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
-        return compiled_flow(qp, function, self.constants(qp.sizes), self.state_size(qp))
+        constants = self.constants(qp.sizes)
+        return Flow(CompiledRates(qp, function, constants, self.state_size(qp)))
 
     def rates(self, qp: QP, state: Vector) -> Vector:
         """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""

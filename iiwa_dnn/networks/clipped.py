@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, compiled_flow
+from iiwa_dnn.networks.base import CompiledRates, Flow
 from iiwa_dnn.qp.dense import dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled
 from iiwa_dnn.qp.program import QP
@@ -46,15 +46,8 @@ class Clipped(NamedTuple):
     def flow(self, qp: QP, step: float, unknowns: Callable[[Vector], Vector] | None = None) -> Flow:
         """Make the flow, with one bound on its stable steps [rho]."""
         constants = np.concatenate(self, axis=None)
-        return compiled_flow(
-            qp,
-            clipped_rates,
-            constants,
-            self.offset.size,
-            jacobian=self.jacobian,
-            unknowns=unknowns,
-            step=lambda state: step,
-        )
+        rates = CompiledRates(qp, clipped_rates, constants, self.offset.size)
+        return Flow(rates, self.jacobian, unknowns, lambda state: step)
 
 
 @compiled

@@ -24,7 +24,7 @@ from typing import TypeGuard
 
 import numpy as np
 
-from iiwa_dnn.networks.base import Flow, Network, compiled_flow, kkt_product
+from iiwa_dnn.networks.base import CompiledRates, Flow, Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
 from iiwa_dnn.qp.layout import (
     Matrix,
@@ -195,18 +195,18 @@ class ProjectionNetwork(Network):
         """Set a program up; the rate of a program that moves has no effect."""
         size = self.state_size(qp)
 
+        rates = CompiledRates(qp, projection_rates, self.constants(qp.sizes), size)
+
         def jacobian(state: Vector) -> Matrix:
             result = np.zeros((size, size))
-            rates = made.rates(state)
-            differentiate(qp.data, qp.sizes, self.primal_projection, state, rates, result)
+            data = qp.data
+            differentiate(data, qp.sizes, self.primal_projection, state, rates(state), result)
             return result
 
         def step(state: Vector | None) -> float:
-            return self._stable_step(qp, None if state is None else state + made.rates(state))
+            return self._stable_step(qp, None if state is None else state + rates(state))
 
-        constants = self.constants(qp.sizes)
-        made = compiled_flow(qp, projection_rates, constants, size, jacobian=jacobian, step=step)
-        return made
+        return Flow(rates, jacobian, step=step)
 
     def _stable_step(self, qp: QP, moved: Vector | None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.

@@ -150,7 +150,7 @@ def test_derivatives_of_the_barriers_by_finite_differences() -> None:
     s = np.concatenate([0.2 * rng.standard_normal(5), [0.7, 1.2], [0.3]])
     ahead, behind = qp_at(1e-4).data, qp_at(-1e-4).data
     rate = QP.from_data(np.nan_to_num((ahead - behind) / 2e-4), qp_at(0.0).sizes)
-    rates = network.moving_flow(qp_at(0.0), rate).rates(s)
+    rates = network.flow(qp_at(0.0), rate).rates(s)
     # Along the rates the gradient decays at the rate 1: its own derivative is minus itself.
     h, step = gradient(s, 0.0), 1e-3
     moved = rates.copy()

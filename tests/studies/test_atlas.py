@@ -22,7 +22,6 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.app.main import main
 from iiwa_dnn.networks import Flow, Network
-from iiwa_dnn.networks.base import difference_jacobian
 from iiwa_dnn.studies import atlas, atlas_report, paper
 from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, learn
 from iiwa_dnn.studies.atlas_schemes import SCHEMES
@@ -105,7 +104,7 @@ def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
     qp = QP(qp.P, qp.q, A=qp.A, b=qp.b)
     rates = network.flow(qp).rates
     start = rng.standard_normal(network.state_size(qp))
-    limit = network.linear_limit(qp, start)  # without bounds it is the same everywhere
+    limit = network.flow(qp).linear_limit(start)  # without bounds it is the same everywhere
     for share, nearer in ((0.97, True), (1.03, False)):
         state = start
         sizes = []
@@ -143,7 +142,7 @@ class Damped(Network):
     def state_size(self, qp: QP) -> int:
         return qp.q.size + qp.b.size
 
-    def flow(self, qp: QP) -> Flow:
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         n = qp.q.size
 
         def rates(s: np.ndarray) -> np.ndarray:
@@ -151,18 +150,7 @@ class Damped(Network):
             gradient = qp.P @ s[:n] + qp.q + qp.A.T @ (s[n:] + over)
             return np.concatenate([np.clip(s[:n] - gradient, qp.lb, qp.ub) - s[:n], over])
 
-        return Flow(rates, lambda s: difference_jacobian(rates, s))
-
-    def read(self, qp: QP, state: np.ndarray, point: np.ndarray) -> tuple[float, float, float]:
-        n = qp.q.size
-        x, y = np.clip(state[:n], qp.lb, qp.ub), state[n:]
-        g = qp.P @ x + qp.q + qp.A.T @ y
-        z_box = np.where((x <= qp.lb) | (x >= qp.ub), -g, 0.0)
-        point[:] = np.concatenate([x, y, z_box])
-        return tuple(qp.residuals(x, y, None, z_box))
-
-    def stable_step(self, qp: QP, state: np.ndarray | None = None) -> float:
-        return 0.0
+        return Flow(rates)
 
 
 class Slow(Cost):
@@ -188,7 +176,7 @@ from iiwa_dnn.studies.atlas_disturbances import Disturbance
 
 @dataclass(frozen=True, kw_only=True)
 class Slow(ProjectionNetwork):
-    def flow(self, qp):
+    def flow(self, qp, rate=None):
         inner = super().flow(qp)
         return inner._replace(rates=lambda state: 0.5 * inner.rates(state))
 

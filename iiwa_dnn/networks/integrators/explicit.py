@@ -8,7 +8,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Network, enter_rates
+from iiwa_dnn.networks.base import CompiledRates, Network, enter_rates
 from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
 from iiwa_dnn.networks.projection import mark_active, stable_step
 from iiwa_dnn.qp.compiling import borrowed
@@ -60,11 +60,12 @@ class ExplicitEuler(Integrator):
                 raise InvalidInputError("P", f"{problem}; integrate implicitly")
             count = max(1, math.ceil(duration / stable))
         step = duration / count
-        if flow.kernel is not None:
-            explicit_program(qp.data, qp.sizes, *flow.kernel, state, step, count)
+        rates = flow.rates
+        if isinstance(rates, CompiledRates):
+            explicit_program(qp.data, qp.sizes, rates.address, rates.constants, state, step, count)
         else:
             for _ in range(count):
-                state += step * flow.rates(state)
+                state += step * rates(state)
         return count
 
 

@@ -135,7 +135,9 @@ class Doubled(ProjectionNetwork):
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         slow = super().flow(qp)
-        return Flow(lambda s: 2.0 * slow.rates(s), lambda s: 2.0 * slow.derivative(s))
+        jacobian = slow.derivative
+        twice = {"rates": lambda s: 2.0 * slow.rates(s), "jacobian": lambda s: 2.0 * jacobian(s)}
+        return slow._replace(**twice)
 
 
 @pytest.mark.parametrize("project", [True, False])
