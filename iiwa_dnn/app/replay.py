@@ -18,7 +18,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import ACTIONS, limits, orientation_error, position_error
+from iiwa_dnn.results.metrics import ACTIONS, limits, position_error, rotation_angle
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.results.scenery import obstacles_of
 from iiwa_dnn.robot import Robot
@@ -163,7 +163,6 @@ class Replay:
         """Serve the page; `tick` moves it. Errors as of `serve`."""
         self.record = record
         self._errors = np.linalg.norm(position_error(record), axis=1)
-        self._angles = orientation_error(record)
         self.server = serve(f"{robot.name} · iiwa_dnn", host, port)
         self._visualizer = show_robot(self.server, robot)
         self._add_scene()
@@ -237,6 +236,7 @@ class Replay:
         """Return the values of a sample as the rows of a table in Markdown."""
         record = self.record
         step = min(k, record.steps - 1)
+        angle = rotation_angle(record.rotation[k], record.rotation_desired[k])
         acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
         against = in_the_way({"rows": (), **record.settings}, *acting)
         action = ACTIONS.get(int(record.filled("action")[step]), "none")
@@ -245,7 +245,7 @@ class Replay:
         return [
             f"position error | {self._errors[k]:.3g} m",
             "---|---",
-            f"orientation error | {self._angles[k]:.3g} rad",
+            f"orientation error | {angle:.3g} rad",
             f"KKT residual | {record.kkt_residual[step]:.1e}",
             f"gap to the reference | {record.crosscheck_gap[step]:.1e} rad/s",
             f"policy | {', '.join([action, *map(describe, against)])}",
