@@ -210,9 +210,7 @@ class Controller:
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
         layout = step.layout
-        joints: Any = q
-        if not _is_plain(q, layout.dof):
-            joints = checks.finite_array("q", q, (layout.dof,))
+        joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
         row = np.empty(layout.width)
         samples = step.samples and target is None
         if not samples:
@@ -222,9 +220,19 @@ class Controller:
         if program.refreshed:
             program.refresh(joints, state.past[LAST], layout.targets(row), t, self.dt)
         state.past[Q] = joints
+        if self._answer(step, row, t, samples) and self._is_stoppable(step):
+            return Command(row, layout)
+        return self._yield(step, row)
+
+    def _answer(self, step: ControlStep, row: Vector, t: float, samples: bool) -> bool:
+        """Write the program of a step into a row, and answer it; return whether that was done.
+
+        The network is not asked if the task yielded at the last step, or the arm is halted.
+        """
+        state = self._state
         asks = state.halted is None and not state.yields
         network = self._warm_state(step)
-        solved = step.run(
+        solved: bool = step.run(
             row,
             step.arrays,
             state.past,
@@ -234,11 +242,7 @@ class Controller:
             samples,
             asks and network is not None,
         )
-        if asks and network is None:
-            solved = self._ask(step, row)
-        if solved and self._is_stoppable(step):
-            return Command(row, layout)
-        return self._yield(step, row)
+        return self._ask(step, row) if asks and network is None else solved
 
     def _ask(self, step: ControlStep, row: Vector) -> bool:
         """Ask a network that is not compiled, or has no state yet, for the answer to a program."""

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from iiwa_dnn.control.command import NOT_SETTLED, PAST, PLACEMENT, SOLVED, RowViews, row_views
+from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, row_views
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
     ALMOST,
@@ -113,7 +113,7 @@ def yield_step(
     """Answer a step for which the network has no answer, or whose task yielded at the last step.
 
     Args:
-        row: The row, (width,), with program and targets; its figures are those of that attempt.
+        row: The row, (width,), as `control_step` has left it.
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
         past: `ControllerState.past`, (5, dof).
         following: `ControllerState.following`, (5, dof), overwritten.
@@ -133,10 +133,7 @@ def yield_step(
     data = views.program.copy()
     own = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
     instant = instant_of(arrays, past, following)
-    for i in range(dof):
-        following[WANTED, i] = past[WANTED, i]
-    for k in range(views.blocking.size):
-        views.blocking[k] = 0.0
+    _begin(views, instant)
     kind = STOPPED
     factor = 0.0
     rest = 0.0
@@ -158,15 +155,18 @@ def yield_step(
         rest = _brake(views, own, instant, yielding, x)
     _note_crossed(views, own)
     _note_decision(views, own, yielding.weights, x, kind, factor, action)
-    _note_step(views, qp, own, x, past)
-    for i in range(PLACEMENT):
-        views.placement[i] = arrays.placements[table[0, 5], i]
-    following[REST, 0] = rest
-    for i in range(dof):
-        following[BEFORE, i] = past[LAST, i]
-        following[LAST, i] = x[i]
+    _note_command(views, qp, instant, x, rest)
     outlived(data)
     return int(views.decision[0])
+
+
+@compiled
+def _begin(views: RowViews, instant: Instant) -> None:
+    """Note that nothing is in the way, and that the last step's velocity is still wanted."""
+    for k in range(views.blocking.size):
+        views.blocking[k] = 0.0
+    for i in range(instant.q.size):
+        instant.following[WANTED, i] = instant.wanted[i]
 
 
 @compiled
@@ -243,15 +243,17 @@ def _note_decision(
 
 
 @compiled
-def _note_step(views: RowViews, qp: QPViews, own: QPViews, x: Vector, past: Matrix) -> None:
-    """Note the command x (n,), what it was computed at, its bounds, and the answer's residuals."""
+def _note_command(views: RowViews, qp: QPViews, instant: Instant, x: Vector, rest: float) -> None:
+    """Note the command x (n,), the answer's residuals, and what the next step has to know.
+
+    After the command a braking motion takes `rest` periods.
+    """
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
+    instant.following[REST, 0] = rest
     for i in range(views.dq.size):
         views.dq[i] = x[i]
-        views.bounds[0, i] = own.lb[i]
-        views.bounds[1, i] = own.ub[i]
-        for k in range(PAST):
-            views.past[k, i] = past[k, i]
+        instant.following[BEFORE, i] = instant.last[i]
+        instant.following[LAST, i] = x[i]
 
 
 @compiled
