@@ -155,7 +155,7 @@ def settled(
         qp: The program.
         yielding: How the network settles.
         state: Its state, (size,), advanced.
-        point: The point that the state stands for, overwritten.
+        point: The point that the state stands for, (2 n + m + p,), overwritten.
         figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
             others are overwritten.
         tolerances: Residual, in tolerances, up to which the program counts as solved.
@@ -179,9 +179,10 @@ def settled_again(
     figures: Vector,
     tolerances: float,
 ) -> bool:
-    """Settle the network from its last state or, if need be, from a cold start, as `settled`.
+    """Settle the network from its last state or, if need be, from a cold start.
 
-    Where that fails, the state is cold again.
+    The state (size,), the point (2 n + m + p,) and the figures (5,) are those of `settled`. Where
+    that fails, the state is cold again.
     """
     for _ in range(2):
         if settled(qp, yielding, state, point, figures, tolerances):
@@ -308,7 +309,7 @@ def _search(
 
 @compiled
 def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
-    """Turn a step's program into the scaled one."""
+    """Turn a step's program, with task rows of some weights (p,), into the scaled one."""
     for j in range(qp.b.size):
         if weights[j] > 0.0:
             qp.b[j] *= factor
@@ -316,7 +317,10 @@ def scale_task(qp: QPViews, weights: Vector, factor: float) -> None:
 
 @compiled
 def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
-    """Turn a step's program into the softened one, of which `retreat` is tau."""
+    """Turn a step's program, with weights (p,) of its rows, into the softened one.
+
+    Its tau is `retreat`.
+    """
     n = qp.q.size
     fastest = FASTEST
     length = 0.0

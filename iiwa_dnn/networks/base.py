@@ -42,9 +42,9 @@ class Flow(NamedTuple):
         jacobian: Its derivative where it has one, and one of its limits at a kink,
             (state_size, state_size); None: it is computed by differences.
         unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
-        step: Bound on the stable steps of explicit Euler [rho], at a state or for all of them
-            (None); 0 where none is known to be stable, as everywhere if this is None.
-        limit: `linear_limit` at a state, if it is not that of the derivative.
+        step: Bound on the stable steps of explicit Euler [rho], at a state (size,) or for all
+            of them (None); 0 where none is known to be stable, as everywhere if this is None.
+        limit: `linear_limit` at a state (size,), if it is not that of the derivative.
     """
 
     rates: Callable[[Vector], Vector]

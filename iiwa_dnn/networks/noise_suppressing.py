@@ -65,6 +65,6 @@ class NoiseSuppressingNetwork(ZeroingNetwork):
     def step(self, state: Vector | None) -> float:
         """Bound the steps of explicit Euler [rho] near rest, where the activations are linear.
 
-        Both eigenvalues, -gamma and -eta, are real.
+        The bound is the same at every state (size,). Both eigenvalues, -gamma and -eta, are real.
         """
         return 2.0 / max(self.integral, self.proportional)

@@ -105,7 +105,10 @@ class ZeroingNetwork(Network):
         return wanted
 
     def step(self, state: Vector | None) -> float:
-        """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known."""
+        """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known.
+
+        The bound is the same at every state (size,).
+        """
         if self.growth or not isinstance(self.activation, Linear):
             return 0.0
         return min(2.0, 1.0 / self.integral) if self.integral else 2.0

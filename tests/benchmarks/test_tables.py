@@ -24,7 +24,7 @@ def test_every_kind_of_step_is_timed(
 ) -> None:
     found = rates.cases()
     some = {name: found[name] for name in ("the heart", "a limit active", "jumps")}
-    assert len(found) == 26
+    assert len(found) == 24
     monkeypatch.setattr(rates, "cases", lambda: some)
     rates.main(40)
     rows = [line.strip("| ").split(" | ") for line in capsys.readouterr().out.splitlines()[2:]]

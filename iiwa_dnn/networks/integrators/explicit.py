@@ -79,7 +79,10 @@ def explicit_program(
     step: float,
     count: int,
 ) -> None:
-    """Take explicit Euler steps for a program's flat array, `QP.data`; as `explicit_euler`."""
+    """Take explicit Euler steps for a program's flat array, `QP.data` (size,).
+
+    The constants (k,) and the state (size,), advanced in place, are those of `explicit_euler`.
+    """
     n, m, p = sizes
     qp = qp_views(data, n, m, p)
     explicit_euler(qp, rates, borrowed(constants), borrowed(state), step, count)
