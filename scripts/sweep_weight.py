@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.studies.sweeps import Outcome, Sweep
+from iiwa_dnn.studies.sweeps import sweep
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
 WEIGHTS = (0.2, 0.4, 0.6, 0.8, 0.9, 0.95, 1.0)
@@ -26,12 +26,11 @@ def heart(cell):
     scheme = iiwa_dnn.DoubleIndicator(weight=cell["weight"])
     record = iiwa_dnn.simulate(robot, scheme, reference, START, dt=cell["dt"])
     values = iiwa_dnn.compute_metrics(record)
-    numbers = {
+    return {
         "joint_drift_rad": values["joint_drift_rad"],
         "mean_kinetic_index": float(record.kinetic_index.mean()),
         "failures": iiwa_dnn.failures(record),
     }
-    return Outcome(numbers)
 
 
 def main(
@@ -39,7 +38,7 @@ def main(
 ):
     """Run the sweep on every core and write weight.png; 1 where a run failed."""
     cells = [{"weight": weight, "dt": dt} for weight in WEIGHTS]
-    outcomes = Sweep(heart, Path(folder)).run(cells)
+    outcomes = sweep(heart, cells, Path(folder))
     drift = [values["joint_drift_rad"] for values in outcomes]
     index = [values["mean_kinetic_index"] for values in outcomes]
     figure = Figure(figsize=(5, 4), layout="constrained")

@@ -39,7 +39,7 @@ def main():
         scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
         iiwa_dnn.simulate(slow, scheme, heart, start.q, dt=1e-2, duration=0.1)
     for substeps in ("computed", "implicit"):
-        measure(HeartRun(duration=1e-3, substeps=substeps).settings())
+        measure(HeartRun(duration=1e-3, substeps=substeps))
     qp = iiwa_dnn.QP(np.eye(2), np.zeros(2), A=np.ones((1, 2)), b=np.ones(1))
     iiwa_dnn.prove(qp, iiwa_dnn.solve_problem(qp, sharpen=True))
     iiwa_dnn.solve_batch(qp.P, qp.q, A=qp.A, b=qp.b)

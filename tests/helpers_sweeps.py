@@ -11,18 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from helpers_records import make_record
-from iiwa_dnn.studies.sweeps import Outcome, Sweep
+from iiwa_dnn.studies.sweeps import sweep
 
 
-def draw(settings: Mapping[str, Any]) -> Outcome:
-    """The mean of some seeded numbers; leaves a line in the file that the settings name."""
-    with Path(settings["log"]).open("a", encoding="utf-8") as file:
-        file.write(f"{settings['seed']} {os.environ.get('OMP_NUM_THREADS')}\n")
-    time.sleep(settings.get("sleep", 0.0))
-    samples = np.random.default_rng(settings["seed"]).standard_normal(1000)
-    record = make_record(q=np.full((11, 7), samples[0])) if settings.get("keep") else None
-    return Outcome({"mean": samples.mean(), "none": np.nan}, record)
+def draw(cell: Mapping[str, Any]) -> dict[str, Any]:
+    """The mean of some seeded numbers; leaves a line in the file that the cell names."""
+    with Path(cell["log"]).open("a", encoding="utf-8") as file:
+        file.write(f"{cell['seed']} {os.environ.get('OMP_NUM_THREADS')} {os.getpid()}\n")
+    time.sleep(cell.get("sleep", 0.0))
+    return {"mean": float(np.random.default_rng(cell["seed"]).standard_normal(1000).mean())}
 
 
 def cells(log: Path, count: int, **others: Any) -> list[dict[str, Any]]:
@@ -33,6 +30,10 @@ def cells(log: Path, count: int, **others: Any) -> list[dict[str, Any]]:
 def main() -> None:
     """A sweep in a process of its own, so that a test can kill it."""
     folder, log, count, sleep, workers = sys.argv[1:]
-    Sweep(draw, Path(folder)).run(
-        cells(Path(log), int(count), sleep=float(sleep)), workers=int(workers), quiet=True
+    sweep(
+        draw,
+        cells(Path(log), int(count), sleep=float(sleep)),
+        Path(folder),
+        workers=int(workers),
+        quiet=True,
     )

@@ -33,7 +33,6 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.statistics import trend
-from iiwa_dnn.studies.verdicts import judge_row
 
 Array = NDArray[np.float64]
 
@@ -315,9 +314,6 @@ def test_the_parameters_name_a_weight_that_no_result_belongs_to() -> None:
 def test_the_error_does_not_fall_with_the_weight_as_steadily_as_the_text_says() -> None:
     assert trend(paper.WEIGHTS, paper.MAX_ERROR) == "falling"
     assert np.sum(np.diff(paper.MAX_ERROR) > 0) == 2, "it rises twice on the way"
-    assert judge_row(paper.WEIGHTS, paper.MAX_ERROR, paper.MAX_ERROR)["paper_trend"] == (
-        "falling but at 2 of 6 steps"
-    )
     assert kendalltau(paper.WEIGHTS, paper.MAX_ERROR).statistic == pytest.approx(-9 / 21)
 
 

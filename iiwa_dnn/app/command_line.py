@@ -12,11 +12,10 @@ from typing import Any, NoReturn
 import tomli_w
 import tyro
 
-from iiwa_dnn import checks
 from iiwa_dnn.app.words import SweepWords
 from iiwa_dnn.errors import FileError, IiwaDnnError, NoSolutionError
 from iiwa_dnn.files import one_line, prepare_folder, write_text
-from iiwa_dnn.studies.sweeps import Settings, Sweep, Task
+from iiwa_dnn.studies.sweeps import Task, sweep
 
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
@@ -87,15 +86,14 @@ def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> 
 
 
 def run_sweep(
-    words: SweepWords, name: str, task: Task, cells: Sequence[Settings]
-) -> tuple[Sweep, list[dict[str, Any]]]:
+    words: SweepWords, name: str, task: Task, cells: Sequence[Any]
+) -> tuple[Path, list[Any]]:
     """Compute the cells of a sweep in a command's folder, but for those that are there.
 
-    Errors as of `claim_folder` and `Sweep.run`.
+    Returns the folder and the results; errors as of `claim_folder` and `sweep`.
     """
-    checks.integer("workers", 1 if words.workers is None else words.workers, 1)
     settings = {"command": name}
     folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
     write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))
-    sweep = Sweep(task, folder / "cells")
-    return sweep, sweep.run(cells, workers=words.workers, dask=words.dask, quiet=words.quiet)
+    how: dict[str, Any] = {"workers": words.workers, "dask": words.dask, "quiet": words.quiet}
+    return folder, sweep(task, cells, folder / "cells", **how)

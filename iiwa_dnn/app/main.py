@@ -8,7 +8,7 @@ from functools import partial
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional
 from tyro.extras import subcommand_cli_from_dict
@@ -29,7 +29,8 @@ def paper(
     quick: Flag = False,
     seeds: Count = None,
     duration: Number = None,
-    weight: Number = None,
+    table: Annotated[Literal["1", "2"] | None, shown("N")] = None,
+    weights: Annotated[tuple[float, ...], shown("X ...")] = (),
 ) -> int:
     """Run every experiment of the paper, each number beside the paper's.
 
@@ -38,15 +39,20 @@ def paper(
         quick: run 1 s and 5 seeds only, to see that all works
         seeds: number of noises in Table II (100)
         duration: length of each run [s] (10)
-        weight: weight xi in [0, 1] of the one column of Table I to run
+        table: table of the paper to run alone, 1 or 2 (everything)
+        weights: weights xi in [0, 1] of the columns of Table I (all)
     """
     from iiwa_dnn.app import paper
-    from iiwa_dnn.studies.runs import FULL, QUICK
+    from iiwa_dnn.studies import runs
 
-    scope = QUICK if quick else FULL
-    scope = replace(scope, seeds=scope.seeds if seeds is None else seeds)
-    scope = replace(scope, duration=scope.duration if duration is None else duration)
-    return paper.run(sweep, scope, weight)
+    scope = runs.QUICK if quick else runs.FULL
+    scope = replace(
+        scope,
+        seeds=scope.seeds if seeds is None else seeds,
+        duration=scope.duration if duration is None else duration,
+        weights=weights or scope.weights,
+    )
+    return paper.run(sweep, scope, f"table{table}" if table else None)
 
 
 def atlas(
@@ -62,22 +68,33 @@ def atlas(
 ) -> int:
     """Compare the networks of the field, and yours, at equal work.
 
-    A part of one's own is named as module:NAME or file.py:NAME.
+    A network of one's own is named as module:NAME or file.py:NAME.
 
     Args:
         sweep: words of all sweeps
         whole: run 100 seeds and all schemes: hours in place of minutes
         seeds: number of noises with the first scheme (5, whole: 100)
         other_seeds: number of noises with the other schemes and budgets (3)
-        networks: networks (all; beside your own too)
-        schemes: schemes (the first; whole: all)
-        disturbances: disturbances (all)
+        networks: networks (every one; beside your own too)
+        schemes: schemes (the first; whole: every one)
+        disturbances: disturbances beside the undisturbed runs (every one)
         work: work a control period [operations] (3e3 1e4 3e4)
     """
     from iiwa_dnn.app import atlas
+    from iiwa_dnn.studies.atlas import NETWORKS, SCHEMES, Size
 
-    parts = (networks, schemes, disturbances)
-    return atlas.run(sweep, atlas.size_of(whole, seeds, other_seeds, work, *parts))
+    if NETWORKS.keys().isdisjoint(networks):  # one's own beside all others
+        networks = (*NETWORKS, *networks)
+    few = Size()
+    size = Size(
+        networks=networks,
+        schemes=schemes or (tuple(SCHEMES) if whole else few.schemes),
+        disturbances=disturbances or few.disturbances,
+        work=work,
+        seeds=(100 if whole else few.seeds) if seeds is None else seeds,
+        others=few.others if other_seeds is None else other_seeds,
+    )
+    return atlas.run(sweep, size)
 
 
 def view(

@@ -1,37 +1,39 @@
-"""The atlas: networks, schemes and disturbances compared at equal work, paired by seed.
+"""The atlas: networks, schemes and noises compared at equal work, paired by seed.
 
-Every network drives the paper's arm along a path, in a loop that grants it so many floating-point
-operations a control period, a program's set-up included. All gains follow one rule: a share of the
-largest step that is stable with the linearised network, the best of `SHARES` in an undisturbed run,
-with one evaluation a period or with as many as the work allows.
-A network, scheme, reference or disturbance of one's own is named as ``module:NAME`` or
-``file.py:NAME``.
+Every network drives the paper's arm along a path in continuous mode, and is granted so many
+floating-point operations a control period, a program's set-up included. All gains follow one rule:
+a share of the largest step that is stable with the linearised network, the best of `SHARES` in an
+undisturbed run, with one evaluation a period or with as many as the work allows. A network of one's
+own is named as ``module:NAME`` or ``file.py:NAME``.
 """
 
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError
+from iiwa_dnn import checks
+from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, NotFoundError
 from iiwa_dnn.networks import (
+    ActivatedNetwork,
     DualNetwork,
+    GradientNetwork,
     Network,
     NoiseSuppressingNetwork,
+    OneLayerNetwork,
     PrimalDualNetwork,
     ProjectionNetwork,
     SimplifiedDualNetwork,
+    ZeroingNetwork,
 )
-from iiwa_dnn.networks.activated import ActivatedNetwork
 from iiwa_dnn.networks.activations import FixedTime, PowerSigmoid, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.base import kkt_product
-from iiwa_dnn.networks.gradient import GradientNetwork
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
-from iiwa_dnn.networks.one_layer import OneLayerNetwork
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.networks.tracking import (
     EULER,
@@ -42,17 +44,32 @@ from iiwa_dnn.networks.tracking import (
     Formula,
     TrackingSolver,
 )
-from iiwa_dnn.networks.zeroing import ZeroingNetwork
-from iiwa_dnn.qp import QP, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
+from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.layout import Sizes
 from iiwa_dnn.references import Circle, Heart, Lissajous, Reference
-from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.studies.atlas_disturbances import DISTURBANCES, DT, Disturbance
-from iiwa_dnn.studies.atlas_loop import DisturbedLoop
-from iiwa_dnn.studies.atlas_schemes import FREE, SCHEMES
-from iiwa_dnn.studies.outside import digest, find_part
+from iiwa_dnn.results.metrics import position_error
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes import (
+    DoubleIndicator,
+    JointLimits,
+    KineticEnergy,
+    Manipulability,
+    OrientationTask,
+    PositionTask,
+    PseudoInverse,
+    Scheme,
+    literature,
+)
+from iiwa_dnn.simulation import simulate
+from iiwa_dnn.studies.outside import digest, load_part
+from iiwa_dnn.studies.paper import START
 from iiwa_dnn.studies.runs import paper_robot
-from iiwa_dnn.studies.sweeps import Outcome, Settings
+
+T = TypeVar("T")
+
+DT = 2e-3
+"""Control period [s]."""
 
 DURATION = 0.5
 """Length of a run [s]."""
@@ -69,12 +86,82 @@ SOLVED = 1e-9
 UNLIMITED = 1e9
 """Operations a control period that allow any number of evaluations."""
 
-PATHS: dict[str, Callable[[], Reference]] = {
-    "heart": partial(Heart, period=2.0),
-    "circle": partial(Circle, radius=0.05, period=2.0),
-    "lissajous": partial(Lissajous, amplitudes=(0.05, 0.05, 0.02), period=2.0),
+PATHS: tuple[Callable[[], Reference], ...] = (
+    partial(Heart, period=2.0),
+    partial(Circle, radius=0.05, period=2.0),
+    partial(Lissajous, amplitudes=(0.05, 0.05, 0.02), period=2.0),
+)
+"""Paths; the seeds take them in turn."""
+
+_AHEAD: dict[str, Any] = {"home": START, "tracking": "next", "next_gain": 10.2}
+_TASKS = [PositionTask(), OrientationTask()]
+
+SCHEMES: dict[str, Callable[[], Scheme]] = {
+    "double indicator": lambda: DoubleIndicator(**_AHEAD),
+    "double indicator, the paper's rows": lambda: DoubleIndicator(orientation="block", home=START),
+    "double indicator, position only": lambda: DoubleIndicator(orientation="none", **_AHEAD),
+    "minimum velocity": literature.minimum_velocity_norm,
+    "minimum kinetic energy": lambda: Scheme(
+        [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
+    ),
+    "infinity norm": lambda: literature.infinity_norm(paper_robot()),
+    "bi-criteria": lambda: literature.bi_criteria(paper_robot()),
+    "manipulability": lambda: Scheme([KineticEnergy(), Manipulability()], _TASKS, [JointLimits()]),
+    "soft rotation": lambda: Scheme(
+        [KineticEnergy(weight=0.01)], [PositionTask(), OrientationTask(weight=1.0)], [JointLimits()]
+    ),
+    "pseudo-inverse": PseudoInverse,
 }
-"""Paths by name; the seeds take them in turn."""
+"""Schemes by name; the first is the league's. The double indicator's rows ask for the target one
+period ahead, so that the joints' Euler steps leave no floor that hides a network's own error."""
+
+
+def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator, Vector], Matrix]:
+    """Return a noise of a course in time, that a seed gives a direction."""
+
+    def draw(rng: np.random.Generator, times: Vector) -> Matrix:
+        direction = rng.standard_normal(STATES) / np.sqrt(7.0)
+        noise: Matrix = (times[1] - times[0]) * np.outer(course(times), direction)
+        return noise
+
+    return draw
+
+
+STATES = 100
+"""Number of states that a noise is drawn for; no network has more."""
+
+NOISES: dict[str, Callable[[np.random.Generator, Vector], Matrix]] = {
+    "none": _along(np.zeros_like),
+    "constant": _along(np.ones_like),
+    "ramp": _along(lambda times: times),
+    "sinusoid": _along(lambda times: np.sin(10.0 * np.pi * times)),
+    "white": lambda rng, times: 0.01 * rng.standard_normal((times.size, STATES)),
+    "measurement": lambda rng, times: 1e-4 * rng.standard_normal((times.size, 7)),
+}
+"""Noise of each period, drawn for the times of a run [s], by the name of a disturbance.
+
+All but the last are added to x in the network's state, before each period's answer is read, or to
+all states of a network that computes x from them: constant 1 rad/s^2, ramp 1 rad/s^3, sinusoid
+1 rad/s^2 of 5 Hz, along a direction that the seed draws; white, 0.01 rad/s a period (the paper's).
+Measurement: 1e-4 rad on the joint positions.
+"""
+
+
+def disturbed(solver: DNNSolver, noise: Matrix) -> DNNSolver:
+    """Return the solver with noise (steps, k) [unit of x] in the state that is read."""
+    rows = iter(noise)
+    kind: Any = type(solver)
+
+    class Disturbed(kind):  # type: ignore[misc]
+        """The solver, disturbed."""
+
+        def _advanced(self, qp: QP, state: Vector, *taken: Any) -> Any:
+            width = 7 if self.network.carries_x else state.size
+            state[:width] += next(rows)[:width]
+            return super()._advanced(qp, state, *taken)
+
+    settings = {each.name: getattr(solver, each.name) for each in fields(solver) if each.init}
+    return Disturbed(**settings)
 
 
 @dataclass(frozen=True)
@@ -212,114 +299,125 @@ NETWORKS: dict[str, Entry] = {
 MEASURES = ("residual", "rms_error_m")
 
 
-PARTS: dict[str, tuple[Mapping[str, Any], tuple[type[Any], ...]]] = {
-    "network": (NETWORKS, (Entry, Network)),
-    "scheme": (SCHEMES, (Scheme,)),
-    "disturbance": (DISTURBANCES, (Disturbance,)),
-    "reference": (PATHS, (Reference,)),
-}
-"""Parts of the atlas by kind: those that it knows by name, and the classes of one from outside."""
+def _look_up(kind: str, name: str, known: Mapping[str, T]) -> T:
+    """Return a part by its name; raises NotFoundError."""
+    if name not in known:
+        raise NotFoundError(kind, name, known)
+    return known[name]
 
 
-def part(kind: str, name: str) -> Any:
-    """Return a part by its name or from outside, made anew where a class or a function makes it.
-
-    A disturbance is returned as its class, a network as its `Entry`.
+def entry_of(name: str) -> Entry:
+    """Return the entry of a network by its name, or of one from outside.
 
     Raises:
-        InvalidInputError: There is no such part in the file; and as of `find_part`.
-        NotFoundError: There is no part of that name.
+        InvalidInputError: There is no network in the file; and as of `load_part`.
+        NotFoundError: There is no network of that name.
     """
-    known, wanted = PARTS[kind]
-    found = find_part(kind, name, known)
-    if kind == "disturbance":
-        fits = isinstance(found, type) and issubclass(found, wanted)
-    else:
-        if callable(found) and not isinstance(found, wanted):
-            found = found()
-        fits = isinstance(found, wanted)
-    if not fits:
-        raise InvalidInputError(kind, f"{name} is no {wanted[-1].__name__}: {found!r}", found)
+    if ":" not in name:
+        return _look_up("network", name, NETWORKS)
+    found = load_part("network", name)
+    if callable(found) and not isinstance(found, Entry | Network):
+        found = found()
+    if not isinstance(found, Entry | Network):
+        raise InvalidInputError("network", f"{name} is no Network: {found!r}", found)
     return still(found) if isinstance(found, Network) else found
 
 
-def cell(network: str, **changes: Any) -> dict[str, Any]:
-    """Return the settings of one cell, all runs of a combination, with some of them changed.
+@dataclass(frozen=True)
+class Cell:
+    """All runs of a combination.
 
-    They are the network's name; ``scheme`` and ``disturbance``, names; ``work``, operations a
-    control period, and ``most``, evaluations at most; ``share`` of the linear limit; ``seeds``, a
-    number; ``paths``, names that the seeds take in turn; ``dt`` [s]; and a hash of every file from
-    outside, so that a cell is computed anew after a change of it.
+    Attributes:
+        network: Name of the network.
+        scheme: Name of the scheme.
+        disturbance: Name of the disturbance.
+        work: Operations a control period.
+        most: Evaluations a control period at most; None: as many as the work allows.
+        share: Share of the linear limit.
+        seeds: Number of runs.
+        dt: Control period [s].
+        source: Hash of the file of a network from outside: a changed one is computed anew.
     """
-    settings = {
-        "network": network,
-        "scheme": next(iter(SCHEMES)),
-        "disturbance": "none",
-        "work": 10_000.0,
-        "most": None,
-        "share": SHARES[-1],
-        "seeds": 1,
-        "paths": list(PATHS),
-        "dt": DT,
-        **changes,
-    }
-    if settings["disturbance"] == "none":  # only the paths differ
-        settings["seeds"] = min(settings["seeds"], len(settings["paths"]))
-    names = [network, settings["scheme"], settings["disturbance"], *settings["paths"]]
-    return {**settings, "files": [digest(name) for name in names if ":" in name]}
+
+    network: str
+    scheme: str = next(iter(SCHEMES))
+    disturbance: str = "none"
+    work: float = 10_000.0
+    most: int | None = None
+    share: float = SHARES[-1]
+    seeds: int = 1
+    dt: float = DT
+    source: str = field(default="", init=False)
+
+    def __post_init__(self) -> None:
+        """Hash the file; undisturbed runs differ by their paths alone."""
+        if self.disturbance == "none":
+            object.__setattr__(self, "seeds", min(self.seeds, len(PATHS)))
+        if ":" in self.network:
+            object.__setattr__(self, "source", digest("network", self.network))
 
 
-class Size(NamedTuple):
+@dataclass(frozen=True)
+class Size:
     """Size of a league.
 
     Attributes:
         networks: Names of the networks.
-        schemes: Names of the schemes.
-        disturbances: Names of the disturbances.
-        paths: Names of the paths.
-        work: Operations a control period; the middle one with everything, the others with the
-            first scheme, undisturbed and with white noise.
+        schemes: Names of the schemes; the first is the league's.
+        disturbances: Names of the disturbances, ``none`` among them.
+        work: Operations a control period, rising; the middle one with everything, the others with
+            the first scheme, undisturbed and with white noise.
         seeds: Runs of each cell with chance in it, with the first scheme.
         others: Runs of each such cell with another scheme or budget.
     """
 
-    networks: Sequence[str]
-    schemes: Sequence[str]
-    disturbances: Sequence[str]
-    paths: Sequence[str]
-    work: Sequence[float]
-    seeds: int
-    others: int
+    networks: Sequence[str] = tuple(NETWORKS)
+    schemes: Sequence[str] = tuple(SCHEMES)[:1]
+    disturbances: Sequence[str] = tuple(NOISES)
+    work: Sequence[float] = (3e3, 1e4, 3e4)
+    seeds: int = 5
+    others: int = 3
+
+    def __post_init__(self) -> None:
+        """Check that all parts are there; undisturbed runs are, since gains are chosen by them.
+
+        Raises:
+            NotFoundError: There is no part of a name.
+            InvalidInputError: A number is out of range, or a network from outside is none.
+        """
+        for name in self.schemes:
+            _look_up("scheme", name, SCHEMES)
+        for name in self.disturbances:
+            _look_up("disturbance", name, NOISES)
+        for name in self.networks:
+            entry_of(name)
+        if not self.work or not min(self.work) > 0.0 or list(self.work) != sorted(set(self.work)):
+            raise InvalidInputError("work", "must rise from above 0", self.work)
+        checks.integer("seeds", self.seeds, 1)
+        kinds = tuple(dict.fromkeys(("none", *self.disturbances)))
+        object.__setattr__(self, "disturbances", kinds)
 
     @property
     def middle(self) -> float:
         """The budget with which everything is run."""
         return self.work[len(self.work) // 2]
 
-    def check(self) -> None:
-        """Check that all parts are there; raises NotFoundError or InvalidInputError."""
-        parts = (self.networks, self.schemes, self.disturbances, self.paths)
-        for kind, names in zip(PARTS, parts, strict=True):
-            for name in names:
-                part(kind, name)
 
-
-def gain_cells(size: Size) -> list[dict[str, Any]]:
+def gain_cells(size: Size) -> list[Cell]:
     """List the cells of the search for gains, undisturbed, with the first scheme.
 
     They are every share with one evaluation a period and with all that the work allows.
     """
-    common = {"scheme": size.schemes[0], "work": size.middle, "paths": list(size.paths)[:1]}
     return [
-        cell(network, share=share, most=most, **common)
+        Cell(network, size.schemes[0], work=size.middle, share=share, most=most)
         for network in size.networks
         for share, most in product(SHARES, (None, 1))
-        if part("network", network).paced or (share == SHARES[-1] and most is None)
+        if entry_of(network).paced or (share == SHARES[-1] and most is None)
     ]
 
 
 def best_gains(
-    cells: Iterable[Settings], results: Iterable[Mapping[str, Any]]
+    cells: Iterable[Cell], results: Iterable[Mapping[str, Any]]
 ) -> dict[str, dict[str, Any]]:
     """Choose each network's ``share`` and ``most``: those with the smallest residual.
 
@@ -327,72 +425,39 @@ def best_gains(
     """
     best: dict[str, tuple[float, float, bool]] = {}
     gains = {}
-    for settings, result in zip(cells, results, strict=True):
-        name = settings["network"]
+    for cell, result in zip(cells, results, strict=True):
         residual = result["residual"][0]
         found = np.inf if residual is None else max(residual, SOLVED)
-        key = (found, -settings["share"], settings["most"] is not None)
-        if name not in best or key < best[name]:
-            best[name] = key
-            gains[name] = {"share": settings["share"], "most": settings["most"]}
+        key = (found, -cell.share, cell.most is not None)
+        if cell.network not in best or key < best[cell.network]:
+            best[cell.network] = key
+            gains[cell.network] = {"share": cell.share, "most": cell.most}
     return gains
 
 
-def of_league(scheme: str, disturbance: str) -> str:
-    """Return the scheme of a league's column: where a joint is locked, the orientation is free.
-
-    Six joints cannot hold it on the path, so that the program would have no solution.
-    """
-    locked = disturbance == "locked" and scheme == next(iter(SCHEMES))
-    return FREE if locked else scheme
-
-
-def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """List the cells of a league whose gains are known.
 
     Every network with every disturbance, each scheme in turn; the other budgets; and the control
     periods for the zeroing networks.
     """
     first = size.schemes[0]
-    pairs = [(scheme, kind) for scheme in size.schemes for kind in size.disturbances]
-
-    def more(network: str, **changes: Any) -> dict[str, Any]:
-        return cell(
-            network,
-            **{
-                "scheme": first,
-                "work": size.middle,
-                **gains[network],
-                "seeds": size.others,
-                "paths": list(size.paths),
-                **changes,
-            },
-        )
-
-    found = [
-        more(
-            network,
-            scheme=of_league(scheme, kind),
-            disturbance=kind,
-            seeds=size.seeds if scheme == first else size.others,
-        )
-        for network, (scheme, kind) in product(size.networks, pairs)
-    ]
-    found += [
-        more(network, disturbance=kind, work=work)
-        for network, kind, work in product(size.networks, ("none", "white"), size.work)
-        if work != size.middle and kind in size.disturbances
-    ]
-    found += [
-        more(network, dt=dt, work=UNLIMITED, most=1, seeds=1)
-        for network, dt in product(size.networks, PERIODS)
-        if isinstance(part("network", network).network, ZeroingNetwork)
-    ]
-    unique = {repr(settings): settings for settings in found}
-    return list(unique.values())
+    found = []
+    for network in size.networks:
+        own = Cell(network, first, work=size.middle, seeds=size.others, **gains[network])
+        for scheme, kind in product(size.schemes, size.disturbances):
+            seeds = size.seeds if scheme == first else size.others
+            found.append(replace(own, scheme=scheme, disturbance=kind, seeds=seeds))
+        for kind, work in product(("none", "white"), size.work):
+            if work != size.middle and kind in size.disturbances:
+                found.append(replace(own, disturbance=kind, work=work))
+        if isinstance(entry_of(network).network, ZeroingNetwork):
+            once = replace(own, work=UNLIMITED, most=1, seeds=1)
+            found += [replace(once, dt=dt) for dt in PERIODS]
+    return found
 
 
-def measure(settings: Settings) -> Outcome:
+def measure(cell: Cell) -> dict[str, Any]:
     """Carry out the runs of one cell.
 
     Returns:
@@ -402,17 +467,18 @@ def measure(settings: Settings) -> Outcome:
         period and their operations.
     """
     runs: list[dict[str, Any]] = []
-    failures = []
-    for seed in range(settings["seeds"]):
+    failures = set()
+    for seed in range(cell.seeds):
         try:
-            with np.errstate(all="ignore"):  # a network that diverges ends its run
-                runs.append(_run(settings, seed))
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a network that diverges ends its run
+                runs.append(_run(cell, seed))
         except (IiwaDnnError, np.linalg.LinAlgError) as error:
-            runs.append(dict.fromkeys(MEASURES))
-            failures.append(str(error))
-    values: dict[str, Any] = {name: [run[name] for run in runs] for name in MEASURES}
-    taken = next((run["taken"] for run in runs if "taken" in run), None)
-    return Outcome({**values, "taken": taken, "failures": sorted(set(failures))})
+            runs.append({})
+            failures.add(str(error))
+    values: dict[str, Any] = {name: [run.get(name) for run in runs] for name in MEASURES}
+    taken = next((run["taken"] for run in runs if run), None)
+    return {**values, "taken": taken, "failures": sorted(failures)}
 
 
 def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
@@ -428,30 +494,48 @@ def evaluations_within(entry: Entry, sizes: Sizes, work: float) -> int:
     return count
 
 
-def _run(settings: Settings, seed: int) -> dict[str, Any]:
-    """Drive the arm once."""
-    dt = settings["dt"]
-    steps = round(DURATION / dt)
+def _run(cell: Cell, seed: int) -> dict[str, Any]:
+    """Drive the arm once.
+
+    Raises:
+        IiwaDnnError: The network has diverged, or the tool is 1 m away from its target.
+    """
     robot = paper_robot()
-    scheme = part("scheme", settings["scheme"])
-    reference = part("reference", settings["paths"][seed % len(settings["paths"])])
-    program = scheme.program(robot)
-    entry = part("network", settings["network"])
-    count = evaluations_within(entry, program.sizes, settings["work"])
-    if settings["most"] is not None:
-        count = min(count, settings["most"])
-    solver = entry.make(count, settings["share"], dt)
-    draw = part("disturbance", settings["disturbance"])
-    disturbance = draw(robot, np.random.default_rng(seed), steps, dt)
-    loop = DisturbedLoop(program, solver, disturbance, reference, steps, dt)
-    taken = [loop.step(k) for k in range(steps)]
-    errors, residuals = np.array(taken).T
-    half = slice(steps // 2, None)
-    if not np.isfinite(residuals[half]).all():
-        raise IiwaDnnError("the residual is not finite")
-    setup, each = entry.work(program.sizes)
+    scheme = SCHEMES[cell.scheme]()
+    entry = entry_of(cell.network)
+    sizes = scheme.program(robot).sizes
+    count = evaluations_within(entry, sizes, cell.work)
+    if cell.most is not None:
+        count = min(count, cell.most)
+    times = cell.dt * np.arange(round(DURATION / cell.dt), dtype=np.float64)
+    noise = NOISES[cell.disturbance](np.random.default_rng(seed), times)
+    solver = entry.make(count, cell.share, cell.dt)
+    measured: dict[str, Any] = {}
+    if cell.disturbance == "measurement":
+        measured = {"noise": noise, "noise_at": "measurement"}
+    elif cell.disturbance != "none":
+        solver = disturbed(solver, noise)
+    record = simulate(
+        robot,
+        scheme,
+        PATHS[seed % len(PATHS)]().anchored(Configuration(robot, START)),
+        START,
+        dt=cell.dt,
+        duration=DURATION,
+        mode="continuous",
+        solver=solver,
+        check=CrossCheck(()),
+        **measured,
+    )
+    error = np.linalg.norm(position_error(record), axis=1)
+    if record.settings["status"] != "completed":
+        raise IiwaDnnError(record.settings["status"])
+    if not error.max() < 1.0:
+        raise IiwaDnnError(f"the tool is {error.max():.2g} m away")
+    half = slice(record.steps // 2, record.steps)
+    setup, each = entry.work(sizes)
     return {
-        "residual": float(np.sqrt(np.mean(residuals[half] ** 2))),
-        "rms_error_m": float(np.sqrt(np.mean(errors[half] ** 2))),
+        "residual": float(np.sqrt(np.mean(record.kkt_residual[half] ** 2))),
+        "rms_error_m": float(np.sqrt(np.mean(error[half] ** 2))),
         "taken": [count, setup + count * each],
     }

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import inspect
-import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import matplotlib
 import numpy as np
+from tabulate import tabulate as lay_out
 
 from iiwa_dnn.files import write_text
-from iiwa_dnn.results.markdown import number, save_markdown
-from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
-from iiwa_dnn.results.publication import Table
-from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Size, of_league, part
+from iiwa_dnn.studies.atlas import MEASURES, SOLVED, UNLIMITED, Cell, Size
 from iiwa_dnn.studies.statistics import paired_difference
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from iiwa_dnn.qp import Vector
 
 Row = Mapping[str, Any]
@@ -36,9 +30,6 @@ below 2.3 % or an interval that holds zero is a tie. A place "2–5" says that o
 and that three may be as good.
 
 A number in brackets counts runs that failed; a network that lost one has no place."""
-
-_MARKERS = "os^vD*P"
-_number = partial(number, form=".2e", unknown="–")
 
 
 class Claim(NamedTuple):
@@ -94,7 +85,7 @@ CLAIMS = (
 )  # fmt: skip
 
 
-def tabulate(cells: Sequence[Row], results: Sequence[Row]) -> list[dict[str, Any]]:
+def tabulate(cells: Sequence[Cell], results: Sequence[Row]) -> list[dict[str, Any]]:
     """Lay out a row for each cell: settings, numbers of its runs, and means of those completed."""
     rows = []
     for cell, result in zip(cells, results, strict=True):
@@ -103,15 +94,20 @@ def tabulate(cells: Sequence[Row], results: Sequence[Row]) -> list[dict[str, Any
             known = [value for value in result[name] if value is not None]
             means[name] = float(np.mean(known)) if known else None
         lost = sum(value is None for value in result["residual"])
-        rows.append({**cell, "lost": lost, "mean": means, **result})
+        rows.append({**asdict(cell), "lost": lost, "mean": means, **result})
     return rows
 
 
 def find(rows: Sequence[Row], **wanted: Any) -> list[Row]:
     """Find the rows with these settings; the first row's scheme, budget and period by default."""
-    first = {name: rows[0][name] for name in ("work", "dt")}
-    first["scheme"] = of_league(rows[0]["scheme"], wanted.get("disturbance", ""))
-    return [row for row in rows if {**first, **wanted}.items() <= row.items()]
+    wanted = {name: rows[0][name] for name in ("scheme", "work", "dt")} | wanted
+    return [row for row in rows if wanted.items() <= row.items()]
+
+
+def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
+    """Return the row of a network for each disturbance, with the league's scheme and budget."""
+    kinds = dict.fromkeys(row["disturbance"] for row in rows)
+    return [find(rows, network=network, disturbance=kind)[0] for kind in kinds]
 
 
 def scores(rows: Sequence[Row], network: str) -> Vector | None:
@@ -123,15 +119,14 @@ def scores(rows: Sequence[Row], network: str) -> Vector | None:
     if any(row["lost"] for row in found):
         return None
     count = max(len(row["residual"]) for row in found)
-    values = [np.resize(np.maximum(row["residual"], SOLVED), count) for row in found]
-    mean: Vector = np.log10(values).mean(axis=0)
+    mean: Vector = np.mean([np.resize(_logarithms(row), count) for row in found], axis=0)
     return mean
 
 
-def of_every_disturbance(rows: Sequence[Row], network: str) -> list[Row]:
-    """Return the row of a network for each disturbance, with the league's scheme and budget."""
-    kinds = dict.fromkeys(row["disturbance"] for row in rows)
-    return [find(rows, network=network, disturbance=kind)[0] for kind in kinds]
+def _logarithms(row: Row) -> Vector:
+    """Return the decimal logarithms of a row's residuals, of a solved program that of `SOLVED`."""
+    logarithms: Vector = np.log10(np.maximum(row["residual"], SOLVED))
+    return logarithms
 
 
 def compare(one: Vector, other: Vector) -> int:
@@ -172,10 +167,9 @@ def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
         for name in (claim.better, claim.worse)
     ]
     lost = [bool(row["lost"]) for row in pair]
-    if any(lost):
-        sign = int(lost[0]) - int(lost[1])
-    else:
-        sign = compare(*(np.log10(np.maximum(row["residual"], SOLVED)) for row in pair))
+    sign = int(lost[0]) - int(lost[1])
+    if not any(lost):
+        sign = compare(*map(_logarithms, pair))
     verdict = {-1: "holds", 0: "tie", 1: "does not hold"}[sign]
     means = [f"{row['network']}: {_shown(row)}" for row in pair]
     return [claim.text, claim.disturbance, *means, verdict]
@@ -188,184 +182,81 @@ def orders(rows: Sequence[Row]) -> list[list[str]]:
     for name in dict.fromkeys(row["network"] for row in of_periods):
         own = [row for row in of_periods if row["network"] == name]
         means = [row["mean"]["residual"] for row in own]
-        slope = None
+        slope = "–"
         if None not in means:
-            slope = np.polyfit(np.log([row["dt"] for row in own]), np.log(means), 1)[0]
-        found.append([name, *map(_number, means), number(slope, ".2f", "–")])
+            exponent = np.polyfit(np.log([row["dt"] for row in own]), np.log(means), 1)[0]
+            slope = f"{exponent:.2f}"
+        found.append([name, *map(_shown, own), slope])
     return found
 
 
-def figure(rows: Sequence[Row]) -> Figure:
-    """Draw the tool's error against the work of a control period, a curve a network."""
-    drawn = new_figure(COLUMN, 4.6)
-    axis = drawn.subplots()
-    names = list(places(rows))
-    colors = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
-    for i, name in enumerate(names):
-        known = []
-        for work in sorted({row["work"] for row in rows} - {UNLIMITED}):
-            for row in find(rows, network=name, disturbance="none", work=work):
-                if not row["lost"]:
-                    known.append((row["taken"][1], row["mean"]["rms_error_m"]))
-        if known:
-            axis.loglog(
-                *np.transpose(known),
-                color="black" if name == PAPER else colors[i],
-                marker=_MARKERS[i % 7],
-                markersize=3,
-                linewidth=2.0 if name == PAPER else 0.9,
-                label=name,
-            )
-    axis.set_xlabel("operations a control period")
-    axis.set_ylabel("RMS position error [m]")
-    drawn.legend(loc="outside lower center", ncols=2, fontsize=5)
-    return drawn
+class Table(NamedTuple):
+    """A table of texts: the name of its files, its caption, heads of the columns, and rows."""
+
+    name: str
+    caption: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def show(self, form: str) -> str:
+        """Lay the table out in a format of tabulate."""
+        return str(lay_out(self.rows, self.head, form, disable_numparse=True))
 
 
-def write_report(folder: Path, size: Size, rows: Sequence[Row], head: str, plots: bool) -> str:
-    """Write ``report.md``, ``cards.md``, the tables and, where asked for, the figure.
-
-    Returns the text of the report.
-    """
-    ranking = places(rows)
+def report(folder: Path, size: Size, rows: Sequence[Row], head: str) -> str:
+    """Write each table as NAME.tex into a folder; return the report in Markdown."""
     parts = ["# Atlas of neurodynamic control", head]
-    if plots:
-        write_figures({"atlas": partial(figure, rows)}, folder)
-        parts.append("![Position error against the work of a control period](atlas.png)")
-    for table in _tables(size, rows, ranking):
-        table.save(folder)
-        parts.append(table.markdown())
-    parts.append(_REMARKS)
-    write_text(folder / "cards.md", "\n\n".join(card(rows, name, ranking) for name in ranking))
-    save_markdown(folder, parts)
-    return "\n\n".join(parts)
+    for table in _tables(size, rows):
+        write_text(folder / f"{table.name}.tex", table.show("latex_booktabs") + "\n")
+        parts += [f"## {table.caption}", table.show("pipe")]
+    return "\n\n".join([*parts, _REMARKS]) + "\n"
 
 
-def card(rows: Sequence[Row], name: str, ranking: Mapping[str, str]) -> str:
-    """Write a network's card: ODE, source and promises, its work, and what was measured."""
-    entry = part("network", name)
-    kind = entry.network if isinstance(entry.network, type) else type(entry.network)
-    inner = getattr(entry.network, "network", entry.network)
-    modules = dict.fromkeys([kind.__module__, type(inner).__module__])
-    texts = [inspect.getdoc(sys.modules[name]) for name in modules if name != "abc"]
-    found = of_every_disturbance(rows, name)
-    undisturbed = found[0]
-    activation = getattr(entry.network, "activation", None)
-    lines = [
-        f"# {name}",
-        *(text for text in texts if text),
-        f"- class: `{kind.__name__}`; place in this league: {ranking[name]}",
-        f"- gain: {undisturbed['share']:g} of the linear limit",
-    ]
-    if undisturbed["taken"]:
-        count, work = undisturbed["taken"]
-        lines.append(f"- a control period: evaluations {count}, operations {work:.0f}")
-    if activation is not None:
-        bound = activation.settle_time(1.0)
-        within = f"within {bound:g} rho" if bound < np.inf else "not within a bounded time"
-        lines.append(f"- settles from an error of 1 {within}")
-    lines += [
-        f"- {row['disturbance']}: residual {_shown(row)}, tool {_shown(row, 'rms_error_m')} m"
-        for row in found
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def _tables(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list[Table]:
+def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
     """Lay out the tables of a report."""
+    ranking = places(rows)
     head = ["place", "network", "evaluations", *size.disturbances]
     of = f"{size.schemes[0]}, {size.middle:g} operations a control period"
     claims = [
-        claim
+        judge(rows, claim)
         for claim in CLAIMS
         if {claim.better, claim.worse} <= set(size.networks)
         and claim.disturbance in size.disturbances
     ]
+    periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
+    position = partial(_shown, measure="rms_error_m")
     tables = [
         Table("league", f"RMS KKT residual: {of}", head, _league(rows, ranking, _shown)),
-        Table(
-            "errors",
-            f"RMS position error of the tool [m]: {of}",
-            head,
-            _league(rows, ranking, partial(_shown, measure="rms_error_m")),
-        ),
-        Table(
-            "seeds",
-            f"Median RMS KKT residual of the seeds (seeds below {SOLVED:g}, above 1): {of}",
-            head,
-            _league(rows, ranking, _of_seeds),
-        ),
-        Table(
-            "spread",
-            f"Geometric mean of the columns, residuals below {SOLVED:g} counted as that: {of}",
-            ["place", "network", "mean of the seeds", "smallest", "largest"],
-            _spread(rows, ranking),
-        ),
+        Table("errors", f"RMS position error [m]: {of}", head, _league(rows, ranking, position)),
         Table(
             "verdicts",
-            "Claims of the papers that cards.md names, by the residual of pairs of runs",
+            "Claims of the papers, by the residual of pairs of runs",
             ["claim", "disturbance", "network of the claim", "network beside it", "verdict"],
-            [judge(rows, claim) for claim in claims],
+            claims,
         ),
-    ]
-    found = orders(rows)
-    if found:
-        periods = sorted({row["dt"] for row in rows if row["work"] == UNLIMITED}, reverse=True)
-        columns = ["network", *(f"{1e3 * dt:g} ms" for dt in periods), "slope"]
-        caption = "RMS KKT residual against the control period, one evaluation each"
-        tables.append(Table("orders", caption, columns, found))
-    return [*tables, *_of_schemes(size, rows, ranking)]
-
-
-def _of_schemes(size: Size, rows: Sequence[Row], ranking: Mapping[str, str]) -> list[Table]:
-    """Lay out the tables of several schemes."""
-    if len(size.schemes) == 1 or "none" not in size.disturbances:
-        return []
-    lines = []
-    for name in ranking:
-        found = [
-            find(rows, network=name, scheme=scheme, disturbance="none")[0]
-            for scheme in size.schemes
-        ]
-        lines.append([name, *map(_shown, found)])
-    caption = "RMS KKT residual of each scheme, undisturbed"
-    others = [row for row in rows if row["seeds"] <= size.others]
-    firsts = [_firsts(others, scheme) for scheme in size.schemes[1:]]
-    columns = ["scheme", "first", "second", "third", "networks that lost a run"]
-    return [
-        Table("schemes", caption, ["network", *size.schemes], lines),
         Table(
-            "firsts", "The smallest geometric means of each other scheme's columns", columns, firsts
+            "orders",
+            "RMS KKT residual against the control period, one evaluation each",
+            ["network", *(f"{1e3 * dt:g} ms" for dt in periods), "slope"],
+            orders(rows),
+        ),
+        Table(
+            "schemes",
+            "RMS KKT residual of each scheme, undisturbed",
+            ["network", *size.schemes],
+            [
+                [
+                    name,
+                    *(
+                        _shown(find(rows, network=name, scheme=scheme, disturbance="none")[0])
+                        for scheme in size.schemes
+                    ),
+                ]
+                for name in ranking
+            ],
         ),
     ]
-
-
-def _firsts(rows: Sequence[Row], scheme: str) -> list[str]:
-    """Lay out the first three networks with a scheme, and how many lost a run."""
-    own = [row for row in rows if row["scheme"] == scheme]
-    ranking = places(own)
-    three = [f"{name} {mean}" for _, name, mean, *_ in _spread(own, ranking)[:3]]
-    lost = list(ranking.values()).count("–")
-    return [scheme, *three, *["–"] * (3 - len(three)), str(lost)]
-
-
-def _spread(rows: Sequence[Row], ranking: Mapping[str, str]) -> list[list[str]]:
-    """Lay out the geometric mean of the disturbances of every network that lost no run."""
-    lines = []
-    for name, place in ranking.items():
-        logarithms = scores(rows, name)
-        if logarithms is not None:
-            spread = (logarithms.mean(), logarithms.min(), logarithms.max())
-            lines.append([place, name, *(f"{10.0**value:.1e}" for value in spread)])
-    return lines
-
-
-def _of_seeds(row: Row) -> str:
-    """Show the median residual of a cell, and how many of its seeds are solved and lost."""
-    residuals = [np.inf if value is None else value for value in row["residual"]]
-    solved = sum(value <= SOLVED for value in residuals)
-    far = sum(value > 1.0 for value in residuals)
-    return f"{np.median(residuals):.1e} ({solved}, {far})"
+    return [table for table in tables if table.rows and len(table.head) > 2]
 
 
 def _league(
@@ -375,12 +266,13 @@ def _league(
     lines = []
     for name, place in ranking.items():
         found = of_every_disturbance(rows, name)
-        taken = next((row["taken"] for row in found if row["taken"]), None)
-        count = "–" if taken is None else str(taken[0])
-        lines.append([place, name, count, *map(show, found)])
+        taken = next((row["taken"] for row in found if row["taken"]), ["–"])
+        lines.append([place, name, str(taken[0]), *map(show, found)])
     return lines
 
 
 def _shown(row: Row, measure: str = "residual") -> str:
+    """Show the mean of a row, and how many of its runs were lost."""
+    mean = row["mean"][measure]
     lost = f" ({row['lost']} of {row['seeds']})" if row["lost"] else ""
-    return _number(row["mean"][measure]) + lost
+    return ("–" if mean is None else f"{mean:.2e}") + lost

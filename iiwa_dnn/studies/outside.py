@@ -1,67 +1,50 @@
 """Parts of one's own, named on the command line: ``module:NAME`` or ``path/to/file.py:NAME``."""
 
 import hashlib
-import importlib
-import importlib.util
+import runpy
 import sys
-from collections.abc import Mapping
 from functools import cache
+from importlib import import_module
 from pathlib import Path
-from types import ModuleType
-from typing import TypeVar
+from typing import Any
 
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.files import one_line
 
-T = TypeVar("T")
 
-
-def find_part(kind: str, name: str, known: Mapping[str, T]) -> T:
-    """Return a part by its name, or load it from outside the package if the name has a colon.
+def load_part(kind: str, name: str) -> Any:
+    """Load a part from outside the package.
 
     Args:
         kind: Kind of the part in errors, for example ``"network"``.
-        name: Name among `known`, or ``module:NAME``, or ``path/to/file.py:NAME``.
-        known: Parts by name.
+        name: ``module:NAME``, or ``path/to/file.py:NAME``.
 
     Raises:
-        NotFoundError: Neither `known` nor the module has the name.
+        NotFoundError: The module does not have the name.
         InvalidInputError: The module cannot be imported.
     """
-    if name in known:
-        return known[name]
-    place, colon, attribute = name.rpartition(":")
-    if not colon:
-        raise NotFoundError(kind, name, known)
-    module = _import(kind, place)
-    if not hasattr(module, attribute):
-        own = [each for each in vars(module) if not each.startswith("_")]
-        raise NotFoundError(f"{kind} in {place}", attribute, own)
-    found: T = getattr(module, attribute)
-    return found
+    place, _, attribute = name.rpartition(":")
+    own = _names_in(kind, place)
+    if attribute not in own:
+        raise NotFoundError(f"{kind} in {place}", attribute, [k for k in own if k[0] != "_"])
+    return own[attribute]
 
 
-def digest(name: str) -> str:
+def digest(kind: str, name: str) -> str:
     """Hash the file that a part from outside stands in."""
-    file = _import("part", name.rpartition(":")[0]).__file__
-    return hashlib.sha256(Path(str(file)).read_bytes()).hexdigest()[:24]
+    place = name.rpartition(":")[0]
+    file = _names_in(kind, place)["__file__"]
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:24]
 
 
 @cache
-def _import(kind: str, place: str) -> ModuleType:
-    """Import a module by its name, from the current folder too, or a file by its path."""
+def _names_in(kind: str, place: str) -> dict[str, Any]:
+    """Return what a module, found from the current folder too, or a file defines."""
     try:
-        if not place.endswith(".py"):
-            if str(Path.cwd()) not in sys.path:
-                sys.path.append(str(Path.cwd()))
-            return importlib.import_module(place)
-        path = Path(place).resolve()
-        spec = importlib.util.spec_from_file_location(path.stem, path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules.setdefault(path.stem, module)  # a dataclass looks for its module there
-        spec.loader.exec_module(module)
-        return module
+        if place.endswith(".py"):
+            return runpy.run_path(place, run_name=Path(place).stem)
+        if str(Path.cwd()) not in sys.path:
+            sys.path.append(str(Path.cwd()))
+        return vars(import_module(place))
     except Exception as error:  # whatever the file of others raises
         raise InvalidInputError(kind, f"{place} cannot be imported ({one_line(error)})") from error

@@ -1,10 +1,9 @@
-"""One run of the paper's heart from plain settings, and the numbers that are kept of it.
+"""One run of the paper's heart, and the numbers that are kept of it.
 
-`measure` is the task of the sweeps: its answer depends on its settings alone.
+`measure` is the task of the sweeps: its result depends on the `HeartRun` alone.
 """
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
 
@@ -27,7 +26,6 @@ from iiwa_dnn.schemes.tasks import Orientation
 from iiwa_dnn.simulation import NoiseEntry, simulate
 from iiwa_dnn.simulation.motion import Motion
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.sweeps import Outcome
 
 _KEPT = (
     "max_position_error_m",
@@ -38,7 +36,6 @@ _KEPT = (
     "max_kkt_residual",
     "position_limit_violation_rad",
     "velocity_limit_violation_rad_s",
-    "wall_time_s",
 )
 _HANDED_ON = ("dt", "duration", "mode", "motion", "noise", "noise_at", "filter_window", "seed")
 
@@ -50,6 +47,7 @@ class Scope:
     Attributes:
         duration: Length of each run [s]; the heart takes 10 s.
         seeds: Number of noises in Table II, two or more.
+        weights: Columns of Table I.
         laps: Number of hearts drawn to see the drift add up.
         laps_dt: Control period of those laps [s]; they are integrated by the midpoint rule.
         dt: Control period of everything else [s].
@@ -57,6 +55,7 @@ class Scope:
 
     duration: float = 10.0
     seeds: int = 100
+    weights: tuple[float, ...] = paper.WEIGHTS
     laps: int = 10
     laps_dt: float = 1e-3
     dt: float = paper.DT
@@ -67,6 +66,8 @@ class Scope:
             checks.positive(name, getattr(self, name))
         checks.integer("seeds", self.seeds, 2)
         checks.integer("laps", self.laps, 1)
+        for weight in self.weights:
+            checks.one_of("weights", str(weight), tuple(map(str, paper.WEIGHTS)))
 
 
 FULL = Scope()
@@ -95,7 +96,6 @@ class HeartRun:
         dt: Control period [s].
         duration: Length of the run [s].
         motion: Motion integrator.
-        keep_record: True to keep the run itself, for figures.
     """
 
     weight: float = paper.WEIGHT
@@ -111,12 +111,6 @@ class HeartRun:
     dt: float = paper.DT
     duration: float = 10.0
     motion: Motion = "euler"
-    keep_record: bool = False
-
-    def settings(self) -> dict[str, Any]:
-        """Return them in JSON types; runs that cannot differ have the same, and are run once."""
-        silent = replace(self, seed=0, noise_at="velocity") if self.noise == 0.0 else self
-        return asdict(silent)
 
     def run(self) -> Record:
         """Carry out the run, without reference solvers."""
@@ -148,27 +142,26 @@ def paper_robot() -> Robot:
     return load_robot("iiwa7").with_limits(lower=-paper.JOINT_LIMIT, upper=paper.JOINT_LIMIT)
 
 
-def measure(settings: Mapping[str, Any]) -> Outcome:
-    """Carry out the `HeartRun` of these settings and sum it up.
+def measure(run: HeartRun) -> dict[str, Any]:
+    """Carry out a run and sum it up.
 
     Returns:
         Some of `compute_metrics`, and: ``status``; ``total_variation_rad_s``, of the joint
         velocity that varies most; ``lap_drift_rad``, the largest joint drift after each whole
-        lap; ``jacobian_square_m2``, the mean over the path of tr(J J^T) for the position rows;
-        ``amplification``, of one explicit sub-step in continuous mode (`amplification`), else
-        None.
+        lap; ``max_kinetic_index_times_dt``, as the paper seems to print it; ``amplification``, of
+        one explicit sub-step in continuous mode (`amplification`), else None.
     """
-    run = HeartRun(**settings)
     record = run.run()
     metrics = compute_metrics(record)
-    values = {
+    index = metrics["max_kinetic_index"]
+    return {
         **{name: metrics[name] for name in _KEPT},
         "status": record.settings["status"],
         "total_variation_rad_s": total_variation(record),
         "lap_drift_rad": lap_drift(record, Heart().period),
-        **_along_the_path(run, record),
+        "max_kinetic_index_times_dt": None if index is None else index * run.dt,
+        "amplification": _largest_amplification(run, record),
     }
-    return Outcome(values, record if run.keep_record else None)
 
 
 def total_variation(record: Record) -> float:
@@ -176,8 +169,6 @@ def total_variation(record: Record) -> float:
 
     A smooth run's is the sum of its ups and downs; chatter adds its height at every step.
     """
-    if record.steps < 2:
-        return 0.0
     return float(np.abs(np.diff(record.dq, axis=0)).sum(axis=0).max())
 
 
@@ -206,21 +197,17 @@ def amplification(qp: QP, step: float) -> float:
     return float(growth.max(initial=0.0))
 
 
-def _along_the_path(run: HeartRun, record: Record) -> dict[str, float | None]:
-    """Evaluate Jacobian and stability at a hundred of the postures that the run went through."""
+def _largest_amplification(run: HeartRun, record: Record) -> float | None:
+    """Find the largest `amplification` along the path, at up to 101 of its postures."""
+    if run.mode != "continuous" or run.substeps == "implicit":
+        return None
     scheme = run.scheme()
     reference = run.reference()
-    explicit = run.mode == "continuous" and run.substeps != "implicit"
-    worst = 0.0
-    squares = []
-    # A hundred and one, or as many as there are.
+    found = []
     for k in np.unique(np.linspace(0, record.steps - 1, 101).astype(int)):
         conf = Configuration(paper_robot(), record.q[k])
-        squares.append(float(np.sum(conf.jacobian[:3] ** 2)))
-        if explicit:
-            qp = scheme.build_qp(conf, reference.at(float(record.t[k])))
-            # An explicit run's iterations are its sub-steps.
-            step = run.dt / record.settings["rho"] / float(record.iterations[k])
-            worst = max(worst, amplification(qp, step))
-    mean = float(np.mean(squares))
-    return {"jacobian_square_m2": mean, "amplification": worst if explicit else None}
+        qp = scheme.build_qp(conf, reference.at(float(record.t[k])))
+        # An explicit run's iterations are its sub-steps.
+        step = run.dt / record.settings["rho"] / float(record.iterations[k])
+        found.append(amplification(qp, step))
+    return max(found)

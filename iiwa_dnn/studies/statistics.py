@@ -1,4 +1,4 @@
-r"""Means with intervals, paired differences, and trends.
+r"""Means with intervals, paired differences, trends, and verdicts on numbers beside a paper's.
 
 With :math:`\bar x` the mean and s the standard deviation of k independent samples, the interval
 
@@ -8,12 +8,16 @@ holds the true mean with confidence c (Student's t). If two runs share their noi
 difference is taken run by run before it is averaged: the noise that both share cancels, and the
 interval is the narrower for it.
 
+A verdict is ``reproduced`` if every number is within a factor 2 of the paper's. Otherwise it is
+``same trend`` if the numbers go the same way as the paper's along the row, else ``not reproduced``.
+
 Sources: Student, "The probable error of a mean", Biometrika 6 (1908); M. G. Kendall, "A new measure
 of rank correlation", Biometrika 30 (1938).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -23,10 +27,17 @@ from scipy.stats import kendalltau, t as student
 
 from iiwa_dnn.checks import finite_array
 from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.files import plain
 
 CONFIDENCE = 0.95
 FLAT = 0.05
 """A series whose values differ by no more than this share of their mean is called constant."""
+
+FACTOR = 2.0
+"""Largest factor between a number and the paper's that still counts as reproduced."""
+
+NEGLIGIBLE = 1e-3
+"""A relative change below this is none, however narrow its interval; the paper's least is 0.015."""
 
 Trend = Literal["rising", "falling", "constant", "none"]
 
@@ -107,9 +118,47 @@ def trend(x: ArrayLike, y: ArrayLike) -> Trend:
     return "rising" if tau > 0.0 else "falling" if tau < 0.0 else "none"
 
 
-def trend_words(x: ArrayLike, y: ArrayLike) -> str:
-    """Name the trend of y over x, (k,), and the steps that go against it, if any."""
-    found = trend(x, y)
-    steps = np.diff(np.asarray(y)[np.argsort(x)])
-    against = {"rising": steps < 0.0, "falling": steps > 0.0}.get(found, np.zeros(0)).sum()
-    return f"{found} but at {against:.0f} of {steps.size} steps" if against else found
+def judge_row(
+    x: Sequence[float], paper: Sequence[float | None], ours: Sequence[float | None]
+) -> dict[str, Any]:
+    """Judge a row of numbers that belong to the increasing parameter x, all of one length.
+
+    The verdict is on the entries that the paper has: of a single one it is no trend, of none ``–``.
+    A number that we lack makes it ``not reproduced``.
+
+    Returns:
+        In JSON types: ``verdict``; ``ours_over_paper``, entry by entry, None where either is
+        missing.
+    """
+    # A number that is missing, of the paper's or of ours, is NaN here.
+    table = np.array([x, paper, ours], dtype=float)
+    at, theirs, mine = table[:, ~np.isnan(table[1])]
+    level = "not reproduced"
+    if at.size == 0:
+        level = "–"
+    elif all(map(_within_factor, mine / theirs)):
+        level = "reproduced"
+    elif at.size > 1 and not np.isnan(mine).any() and trend(at, mine) == trend(at, theirs):
+        level = "same trend"
+    return {
+        "verdict": level,
+        "ours_over_paper": plain(table[2] / table[1]),
+    }
+
+
+def judge_change(paper: float, ours: Estimate) -> dict[str, Any]:
+    """Judge a relative change, such as that of the error by the filter; -0.1 is a tenth less.
+
+    It is ``reproduced`` if the interval lies on the paper's side of zero and the mean is within a
+    factor 2, ``same trend`` if only the former, else ``not reproduced``. Returned as by
+    `judge_row`.
+    """
+    ratio = ours.mean / paper
+    level = "not reproduced"
+    if abs(ours.mean) >= NEGLIGIBLE and ours.sign == np.sign(paper):
+        level = "reproduced" if _within_factor(ratio) else "same trend"
+    return {"verdict": level, "ours_over_paper": [ratio]}
+
+
+def _within_factor(ratio: float) -> bool:
+    return 1.0 / FACTOR <= ratio <= FACTOR

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 
 import numpy as np
@@ -12,15 +11,21 @@ from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.studies import paper
-from iiwa_dnn.studies.runs import FULL, QUICK, HeartRun, Scope, lap_drift, measure, total_variation
+from iiwa_dnn.studies.runs import (
+    FULL,
+    QUICK,
+    HeartRun,
+    Scope,
+    lap_drift,
+    measure,
+    total_variation,
+)
 
-SHORT = HeartRun(duration=3e-3, keep_record=True)
+SHORT = HeartRun(duration=3e-3)
 
 
 def test_the_defaults_are_the_papers() -> None:
-    record = measure(replace(HeartRun(), duration=1e-3, keep_record=True).settings()).record
-    assert record is not None
-    asked = record.settings
+    asked = HeartRun(duration=1e-3).run().settings
     assert asked["mode"] == "continuous"
     assert asked["scheme"]["orientation"] == "block"
     assert asked["scheme"]["weight"] == 0.2
@@ -37,8 +42,7 @@ def test_every_setting_reaches_the_run() -> None:
         SHORT, weight=0.7, mode="converged", orientation="so3", kinetic="inertia", noise=0.02,
         noise_at="measurement", filter_window=3, seed=5, dt=2e-4, duration=4e-3, motion="midpoint",
     )  # fmt: skip
-    record = measure(run.settings()).record
-    assert record is not None
+    record = run.run()
     asked = record.settings
     for name in ("mode", "noise", "noise_at", "filter_window", "seed", "dt", "duration", "motion"):
         assert asked[name] == getattr(run, name), name
@@ -48,42 +52,27 @@ def test_every_setting_reaches_the_run() -> None:
 
 
 def test_the_baseline_and_the_sub_steps_reach_the_run() -> None:
-    baseline = measure(replace(SHORT, baseline=True, mode="converged").settings()).record
-    assert baseline is not None
+    baseline = replace(SHORT, baseline=True, mode="converged").run()
     assert baseline.settings["scheme"]["name"] == "pseudo-inverse"
-    three = measure(replace(SHORT, substeps=3).settings()).record
-    assert three is not None
-    np.testing.assert_array_equal(three.iterations, 3)
-    computed = measure(SHORT.settings())
-    assert computed.record is not None
-    np.testing.assert_array_equal(computed.record.iterations, 8)
-    implicit = measure(replace(SHORT, substeps="implicit").settings())
-    assert implicit.values["amplification"] is None
-    assert implicit.values["max_kkt_residual"] != computed.values["max_kkt_residual"]
+    np.testing.assert_array_equal(replace(SHORT, substeps=3).run().iterations, 3)
+    np.testing.assert_array_equal(SHORT.run().iterations, 8)
+    implicit = measure(replace(SHORT, substeps="implicit"))
+    assert implicit["amplification"] is None
+    assert implicit["max_kkt_residual"] != measure(SHORT)["max_kkt_residual"]
 
 
 def test_the_numbers_are_those_of_the_record() -> None:
-    outcome = measure(replace(SHORT, noise=0.01).settings())
-    assert outcome.record is not None
-    metrics = compute_metrics(outcome.record)
-    for name in set(outcome.values) & set(metrics) - {"wall_time_s"}:
-        assert outcome.values[name] == metrics[name], name
-    assert outcome.values["status"] == "completed"
-    assert measure(replace(SHORT, keep_record=False).settings()).record is None
-
-
-def test_settings_are_json_and_runs_that_cannot_differ_share_them() -> None:
-    assert json.loads(json.dumps(SHORT.settings())) == SHORT.settings()
-    assert HeartRun(**SHORT.settings()) == SHORT
-    still = replace(SHORT, seed=3, noise_at="network")
-    assert still.settings() == SHORT.settings()
-    noisy = replace(SHORT, noise=0.01)
-    assert replace(noisy, seed=3).settings() != noisy.settings()
-    assert replace(noisy, noise_at="network").settings() != noisy.settings()
+    run = replace(SHORT, noise=0.01)
+    values = measure(run)
+    metrics = compute_metrics(run.run())
+    for name in set(values) & set(metrics):
+        assert values[name] == metrics[name], name
+    assert values["status"] == "completed"
+    assert values["max_kinetic_index_times_dt"] == metrics["max_kinetic_index"] * 1e-4
 
 
 def test_growth_of_a_sub_step_tells_seven_from_eight() -> None:
-    growth = {k: measure(replace(SHORT, substeps=k).settings()).values for k in (7, 8)}
+    growth = {k: measure(replace(SHORT, substeps=k)) for k in (7, 8)}
     assert growth[7]["amplification"] > 1.0 > growth[8]["amplification"]
 
 
@@ -109,6 +98,7 @@ def test_the_scopes() -> None:
         ({"seeds": 1}, "seeds"),
         ({"laps": 0}, "laps"),
         ({"duration": 0.0}, "duration"),
+        ({"weights": (0.3,)}, "weights"),
     ):
         with pytest.raises(InvalidInputError, match=f"^{name}: "):
             Scope(**bad)

@@ -1,4 +1,4 @@
-"""Intervals, paired differences and trends, on numbers whose answer is known."""
+"""Intervals, paired differences, trends and verdicts, on numbers whose answer is known."""
 
 from __future__ import annotations
 
@@ -9,7 +9,14 @@ from scipy.stats import ttest_rel
 from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.studies.statistics import Estimate, estimate, paired_difference, trend, trend_words
+from iiwa_dnn.studies.statistics import (
+    Estimate,
+    estimate,
+    judge_change,
+    judge_row,
+    paired_difference,
+    trend,
+)
 
 
 def test_interval_of_four_numbers_worked_by_hand() -> None:
@@ -125,8 +132,52 @@ def test_bad_input_is_named(call, argument: str) -> None:
         call()
 
 
-def test_steps_against_a_trend_are_counted() -> None:
-    assert trend_words((1, 2, 3, 4), (4.0, 5.0, 2.0, 1.0)) == "falling but at 1 of 3 steps"
-    assert trend_words((4, 3, 2, 1), (1.0, 2.0, 5.0, 4.0)) == "falling but at 1 of 3 steps"
-    assert trend_words((1, 2, 3), (1.0, 2.0, 3.0)) == "rising"
-    assert trend_words((1, 2, 3), (2.0, 2.0, 2.0)) == "constant"
+X = (0.1, 0.2, 0.3)
+
+
+@pytest.mark.parametrize(
+    ("ours", "level"),
+    [
+        ((1.0, 2.0, 4.0), "reproduced"),
+        ((2.0, 1.0, 8.0), "reproduced"),  # on the edges, and in another order
+        ((2.1, 4.2, 8.4), "same trend"),
+        ((1.0, 2.0, 8.1), "same trend"),
+        ((1.0, 0.5, 0.1), "not reproduced"),
+        ((3.0, 3.01, 3.02), "not reproduced"),
+        ((1.0, None, 4.0), "not reproduced"),
+    ],
+)
+def test_verdicts_on_rows(ours: tuple[float | None, ...], level: str) -> None:
+    assert judge_row(X, (1.0, 2.0, 4.0), ours)["verdict"] == level
+
+
+def test_a_row_is_judged_where_the_paper_has_numbers() -> None:
+    verdict = judge_row(X, (1.0, None, 3.0), (1.1, 1e9, 3.3))
+    assert verdict["verdict"] == "reproduced"
+    assert verdict["ours_over_paper"] == pytest.approx([1.1, None, 1.1])
+    assert judge_row(X, (1.0, None, 3.0), (1.1, None, 3.3))["verdict"] == "reproduced"
+    # A single number has no trend, and without one of the paper's there is nothing to judge.
+    assert judge_row([0.1], [1.0], [1.9])["verdict"] == "reproduced"
+    assert judge_row([0.1], [1.0], [3.0])["verdict"] == "not reproduced"
+    assert judge_row([0.1], [None], [3.0])["verdict"] == "–"
+
+
+def test_a_constant_row_wants_a_constant_row() -> None:
+    assert judge_row(X, (4.54,) * 3, (454.0, 455.0, 453.0))["verdict"] == "same trend"
+    assert judge_row(X, (4.54,) * 3, (454.0, 500.0, 600.0))["verdict"] == "not reproduced"
+
+
+@pytest.mark.parametrize(
+    ("mean", "half_width", "level"),
+    [
+        (-0.10, 0.01, "reproduced"),
+        (-0.19, 0.01, "reproduced"),
+        (-0.30, 0.01, "same trend"),
+        (-0.04, 0.01, "same trend"),
+        (-0.10, 0.11, "not reproduced"),
+        (+0.10, 0.01, "not reproduced"),
+        (-0.0005, 0.0, "not reproduced"),
+    ],
+)
+def test_verdicts_on_changes(mean: float, half_width: float, level: str) -> None:
+    assert judge_change(-0.10, Estimate(mean, half_width, 100))["verdict"] == level

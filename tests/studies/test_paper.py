@@ -1,0 +1,161 @@
+"""The paper's tables and report from made-up numbers whose verdicts are known beforehand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from helpers_paper import SCOPE, table_of, values
+from helpers_records import heart_record
+from iiwa_dnn.simulation import NOISE_ENTRIES
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.paper_report import error_figure, report
+from iiwa_dnn.studies.paper_tables import EXPERIMENTS, figure_runs
+from iiwa_dnn.studies.runs import FULL, HeartRun, Scope
+
+TABLES = tuple(EXPERIMENTS)
+
+
+def test_the_papers_own_table1_is_reproduced() -> None:
+    table = table_of("table1")
+    for name, variant in table["variants"].items():
+        verdicts = {key: verdict["verdict"] for key, verdict in variant["verdicts"].items()}
+        assert set(verdicts.values()) == {"reproduced"}, name
+    assert table_of("laps")["pseudo-inverse, SO(3)"] == [1e-3, 2e-3]
+
+
+def test_table1_keeps_variants_and_weights_apart() -> None:
+    def error(run: HeartRun) -> float:
+        return 7.0 + run.weight + (run.mode == "converged") + 2 * (run.kinetic == "inertia")
+
+    scope = Scope(weights=(0.2, 0.9))
+    table = table_of("table1", lambda run: values(max_position_error_m=error(run)), scope)
+    for name, first in (
+        ("continuous, block", 7.0),
+        ("converged, SO(3)", 8.0),
+        ("continuous, block, G = inertia", 9.0),
+        ("converged, SO(3), G = inertia", 10.0),
+    ):
+        row = table["variants"][name]["rows"]["max_position_error_m"]
+        np.testing.assert_allclose(row, first + np.array(scope.weights), err_msg=name)
+    assert table["paper"]["max_position_error_m"] == [5.59e-5, 1.75e-5]
+    assert table["paper"]["joint_drift_rad"] == [1.74e-2, None]
+
+
+def test_table2_finds_the_effect_that_was_put_in() -> None:
+    for mode, entries in table_of("table2")["modes"].items():
+        changes = {
+            entry: measures["mse_position_error_m2"]["changes"]
+            for entry, measures in entries.items()
+        }
+        intervals = {entry: change["filter, with noise"] for entry, change in changes.items()}
+        assert intervals["velocity"]["high"] < 0.0, mode
+        assert intervals["network"]["low"] > 0.0, mode
+        assert intervals["measurement"]["mean"] == 0.0, mode
+        lowered = intervals["velocity"]
+        assert lowered["low"] < -0.1 < lowered["high"]
+        assert lowered["verdict"] == "same trend"  # the paper has -24 %
+        still = changes["velocity"]["filter, without noise"]
+        assert still["mean"] == pytest.approx(-0.02)
+        assert still["verdict"] == "reproduced"  # the paper has -1.5 %
+        added = changes["velocity"]["noise, without filter"]
+        assert 0.0 < added["low"] < 1.0 < added["high"]
+
+
+def test_table2_keeps_cases_and_entries_apart() -> None:
+    def error(run: HeartRun) -> float:
+        case = (run.noise > 0) * 2 + (run.filter_window > 1)
+        return 1.0 + case + (run.mode == "converged") * 10 + NOISE_ENTRIES.index(run.noise_at) * 100
+
+    table = table_of("table2", lambda run: values(max_position_error_m=error(run)))
+    for shift, mode in ((0.0, "continuous, block"), (10.0, "converged, SO(3)")):
+        for i, entry in enumerate(NOISE_ENTRIES):
+            cases = table["modes"][mode][entry]["max_position_error_m"]["cases"]
+            means = [case["mean"] for case in cases]
+            assert means == [1 + shift, 2 + shift, 3 + shift + 100 * i, 4 + shift + 100 * i]
+            assert [case["samples"] for case in cases] == [1, 1, 40, 40]
+
+
+def test_a_full_reproduction_is_the_papers_grid() -> None:
+    grid = {name: list(EXPERIMENTS[name].runs(FULL).values()) for name in TABLES}
+    noisy = {(run.seed, run.noise_at, run.mode) for run in grid["table2"] if run.noise}
+    assert len(noisy) == 100 * 3 * 2
+    assert all(run.duration == 10.0 for run in grid["table2"])
+    assert [run.weight for run in grid["table1"][:7]] == list(paper.WEIGHTS)
+    assert {run.substeps for run in grid["ablation"]} == {1, 2, 4, 7, 8, 16, "implicit"}
+    assert {run.duration for run in grid["laps"]} == {100.0}
+    for name, run in figure_runs(FULL).items():
+        assert run.noise == (0.0 if name.startswith("no noise") else 0.01)
+        assert run.filter_window == (1 if name.endswith("no filter") else 10)
+        assert (run.weight, run.mode, run.orientation) == (0.2, "continuous", "block")
+
+
+@pytest.fixture(scope="module")
+def text() -> str:
+    tables = {name: table_of(name) for name in TABLES}
+    return report(tables, {"date": "today", "machine": "a|b"}, ["fig1.png"])
+
+
+def rows(text: str, *start: str) -> list[list[str]]:
+    """The cells of every line that starts with these cells."""
+    lines = [line.strip("|").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line] for line in lines]
+    return [line for line in cells if line[: len(start)] == list(start)]
+
+
+def test_verdicts_stand_in_one_table(text: str) -> None:
+    assert rows(text, "machine", "a\\|b")
+    (found,) = rows(text, "Table I, MAX E [m]")
+    assert found[1:] == ["reproduced"] * 4
+    (found,) = rows(text, "effect of filter, with noise, on MSE, noise at velocity")
+    assert found[1:] == ["same trend", "same trend", "–", "–"]
+    (found,) = rows(text, "effect of filter, with noise, on MSE, noise at network")
+    assert found[1:3] == ["not reproduced"] * 2
+    assert "](fig1.png)" in text
+
+
+def test_numbers_stand_beside_the_papers(text: str) -> None:
+    theirs, *ours = rows(text, "MAX E [m]")
+    assert theirs[1:] == [
+        "7.25e-05", "5.59e-05", "6.5e-05", "4.06e-05", "7.88e-05", "4.24e-05", "1.75e-05",
+    ]  # fmt: skip
+    assert ours == [theirs] * 4
+    drift = rows(text, "MAX \\|q(T) − q(0)\\| [rad]")[0]
+    assert drift[1:4] == ["–", "0.0174", "0.0388"]
+    assert rows(text, "ours / paper's")[0][1:] == ["1"] * 7
+    case = rows(text, "no noise, filter")[0]
+    assert case[1:] == ["6.47e-05", "1.4e-05", "0.216", "1.97e-10", "1.96e-10", "0.995"]
+    assert rows(text, "MSE", "filter, without noise")[0][2:] == [
+        "-1.5 %", "-2.00 %: reproduced",
+    ]  # fmt: skip
+    assert rows(text, "block", "none", "2")[0][3] == "no"
+    assert rows(text, "so3", "none", "implicit")[0][3] == "yes"
+    assert len(rows(text, "block")) == len(rows(text, "so3")) == 28
+
+
+def test_one_column_is_a_report_of_its_own() -> None:
+    table = table_of("table1", scope=Scope(duration=1.0, weights=(0.2,)))
+    text = report({"table1": table}, {}, [])
+    assert rows(text, "MAX E [m]")[0][1:] == ["5.59e-05"]
+    assert "erratum 7" in text
+    assert "Table II:" not in text
+    assert SCOPE.weights == paper.WEIGHTS
+
+
+def test_the_four_cases_of_fig_2_share_one_scale() -> None:
+    sizes = (2e-7, 8e-7, 3e-7, 1.2e-6)
+    cases = dict(zip(figure_runs(SCOPE), sizes, strict=True))
+    records = {
+        case: heart_record(2000, error=size, seed=i) for i, (case, size) in enumerate(cases.items())
+    }
+    panels = error_figure(records).axes
+    assert {axes.get_ylim() for axes in panels} == {panels[0].get_ylim()}
+    assert [axes.get_xlabel().split("\n")[1] for axes in panels] == [
+        "(a) no noise, no filter", "(b) noise, no filter", "(c) no noise, filter",
+        "(d) noise, filter",
+    ]  # fmt: skip
+    # The curve that is drawn is the case's own: its norm, which is the last line.
+    for axes, record in zip(panels, records.values(), strict=True):
+        error = np.linalg.norm(record.position - record.position_desired, axis=1)
+        drawn = axes.lines[-1].get_ydata()
+        assert float(np.max(drawn)) * 1e-6 == pytest.approx(error.max(), rel=0.05)
