@@ -27,8 +27,9 @@ def test_every_kind_of_step_is_timed(
     assert len(found) == 24
     monkeypatch.setattr(rates, "cases", lambda: some)
     rates.main(40)
-    rows = [line.strip("| ").split(" | ") for line in capsys.readouterr().out.splitlines()[2:]]
-    assert [row[0].strip() for row in rows] == [*some, "only the clock"]
+    lines = capsys.readouterr().out.splitlines()[2:]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    assert [row[0] for row in rows] == [*some, "only the clock"]
     for _, _, *words in rows:
         times = [float(word) for word in words]
         assert 0.0 <= times[0] <= times[1] <= times[2] <= times[3]

@@ -102,7 +102,8 @@ class ImplicitEuler(Integrator):
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance a state (size,) in place until the KKT residuals of its point are at most `tol`.
 
-        The point (2 n + m + p,) is overwritten. The projection network is integrated without its primal projection.
+        The point (2 n + m + p,) is overwritten. The projection network is integrated without its
+        primal projection.
         """
         if is_projection(network):
             return settle_program(qp, state, point, tol, self.max_steps)
