@@ -20,6 +20,9 @@ from iiwa_dnn.studies.sweeps import Task, sweep
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
 
+_AGAIN = 1.0
+"""Time after which a command that SIGTERM has not ended is ended once more [s]."""
+
 
 def guard(prog: str, run: Callable[[], int | None]) -> int:
     """Call a command; print errors of the package and warnings as one line each.
@@ -36,7 +39,8 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         SystemExit: After ``--help`` or a wrong word, and after SIGTERM, with code 143.
     """
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _terminate)
+        for number in (signal.SIGTERM, signal.SIGALRM):
+            signal.signal(number, _terminate)
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
         warnings.showwarning = lambda message, *_: print(f"{prog}: {message}", file=sys.stderr)
@@ -54,11 +58,16 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         except IiwaDnnError as error:
             print(f"{prog}: error: {one_line(error)}", file=sys.stderr)
             return 1 if isinstance(error, NoSolutionError) else 2
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
 def _terminate(number: int, frame: object) -> NoReturn:
     """End the process in order: half-written files are removed, worker processes end."""
-    sys.exit(128 + number)
+    warnings.simplefilter("ignore")  # of work that is given up
+    # Once more, since code that compiles swallows what is raised in a callback of its own.
+    signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+    sys.exit(128 + signal.SIGTERM)
 
 
 def run_script(main: Callable[..., int | None]) -> int:
