@@ -252,7 +252,12 @@ def _success(metrics: Mapping[str, Any]) -> str:
     solver = check["solver"]
     solved = f"all {metrics['steps']:,} steps solved, within all limits and"
     if check["judged"]:
-        return f"{solved} {'proven' if solver == PROOF else f'in agreement with {solver}'}"
+        agreed = "proven" if solver == PROOF else f"in agreement with {solver}"
+        asked = solver.split("+")
+        for name, count in check["judged_by"].items():
+            if name not in asked:
+                agreed += f", {count:,} of them with {name} in its place"
+        return f"{solved} {agreed}"
     if solver == "none":
         return "completed within all limits; no reference solver was asked"
     return f"completed within all limits; the gap to {solver} is a lag, not judged"

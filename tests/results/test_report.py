@@ -102,6 +102,11 @@ def test_verdicts_claim_no_more_than_was_checked(tmp_path):
     assert "- all 10 steps solved, within all limits and in agreement with proxqp\n" in report(
         make_record(), tmp_path
     )
+    # Where another solver stood in, the verdict names it.
+    judge = np.zeros((10, 1), int)
+    judge[:3] = 1
+    said = summary(compute_metrics(make_record(judge=judge)))
+    assert "in agreement with proxqp, 3 of them with osqp in its place" in said
     assert "no reference solver was asked" in report(make_record(solvers=()), tmp_path)
     assert rows_of(report(make_record(solvers=()), tmp_path))["cross-check"] == ["not asked for"]
     lag = make_record(settings={"mode": "continuous"})
