@@ -1,15 +1,14 @@
 """Many small programs of one shape at once, over all cores."""
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators.base import ANSWER, enter_answer
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp.dense import is_convex
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, field_shapes, qp_views, released
@@ -55,8 +54,8 @@ def solve_batch(
 ) -> BatchSolution:
     """Solve k programs with the paper's network, integrated implicitly, each from a cold start.
 
-    The programs are shared out over all cores (`NUMBA_NUM_THREADS` limits them). A program with a
-    wrong value spoils no other: it is not found. No second start and no certificate are tried:
+    The programs are shared out over all cores. A program with a wrong value spoils no other: it is
+    not found. No second start and no certificate are tried:
     `DNNSolver` does that for those that were not found.
 
     Args:
@@ -77,22 +76,19 @@ def solve_batch(
     checks.positive("tol", tol)
     programs, sizes = _stacked((P, q, G, h, A, b, lb, ub))
     n, m, p = sizes
-    points = np.full((len(programs), 2 * n + m + p), np.nan)
-    figures = np.full((len(programs), 4), np.inf)
+    count = len(programs)
+    points = np.full((count, 2 * n + m + p), np.nan)
+    residuals = np.full((count, 3), np.inf)
+    systems = np.zeros(count, dtype=np.int64)
     constants = np.array([tol, ImplicitEuler().max_steps])
-    address = ANSWER.address(settle)
 
     def settle_chunk(first: int) -> None:
         rows = slice(first, first + CHUNK)
-        _settle_rows(programs[rows], sizes, address, constants, points[rows], figures[rows])
+        _settle_rows(programs[rows], sizes, constants, points[rows], residuals[rows], systems[rows])
 
-    # Not numba's own threads: those end the process if two callers use them at once.
-    threads: int = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
-    with ThreadPoolExecutor(threads) as pool:
-        list(pool.map(settle_chunk, range(0, len(programs), CHUNK)))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(settle_chunk, range(0, count, CHUNK)))
     x, y, z, z_box = np.split(points, [n, n + p, n + p + m], axis=1)
-    residuals = figures[:, :3]
-    systems = np.where(figures[:, 3] < np.inf, figures[:, 3], 0.0).astype(np.int64)
     found = np.all(residuals <= tol, axis=1)
     return BatchSolution(x, y, z, z_box, found, residuals, systems)
 
@@ -123,22 +119,26 @@ def _stacked(arguments: tuple[ArrayLike | None, ...]) -> tuple[Matrix, Sizes]:
 
 @released
 def _settle_rows(
-    rows: Matrix, sizes: Sizes, address: int, constants: Vector, points: Matrix, figures: Matrix
+    programs: Matrix,
+    sizes: Sizes,
+    constants: Vector,
+    points: Matrix,
+    residuals: Matrix,
+    systems: NDArray[np.int64],
 ) -> None:
-    """Settle programs, one `QP.data` a row, each from a cold start.
+    """Settle programs, one `QP.data` a row, each from a cold start, those whose cost is convex.
 
-    Point and ``[primal, dual, gap, linear systems]`` of those whose cost is convex are written.
+    The constants are those of `settle`; points (k, 2n + m + p), residuals (k, 3) and linear systems
+    (k,) are written.
     """
     n, m, p = sizes
     K = np.empty((n, n))
-    for k in range(rows.shape[0]):
-        qp = qp_views(rows[k], n, m, p)
+    for k in range(programs.shape[0]):
+        qp = qp_views(programs[k], n, m, p)
         if is_convex(qp.P, K):
             state = np.zeros(3 * n + m + p)
-            systems, _, primal, dual, gap = enter_answer(
-                address, qp, 0, constants, state, points[k]
-            )
-            figures[k, 0] = primal
-            figures[k, 1] = dual
-            figures[k, 2] = gap
-            figures[k, 3] = systems
+            count, _, primal, dual, gap = settle(qp, 0, constants, state, points[k])
+            residuals[k, 0] = primal
+            residuals[k, 1] = dual
+            residuals[k, 2] = gap
+            systems[k] = count

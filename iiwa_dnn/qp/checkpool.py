@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
-from typing import Any
+from typing import Any, NamedTuple
 
 from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
 from iiwa_dnn.qp.layout import Matrix, Sizes
@@ -15,10 +15,12 @@ _WORTH_A_PROCESS = 10_000
 _AHEAD = 2
 """Blocks that a worker has before it: one in work, one waiting. More would only take memory."""
 
-_LOST = (BrokenProcessPool, OSError)
-"""Errors of workers that died, or of processes that are not to be had."""
 
-Job = tuple[Matrix, Sizes, Matrix]
+class _HandedOn(NamedTuple):
+    """A block that a worker has, and its verdict to come."""
+
+    verdict: Future[Agreement]
+    job: tuple[Matrix, Sizes, Matrix]
 
 
 class CheckPool:
@@ -42,27 +44,21 @@ class CheckPool:
             workers: Processes beside the caller's; None takes the cores that are free, or none
                 where so few programs would not repay them.
         """
-        import loky
+        import loky  # with its processes' machinery, which not every run needs
 
         if workers is None:
             worth = check.asks_solvers and programs >= _WORTH_A_PROCESS
             workers = loky.cpu_count() - 1 if worth else 0
         self.check = check
         self.workers = workers
-        self._verdicts: dict[int, Agreement] = {}
-        self._waiting: dict[int, tuple[Future[Agreement], Job]] = {}
-        self._executor: Any = None
-        # Signals interrupt the main thread alone: of workers that another one starts, none is lost.
-        self._starter = ThreadPoolExecutor(1)
+        self._parts: list[Agreement | _HandedOn] = []
 
     def __enter__(self) -> CheckPool:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        self._starter.shutdown()
-        # A worker that is just being started would go on, and complain that nobody is there.
-        if kind is not None and self._executor is not None:
-            self._executor.shutdown(wait=False, kill_workers=True)
+        if kind is not None and self.workers:
+            self._executor().shutdown(wait=False, kill_workers=True)
 
     def submit(self, programs: Matrix, sizes: Sizes, answers: Matrix) -> None:
         """Take the next block: N programs of one shape, and the answers to be judged.
@@ -70,41 +66,40 @@ class CheckPool:
         The arguments are those of `CrossCheck.check_block`.
         """
         job = (programs, sizes, answers)
-        number = len(self._verdicts) + len(self._waiting)
-        for waiting, (future, _) in list(self._waiting.items()):
-            if future.done():
-                self._collect(waiting)
-        if len(self._waiting) < _AHEAD * self.workers:
+        self._parts = [self._judged(part) if _is_done(part) else part for part in self._parts]
+        ahead = sum(not _is_done(part) for part in self._parts)
+        if ahead < _AHEAD * self.workers:
             try:
-                future = self._starter.submit(self._hand_on, job).result()
-                self._waiting[number] = (future, job)
+                future = self._executor().submit(self.check.check_block, *job)
+                self._parts.append(_HandedOn(future, job))
                 return
-            except (*_LOST, RuntimeError):
+            except (BrokenProcessPool, OSError):
                 self.workers = 0  # no processes to be had: go on alone
-        self._verdicts[number] = self.check.check_block(*job)
+        self._parts.append(self.check.check_block(*job))
 
     def finish(self) -> Agreement:
         """Wait for every block and return the verdicts in the order of the programs."""
-        for number in list(self._waiting):
-            self._collect(number)
-        parts = [verdict for _, verdict in sorted(self._verdicts.items())]
-        return Agreement.joined(parts, len(self.check.solvers))
+        verdicts = [self._judged(part) for part in self._parts]
+        return Agreement.joined(verdicts, len(self.check.solvers))
 
-    def _hand_on(self, job: Job) -> Future[Agreement]:
-        """Hand a block to a worker; start the workers first where there are none."""
+    def _executor(self) -> Any:
+        """Return the worker processes, which are started where there are none."""
         import loky
 
         # Not the standard library's pool: that one runs the caller's script once more in every
         # worker, so a script without a __main__ guard would start itself again.
-        self._executor = loky.get_reusable_executor(max_workers=self.workers, timeout=60)
-        future: Future[Agreement] = self._executor.submit(self.check.check_block, *job)
-        return future
+        return loky.get_reusable_executor(max_workers=self.workers, timeout=60)
 
-    def _collect(self, number: int) -> None:
-        """Collect a worker's verdict; judge the block again if the worker has lost it."""
-        future, job = self._waiting.pop(number)
+    def _judged(self, part: Agreement | _HandedOn) -> Agreement:
+        """Return a block's verdict; judge the block again if the worker has lost it."""
+        if isinstance(part, Agreement):
+            return part
         try:
-            self._verdicts[number] = future.result()
-        except _LOST:
+            return part.verdict.result()
+        except (BrokenProcessPool, OSError):
             self.workers = 0
-            self._verdicts[number] = self.check.check_block(*job)
+            return self.check.check_block(*part.job)
+
+
+def _is_done(part: Agreement | _HandedOn) -> bool:
+    return isinstance(part, Agreement) or part.verdict.done()

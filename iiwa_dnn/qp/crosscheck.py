@@ -8,6 +8,7 @@ which asks no other solver.
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout, suppress
@@ -23,7 +24,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
-from iiwa_dnn.qp.residuals import largest_residuals
+from iiwa_dnn.qp.residuals import residuals_of
+from iiwa_dnn.qp.solution import Residuals
 
 OPTIONS: dict[str, dict[str, Any]] = {
     # Tight enough that a gap of 1e-6 rad/s says something about the network and not about the
@@ -79,17 +81,10 @@ class Agreement(NamedTuple):
     judge: NDArray[np.int8]
 
     @classmethod
-    def empty(cls, programs: int, references: int) -> Agreement:
-        """Make the agreement of N programs with k references of which none was asked."""
-        shape = (programs, references)
-        nothing = np.full(shape, np.nan)
-        judge = np.full(shape, -1, dtype=np.int8)
-        return cls(nothing, nothing.copy(), nothing.copy(), judge)
-
-    @classmethod
     def joined(cls, parts: Sequence[Agreement], references: int) -> Agreement:
         """Concatenate the agreements of several blocks with k references."""
-        blocks = [cls.empty(0, references), *parts]
+        nothing = np.empty((0, references))
+        blocks = [cls(nothing, nothing, nothing, nothing.astype(np.int8)), *parts]
         return cls(*(np.concatenate(arrays) for arrays in zip(*blocks, strict=True)))
 
     def worst_of(self, group: int) -> Agreement:
@@ -163,50 +158,45 @@ class CrossCheck:
         Returns:
             Gaps, residuals and judges, one row a program and one column a reference.
         """
-        agreement = Agreement.empty(len(answers), len(self.solvers))
-        for k, name in enumerate(self.solvers):
-            if name == PROOF:
-                found = _proven(programs, sizes, answers)
-            else:
-                found = self._compared(name, programs, sizes, answers[:, : sizes[0]])
-            agreement.solution_gap[:, k] = found[0]
-            agreement.objective_gap[:, k] = found[1]
-            agreement.reference_residual[:, k] = found[2]
-            agreement.judge[:, k] = found[3]
-        return agreement
+        n, m, p = sizes
+        points = np.zeros((len(answers), 2 * n + m + p))
+        points[:, : answers.shape[1]] = answers
+        qps = [QP.from_data(data, sizes) for data in programs]
+        shape = (len(qps), len(self.solvers))
+        gaps = np.full((3, *shape), np.nan)
+        judge = np.full(shape, -1, dtype=np.int8)
+        with _silence():  # OSQP prints, and warns of dense matrices
+            for i, (qp, point) in enumerate(zip(qps, points, strict=True)):
+                for k, name in enumerate(self.solvers):
+                    compare = _proven if name == PROOF else self._compared
+                    *gaps[:, i, k], judge[i, k] = compare(name, qp, point)
+        return Agreement(gaps[0], gaps[1], gaps[2], judge)
 
-    def _compared(
-        self, name: str, programs: Matrix, sizes: Sizes, x: Matrix
-    ) -> tuple[Vector, Vector, Vector, NDArray[np.int8]]:
-        """Compare answers x (N, n) with those of a solver; returns the columns of `Agreement`.
+    def _compared(self, name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
+        """Compare x of a point (2 n + m + p,) with a solver's; returns the entries of `Agreement`.
 
         Where the gap is above the tolerance and x is not unique, since no cost acts along all
         directions, it is measured in the norm of P.
         """
-        n = sizes[0]
-        points, residuals = _answers(name, programs, sizes)
-        judge = np.where(residuals <= self.reference_tolerance, 0, -1).astype(np.int8)
-        for i in np.flatnonzero(judge < 0):
-            point, residual = _answers(_second(name), programs[i : i + 1], sizes)
-            if residual[0] <= self.reference_tolerance:
-                points[i] = point[0]
-                residuals[i] = residual[0]
-                judge[i] = 1
-        references = np.where(judge[:, np.newaxis] >= 0, points[:, :n], np.nan)
-        step = x - references
-        cost = programs[:, : n * n].reshape(len(x), n, n)
-        linear = programs[:, n * n : n * (n + 1)]
+        n = qp.sizes[0]
+        reference, first_residual = _answer(name, qp)
+        judge = 0
+        residual = first_residual
+        if not residual <= self.reference_tolerance:
+            judge = 1
+            reference, residual = _answer(_second(name), qp)
+        if not residual <= self.reference_tolerance:
+            return np.nan, np.nan, first_residual, -1
+        step = point[:n] - reference[:n]
+        curved = qp.P @ step
         # As a difference of points: subtracting two objectives would cancel.
-        curved = np.einsum("ij,ijk,ik->i", step, cost, x + references) / 2.0
-        objective_gap = np.abs(curved + np.einsum("ij,ij->i", step, linear))
-        gap = np.abs(step).max(axis=1)
-        loose = np.zeros(len(x), dtype=bool)
-        for i in np.flatnonzero(gap > self.tolerance):
-            qp = QP.from_data(programs[i], sizes)
+        objective_gap = float(abs(curved @ (point[:n] + reference[:n]) / 2.0 + qp.q @ step))
+        gap = float(np.abs(step).max())
+        if gap > self.tolerance:
             curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
-            loose[i] |= bool(curvatures[0] <= _FLAT * curvatures[-1])
-        in_cost = np.sqrt(np.maximum(np.einsum("ij,ijk,ik->i", step, cost, step), 0.0))
-        return np.where(loose, in_cost, gap), objective_gap, residuals, judge
+            if curvatures[0] <= _FLAT * curvatures[-1]:
+                gap = math.sqrt(max(float(step @ curved), 0.0))
+        return gap, objective_gap, residual, judge
 
 
 def _installed() -> list[str]:
@@ -221,18 +211,17 @@ def _second(name: str) -> str:
     return "osqp" if name == "proxqp" else "proxqp"
 
 
-def _answers(name: str, programs: Matrix, sizes: Sizes) -> tuple[Matrix, Vector]:
-    """Ask a solver for the points of N programs, (N, 2 n + m + p), and judge them, (N,)."""
-    n, m, p = sizes
-    points = np.full((len(programs), 1, 2 * n + m + p), np.nan)
-    residuals = np.empty((len(programs), 1))
-    # A solver may take minutes over one NaN. OSQP prints, and warns of dense matrices.
-    with _silence():
-        for i in np.flatnonzero(~np.isnan(programs).any(axis=1)):
-            with suppress(Exception):  # whatever a reference raises, it has no answer
-                points[i] = ask(name, QP.from_data(programs[i], sizes))
-    largest_residuals(np.ascontiguousarray(programs), n, m, p, points, residuals)
-    return points[:, 0], residuals[:, 0]
+def _answer(name: str, qp: QP) -> tuple[Vector, float]:
+    """Ask a solver for the point of a program, (2 n + m + p,), and compute its largest residual.
+
+    The residual is inf without an answer.
+    """
+    if not np.isnan(qp.data).any():  # a solver may take minutes over one NaN
+        with suppress(Exception):  # whatever a reference raises, it has no answer
+            point = ask(name, qp)
+            if not np.isnan(point[0]):
+                return point, Residuals(*residuals_of(qp.data, *qp.sizes, point)).largest
+    return np.empty(0), np.inf
 
 
 @contextmanager
@@ -270,16 +259,8 @@ def _ask_proxqp(qp: QP) -> Vector:
     return point if results.info.status == proxqp.PROXQP_SOLVED else np.full_like(point, np.nan)
 
 
-def _proven(
-    programs: Matrix, sizes: Sizes, answers: Matrix
-) -> tuple[Vector, Vector, Vector, NDArray[np.int8]]:
-    """Prove answers (N, n) or (N, 2 n + m + p): bounds, nothing on the objective, residuals."""
-    n, m, p = sizes
-    points = np.zeros((len(answers), 2 * n + m + p))
-    points[:, : answers.shape[1]] = answers
-    qps = [QP.from_data(data, sizes) for data in programs]
-    proofs = [prove_point(qp, point) for qp, point in zip(qps, points, strict=True)]
-    bounds = np.array([proof.bound for proof in proofs])
-    proven = bounds < np.inf
-    judge = np.where(proven, 0, -1).astype(np.int8)
-    return bounds, np.full(bounds.size, np.nan), np.where(proven, 0.0, np.inf), judge
+def _proven(name: str, qp: QP, point: Vector) -> tuple[float, float, float, int]:
+    """Prove a point (2 n + m + p,); returns the bound, and the other entries of `Agreement`."""
+    bound = prove_point(qp, point).bound
+    proven = bound < np.inf
+    return bound, np.nan, 0.0 if proven else np.inf, 0 if proven else -1

@@ -1,10 +1,9 @@
 """Residuals of a primal-dual point, all zero exactly at a KKT point; compiled."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Triple, Vector, compiled, larger, qp_views
+from iiwa_dnn.qp.layout import QPViews, Triple, Vector, compiled, larger, qp_views
 
 LONG = 64
 """Variables from which on the rounding of the gap's sum is added to it: in another order, as
@@ -62,23 +61,6 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
 def residuals_of(data: Vector, n: int, m: int, p: int, point: Vector) -> Triple:
     """Compute `point_residuals` of a point (2n + m + p,), for a program's flat array, `QP.data`."""
     return point_residuals(qp_views(data, n, m, p), point)
-
-
-@compiled
-def largest_residuals(
-    programs: Matrix, n: int, m: int, p: int, points: NDArray[np.float64], out: Matrix
-) -> None:
-    """Write the largest residual of each point (N, k, size) into `out` (N, k).
-
-    It is infinite if the first entry of a point is NaN, which stands for no point.
-    """
-    for i in range(points.shape[0]):
-        qp = qp_views(programs[i], n, m, p)
-        for j in range(points.shape[1]):
-            out[i, j] = np.inf
-            if points[i, j, 0] == points[i, j, 0]:
-                primal, dual, gap = point_residuals(qp, points[i, j])
-                out[i, j] = larger(larger(primal, dual), gap)
 
 
 @compiled

@@ -175,22 +175,20 @@ def test_references_that_give_up_are_not_believed(
 def test_a_second_solver_judges_where_the_first_has_no_answer(
     first: str, second: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ask, asked = crosscheck.ask, []
+    ask = crosscheck.ask
+    known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
 
-    def fail_once(name: str, qp: QP) -> np.ndarray:
-        asked.append(name)
-        if name == first and len(asked) != 2:
+    def fail(name: str, qp: QP) -> np.ndarray:
+        if name == first and not np.array_equal(qp.data, known[1][0].data):
             raise qpsolvers.exceptions.SolverError("out of order")
         return ask(name, qp)
 
-    monkeypatch.setattr(crosscheck, "ask", fail_once)
-    known = [known_qp(np.random.default_rng([58, k]), 7, 3, k) for k in range(4)]
+    monkeypatch.setattr(crosscheck, "ask", fail)
     x = np.stack([best for _, best in known])
     programs = np.stack([qp.data for qp, _ in known])
     programs[3, 0] = np.nan
     check = CrossCheck((first,))
     agreement = check.check_block(programs, known[0][0].sizes, x)
-    assert asked == [first, first, first, second, second]
     assert agreement.solution_gap[:3].max() <= 1e-7
     assert agreement.reference_residual[:3].max() <= 1e-8
     assert np.isnan(agreement.solution_gap[3]).all()
