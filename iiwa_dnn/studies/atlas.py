@@ -4,65 +4,67 @@ Every network drives the paper's arm along a path in continuous mode, and is gra
 floating-point operations a control period, a program's set-up included. All gains follow one rule:
 a share of the largest step that is stable with the linearised network, the best of `SHARES` in an
 undisturbed run, with one evaluation a period or with as many as the work allows. A network of one's
-own is named as ``module:NAME`` or ``file.py:NAME``.
+own is named as ``module:NAME`` or, in a file of the current folder, as ``file.py:NAME``.
 """
 
+import hashlib
+import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from itertools import product
+from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from iiwa_dnn import checks
-from iiwa_dnn.errors import IiwaDnnError, InvalidInputError, NotFoundError
-from iiwa_dnn.networks import (
+from iiwa_dnn import (
+    QP,
     ActivatedNetwork,
+    Circle,
+    Configuration,
+    CrossCheck,
+    DNNSolver,
+    DoubleIndicator,
     DualNetwork,
+    ExplicitEuler,
     GradientNetwork,
+    Heart,
+    IiwaDnnError,
+    ImplicitEuler,
+    InvalidInputError,
+    JointLimits,
+    KineticEnergy,
+    Lissajous,
+    Manipulability,
     Network,
-    NoiseSuppressingNetwork,
+    NotFoundError,
     OneLayerNetwork,
+    OrientationTask,
+    PositionTask,
     PrimalDualNetwork,
     ProjectionNetwork,
+    PseudoInverse,
+    Reference,
+    Scheme,
     SimplifiedDualNetwork,
+    TrackingSolver,
     ZeroingNetwork,
+    checks,
+    simulate,
 )
+from iiwa_dnn.files import one_line
+from iiwa_dnn.networks import NoiseSuppressingNetwork
 from iiwa_dnn.networks.activations import FixedTime, PowerSigmoid, PredefinedTime, SignBiPower
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.base import kkt_product
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.networks.tracking import (
-    EULER,
-    FIFD,
-    TAYLOR3,
-    TAYLOR4,
-    TAYLOR5,
-    Formula,
-    TrackingSolver,
-)
-from iiwa_dnn.qp import QP, Matrix, Vector
-from iiwa_dnn.qp.crosscheck import CrossCheck
+from iiwa_dnn.networks.tracking import EULER, FIFD, TAYLOR3, TAYLOR4, TAYLOR5, Formula
+from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Sizes
-from iiwa_dnn.references import Circle, Heart, Lissajous, Reference
 from iiwa_dnn.results.metrics import position_error
-from iiwa_dnn.robot import Configuration
-from iiwa_dnn.schemes import (
-    DoubleIndicator,
-    JointLimits,
-    KineticEnergy,
-    Manipulability,
-    OrientationTask,
-    PositionTask,
-    PseudoInverse,
-    Scheme,
-    literature,
-)
-from iiwa_dnn.simulation import simulate
-from iiwa_dnn.studies.outside import digest, load_part
+from iiwa_dnn.schemes import literature
 from iiwa_dnn.studies.paper import START
 from iiwa_dnn.studies.runs import paper_robot
 
@@ -310,14 +312,18 @@ def entry_of(name: str) -> Entry:
     """Return the entry of a network by its name, or of one from outside.
 
     Raises:
-        InvalidInputError: There is no network in the file; and as of `load_part`.
+        InvalidInputError: The module cannot be imported, or it has no network of that name.
         NotFoundError: There is no network of that name.
     """
     if ":" not in name:
         return _look_up("network", name, NETWORKS)
-    found = load_part("network", name)
-    if callable(found) and not isinstance(found, Entry | Network):
-        found = found()
+    if str(Path.cwd()) not in sys.path:
+        sys.path.append(str(Path.cwd()))
+    try:
+        found = resolve_name(name.replace(".py:", ":"))
+        found = found() if isinstance(found, type) else found
+    except Exception as error:  # whatever the file of others raises
+        raise InvalidInputError("network", f"{name} cannot be had: {one_line(error)}") from error
     if not isinstance(found, Entry | Network):
         raise InvalidInputError("network", f"{name} is no Network: {found!r}", found)
     return still(found) if isinstance(found, Network) else found
@@ -354,7 +360,10 @@ class Cell:
         if self.disturbance == "none":
             object.__setattr__(self, "seeds", min(self.seeds, len(PATHS)))
         if ":" in self.network:
-            object.__setattr__(self, "source", digest("network", self.network))
+            entry_of(self.network)  # imports its module
+            module = sys.modules[self.network.rpartition(":")[0].removesuffix(".py")]
+            digest = hashlib.sha256(Path(str(module.__file__)).read_bytes()).hexdigest()
+            object.__setattr__(self, "source", digest[:24])
 
 
 @dataclass(frozen=True)
@@ -391,7 +400,7 @@ class Size:
             _look_up("disturbance", name, NOISES)
         for name in self.networks:
             entry_of(name)
-        if not self.work or not min(self.work) > 0.0 or list(self.work) != sorted(set(self.work)):
+        if not self.work or list(self.work) != sorted({w for w in self.work if w > 0.0}):
             raise InvalidInputError("work", "must rise from above 0", self.work)
         checks.integer("seeds", self.seeds, 1)
         kinds = tuple(dict.fromkeys(("none", *self.disturbances)))
@@ -423,16 +432,14 @@ def best_gains(
 
     Of those that solve the program, and of equals, it is the largest share with all evaluations.
     """
-    best: dict[str, tuple[float, float, bool]] = {}
-    gains = {}
+    ranked: dict[str, list[tuple[float, float, bool, Cell]]] = {}
     for cell, result in zip(cells, results, strict=True):
         residual = result["residual"][0]
         found = np.inf if residual is None else max(residual, SOLVED)
-        key = (found, -cell.share, cell.most is not None)
-        if cell.network not in best or key < best[cell.network]:
-            best[cell.network] = key
-            gains[cell.network] = {"share": cell.share, "most": cell.most}
-    return gains
+        own = ranked.setdefault(cell.network, [])
+        own.append((found, -cell.share, cell.most is not None, cell))
+    best = {network: min(own)[-1] for network, own in ranked.items()}
+    return {network: {"share": cell.share, "most": cell.most} for network, cell in best.items()}
 
 
 def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:

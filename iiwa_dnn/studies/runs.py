@@ -9,21 +9,29 @@ from typing import Any, Literal
 
 import numpy as np
 
-from iiwa_dnn import checks
+from iiwa_dnn import (
+    Configuration,
+    CrossCheck,
+    DNNSolver,
+    DoubleIndicator,
+    ExplicitEuler,
+    Heart,
+    ImplicitEuler,
+    ProjectionNetwork,
+    PseudoInverse,
+    Record,
+    Reference,
+    Robot,
+    Scheme,
+    checks,
+    compute_metrics,
+    load_robot,
+    simulate,
+)
 from iiwa_dnn.control.controller import Mode
-from iiwa_dnn.networks import ProjectionNetwork
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
-from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.crosscheck import CrossCheck
-from iiwa_dnn.qp.program import QP
-from iiwa_dnn.references import Heart, Reference
-from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.results.record import Record
-from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 from iiwa_dnn.schemes.costs import Kinetic
 from iiwa_dnn.schemes.tasks import Orientation
-from iiwa_dnn.simulation import NoiseEntry, simulate
+from iiwa_dnn.simulation import NoiseEntry
 from iiwa_dnn.simulation.motion import Motion
 from iiwa_dnn.studies import paper
 
@@ -148,8 +156,7 @@ def measure(run: HeartRun) -> dict[str, Any]:
     Returns:
         Some of `compute_metrics`, and: ``status``; ``total_variation_rad_s``, of the joint
         velocity that varies most; ``lap_drift_rad``, the largest joint drift after each whole
-        lap; ``max_kinetic_index_times_dt``, as the paper seems to print it; ``amplification``, of
-        one explicit sub-step in continuous mode (`amplification`), else None.
+        lap; ``max_kinetic_index_times_dt``, as the paper seems to print it.
     """
     record = run.run()
     metrics = compute_metrics(record)
@@ -160,7 +167,6 @@ def measure(run: HeartRun) -> dict[str, Any]:
         "total_variation_rad_s": total_variation(record),
         "lap_drift_rad": lap_drift(record, Heart().period),
         "max_kinetic_index_times_dt": None if index is None else index * run.dt,
-        "amplification": _largest_amplification(run, record),
     }
 
 
@@ -177,37 +183,3 @@ def lap_drift(record: Record, period: float) -> list[float]:
     dt = float(record.settings["dt"])
     ends = [round(lap * period / dt) for lap in range(1, int(record.t[-1] / period + 0.5) + 1)]
     return [float(np.abs(record.q[k] - record.q[0]).max()) for k in ends if k <= record.steps]
-
-
-def amplification(qp: QP, step: float) -> float:
-    r"""Compute the largest growth of an error in one explicit Euler step, no bound being active.
-
-    On a fixed active set the network is linear; without active bounds x and y move by themselves
-    and every other multiplier decays. A step of length h, in units of rho, multiplies the error
-    along an eigenvector of their Jacobian by :math:`1 + h\lambda` (docs/theory.md).
-
-    Above 1, the step is unstable. Eigenvalues at zero, which belong to dependent equalities and to
-    no error in x, are left out.
-    """
-    network = ProjectionNetwork(primal_projection=False)
-    jacobian = network.flow(qp).derivative(network.initial_state(qp))
-    moving = qp.q.size + qp.b.size
-    eigenvalues = np.linalg.eigvals(jacobian[:moving, :moving])
-    growth = np.abs(1.0 + step * eigenvalues[np.abs(eigenvalues) > 1e-9])
-    return float(growth.max(initial=0.0))
-
-
-def _largest_amplification(run: HeartRun, record: Record) -> float | None:
-    """Find the largest `amplification` along the path, at up to 101 of its postures."""
-    if run.mode != "continuous" or run.substeps == "implicit":
-        return None
-    scheme = run.scheme()
-    reference = run.reference()
-    found = []
-    for k in np.unique(np.linspace(0, record.steps - 1, 101).astype(int)):
-        conf = Configuration(paper_robot(), record.q[k])
-        qp = scheme.build_qp(conf, reference.at(float(record.t[k])))
-        # An explicit run's iterations are its sub-steps.
-        step = run.dt / record.settings["rho"] / float(record.iterations[k])
-        found.append(amplification(qp, step))
-    return max(found)

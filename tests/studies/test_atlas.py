@@ -207,9 +207,9 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(
 @pytest.mark.parametrize(
     ("option", "value", "reason"),
     [
-        ("--networks", "nowhere:My", "network: nowhere cannot be imported (No module"),
-        ("--networks", "nowhere.py:My", "network: nowhere.py cannot be imported ("),
-        ("--networks", "math:My", "no network in math 'My'"),
+        ("--networks", "nowhere:My", "network: nowhere:My cannot be had: No module"),
+        ("--networks", "nowhere.py:My", "network: nowhere.py:My cannot be had: No module"),
+        ("--networks", "math:My", "network: math:My cannot be had: module 'math' has no"),
         ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
         ("--schemes", "other", "no scheme 'other'"),

@@ -175,7 +175,7 @@ def test_one_bar_for_the_whole_sweep(
 @pytest.fixture
 def scheduler(tmp_path: Path, log: Path) -> Iterator[str]:
     """A Dask scheduler and two workers, each a process of its own."""
-    pytest.importorskip("distributed")
+    distributed = pytest.importorskip("distributed")
     file = tmp_path / "scheduler.json"
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
     place = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
@@ -187,7 +187,10 @@ def scheduler(tmp_path: Path, log: Path) -> Iterator[str]:
     worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file)]
     options = ["--nthreads", "1", "--no-dashboard", "--no-nanny"]
     started += [subprocess.Popen([*worker, *options], cwd=tmp_path) for _ in range(2)]
-    yield json.loads(file.read_text(encoding="utf-8"))["address"]
+    address = json.loads(file.read_text(encoding="utf-8"))["address"]
+    with distributed.Client(address) as client:
+        client.wait_for_workers(2, timeout=60.0)
+    yield address
     for process in started[::-1]:
         process.kill()
     for process in started:
