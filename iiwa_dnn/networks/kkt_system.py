@@ -18,16 +18,7 @@ from typing import Literal
 
 import numpy as np
 
-from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import (
-    Matrix,
-    QPViews,
-    Sizes,
-    Vector,
-    check_size,
-    compiled,
-    qp_views,
-)
+from iiwa_dnn.qp.layout import Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 
 Form = Literal["projected", "smooth"]
@@ -59,10 +50,12 @@ class KktSystem:
 
     def __init__(self, qp: QP, form: Form, rate: QP | None = None) -> None:
         """Take a program and, where it moves, its rate of change (zero where it is infinite)."""
-        self._form = form
-        self.size = system_size(qp, form)
         self.qp = qp
-        self._rate: Vector = np.zeros(qp.data.size) if rate is None else rate.data
+        self.size = system_size(qp, form)
+        self._form = form
+        self._rate = QP.from_data(np.zeros(qp.data.size), qp.sizes) if rate is None else rate
+        self._linear, self._offset = _linear_part(qp, form, 1.0)
+        self._moving, self._moved = _linear_part(self._rate, form, 0.0)
 
     def evaluate(self, s: Vector) -> tuple[Vector, Vector]:
         """Compute the residual at a point, and its drift: its rate at a point that stays.
@@ -74,140 +67,60 @@ class KktSystem:
             Residual and drift, (size,) both; `matrix` becomes the residual's derivative.
         """
         check_size("state", s, self.size)
-        error = np.empty(self.size)
-        drift = np.empty(self.size)
-        self.matrix = np.zeros((self.size, self.size))
-        evaluate(self.qp.data, self._rate, self.qp.sizes, s, error, drift, self.matrix)
+        n = self.qp.q.size
+        error = self._linear @ s + self._offset
+        drift = self._moving @ s + self._moved
+        self.matrix = self._linear.copy()
+        self.matrix[range(n, s.size), range(n, s.size)] = -REGULAR
+        if self._form == "smooth":
+            self._smooth(s, error, drift)
+        else:
+            self._project(s, error, drift)
         return error, drift
 
+    def _smooth(self, s: Vector, error: Vector, drift: Vector) -> None:
+        """Put the complementarity in place of the rows of C x - d; arrays (size,)."""
+        n, _, p = self.qp.sizes
+        rows = np.arange(n + p, s.size)
+        limited = np.isfinite(error[rows])
+        w = s[rows]
+        slack = np.where(limited, -error[rows], 0.0)
+        root = np.sqrt(w**2 + slack**2 + EPSILON**2)
+        slope = np.where(limited, slack / root - 1.0, 0.0)
+        error[rows] = np.where(limited, w + slack - root, w)
+        drift[rows] *= slope
+        self.matrix[rows] *= slope[:, np.newaxis]
+        self.matrix[rows, rows] = np.where(limited, 1.0 - w / root, 1.0)
 
-@compiled
-def evaluate(
-    data: Vector,
-    rate: Vector,
-    sizes: Sizes,
-    s: Vector,
-    error: Vector,
-    drift: Vector,
-    matrix: Matrix,
-) -> None:
-    """Write residual, drift (size,) and derivative (size, size), all zero before, at s (size,).
+    def _project(self, s: Vector, error: Vector, drift: Vector) -> None:
+        """Put projections in place of rows at a bound and of idle rows; arrays (size,)."""
+        n, m, p = self.qp.sizes
+        x = s[:n]
+        z = s[n + p :]
+        at_lower = x - error[:n] <= self.qp.lb
+        at_upper = x - error[:n] >= self.qp.ub
+        idle = ~(z + error[n + p :] > 0.0)
+        for at_bound, bound, rate in (
+            (at_lower, self.qp.lb, self._rate.lb),
+            (at_upper, self.qp.ub, self._rate.ub),
+        ):
+            error[:n] = np.where(at_bound, x - bound, error[:n])
+            drift[:n] = np.where(at_bound, -rate, drift[:n])
+        error[n + p :] = np.where(idle, -z, error[n + p :])
+        drift[n + p :] = np.where(idle, 0.0, drift[n + p :])
+        replaced = np.concatenate([at_lower | at_upper, np.zeros(p, dtype=bool), idle])
+        slopes = np.diag(np.concatenate([np.ones(n + p), -np.ones(m)]))
+        self.matrix[replaced] = slopes[replaced]
 
-    The program and its rate are `QP.data`, of sizes (n, m, p); with n + p + m unknowns the form is
-    the projected one, with 2 n more the smooth one.
+
+def _linear_part(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
+    """Return matrix (size, size) and constant (size,) of the system without complementarity.
+
+    The rows of the smooth form's bounds are plus and minus the `unit` times the identity.
     """
-    n, m, p = sizes
-    qp = qp_views(data, n, m, p)
-    change = qp_views(rate, n, m, p)
-    for i in range(n):
-        error[i] = qp.q[i] + row_dot(qp.P, i, s)
-        drift[i] = change.q[i] + row_dot(change.P, i, s)
-        matrix[i, :n] = qp.P[i]
-    for j in range(p):
-        _put_row(qp.A, change.A, j, n + j, s, error, drift, matrix)
-        error[n + j] -= qp.b[j]
-        drift[n + j] -= change.b[j]
-    for j in range(m):
-        _put_row(qp.G, change.G, j, n + p + j, s, error, drift, matrix)
-        error[n + p + j] -= qp.h[j]
-        drift[n + p + j] -= change.h[j]
-    if s.size > n + m + p:
-        _put_bounds(qp, change, n + p + m, s, error, drift, matrix)
-        for row in range(n + p, s.size):
-            _smooth(row, n, s, error, drift, matrix)
-        return
-    for row in range(n + p, s.size):
-        if not s[row] + error[row] > 0.0:
-            _replace(row, -s[row], 0.0, -1.0, error, drift, matrix)
-    for i in range(n):
-        aim = s[i] - error[i]
-        if aim <= qp.lb[i]:
-            _replace(i, s[i] - qp.lb[i], -change.lb[i], 1.0, error, drift, matrix)
-        if aim >= qp.ub[i]:
-            _replace(i, s[i] - qp.ub[i], -change.ub[i], 1.0, error, drift, matrix)
-
-
-@compiled
-def _put_row(
-    rows: Matrix,
-    moved: Matrix,
-    j: int,
-    at: int,
-    s: Vector,
-    error: Vector,
-    drift: Vector,
-    matrix: Matrix,
-) -> None:
-    """Put row j of rows (k, n) that move at a rate (k, n) at a place, and take it to the gradient.
-
-    Arrays are those of `evaluate`, (size,) and (size, size).
-    """
-    n = rows.shape[1]
-    error[at] = row_dot(rows, j, s)
-    drift[at] = row_dot(moved, j, s)
-    add_row(error, s[at], rows, j)
-    add_row(drift, s[at], moved, j)
-    matrix[at, :n] = rows[j]
-    matrix[:n, at] = rows[j]
-    matrix[at, at] = -REGULAR
-
-
-@compiled
-def _put_bounds(
-    qp: QPViews,
-    change: QPViews,
-    at: int,
-    s: Vector,
-    error: Vector,
-    drift: Vector,
-    matrix: Matrix,
-) -> None:
-    """Put the rows x - ub and lb - x; arrays of `evaluate`, (size,) and (size, size)."""
-    n = qp.q.size
-    for i in range(n):
-        upper = at + i
-        lower = at + n + i
-        error[i] += s[upper] - s[lower]
-        matrix[i, upper] = 1.0
-        matrix[upper, i] = 1.0
-        matrix[i, lower] = -1.0
-        matrix[lower, i] = -1.0
-        error[upper] = s[i] - qp.ub[i]
-        error[lower] = qp.lb[i] - s[i]
-        drift[upper] = -change.ub[i]
-        drift[lower] = change.lb[i]
-
-
-@compiled
-def _smooth(row: int, n: int, s: Vector, error: Vector, drift: Vector, matrix: Matrix) -> None:
-    """Put the complementarity in place of a row of C x - d; arrays (size,), (size, size)."""
-    w = s[row]
-    if not np.isfinite(error[row]):
-        matrix[row, :n] = 0.0
-        error[row] = w
-        drift[row] = 0.0
-        matrix[row, row] = 1.0
-        return
-    slack = -error[row]
-    root = np.sqrt(w**2 + slack**2 + EPSILON**2)
-    error[row] = w + slack - root
-    drift[row] *= slack / root - 1.0
-    matrix[row, :n] *= slack / root - 1.0
-    matrix[row, row] = 1.0 - w / root
-
-
-@compiled
-def _replace(
-    row: int,
-    value: float,
-    moved: float,
-    slope: float,
-    error: Vector,
-    drift: Vector,
-    matrix: Matrix,
-) -> None:
-    """Put a projection on a bound in place of a row; arrays (size,) and (size, size)."""
-    error[row] = value
-    drift[row] = moved
-    matrix[row] = 0.0
-    matrix[row, row] = slope
+    eye = unit * np.eye(qp.q.size)
+    smooth = form == "smooth"
+    rows = np.vstack([qp.A, qp.G, eye, -eye] if smooth else [qp.A, qp.G])
+    limits = [-qp.b, -qp.h, -qp.ub, qp.lb] if smooth else [-qp.b, -qp.h]
+    matrix = np.block([[qp.P, rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+    return matrix, np.concatenate([qp.q, *limits])

@@ -103,36 +103,6 @@ def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vecto
 
 
 @compiled
-def differentiate(
-    data: Vector, sizes: Sizes, project: bool, s: Vector, rates: Vector, jacobian: Matrix
-) -> None:
-    """Write the derivative of the rates, (size, size), zero before, at a state and rates (size,).
-
-    The program is `QP.data` of sizes (n, m, p).
-    """
-    n, m, p = sizes
-    qp = qp_views(data, n, m, p)
-    at_z = n + p
-    at_u = at_z + m
-    jacobian[:n, :n] = -qp.P
-    jacobian[:n, n:at_z] = -qp.A.T
-    jacobian[n:at_z, :n] = qp.A
-    jacobian[:n, at_z:at_u] = -qp.G.T
-    jacobian[at_z:at_u, :n] = qp.G
-    for i in range(n):
-        for row, sign in ((at_u + i, 1.0), (at_u + n + i, -1.0)):
-            jacobian[i, row] = -sign
-            jacobian[row, i] = sign
-        if project and not qp.lb[i] - s[i] < rates[i] < qp.ub[i] - s[i]:
-            jacobian[i] = 0.0
-            jacobian[i, i] = -1.0
-    for row in range(at_z, s.size):
-        if not s[row] + rates[row] > 0.0:
-            jacobian[row] = 0.0
-            jacobian[row, row] = -1.0
-
-
-@compiled
 def stable_step(qp: QPViews, active: Vector) -> float:
     """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
     n = qp.q.size
@@ -193,14 +163,20 @@ class ProjectionNetwork(Network):
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up; the rate of a program that moves has no effect."""
-        size = self.state_size(qp)
-
-        rates = CompiledRates(qp, projection_rates, self.constants(qp.sizes), size)
+        rates = CompiledRates(qp, projection_rates, self.constants(qp.sizes), self.state_size(qp))
 
         def jacobian(state: Vector) -> Matrix:
-            result = np.zeros((size, size))
-            data = qp.data
-            differentiate(data, qp.sizes, self.primal_projection, state, rates(state), result)
+            n, _, p = qp.sizes
+            eye = np.eye(n)
+            rows = np.vstack([qp.A, qp.G, eye, -eye])
+            result = np.block([[-qp.P, -rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+            moves = rates(state)
+            decays = ~(state + moves > 0.0)
+            decays[: n + p] = False
+            if self.primal_projection:
+                x = state[:n]
+                decays[:n] = ~((qp.lb - x < moves[:n]) & (moves[:n] < qp.ub - x))
+            result[decays] = -np.eye(state.size)[decays]
             return result
 
         def step(state: Vector | None) -> float:

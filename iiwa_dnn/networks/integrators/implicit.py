@@ -93,11 +93,13 @@ class ImplicitEuler(Integrator):
         check_size("state", state, network.state_size(qp))
         if is_projection(network) and not network.primal_projection:
             systems = advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
-        else:
-            systems = pseudo_transient.advance(network.flow(qp), state, length, count, 1e-12)
-        if systems < 0:
-            raise NoSolutionError("an implicit step cannot be solved to working precision")
-        return systems
+            if systems < 0:
+                raise NoSolutionError("an implicit step cannot be solved to working precision")
+            return systems
+        flow = network.flow(qp)
+        return sum(
+            pseudo_transient.backward_euler(flow, state, length, 1e-12) for _ in range(count)
+        )
 
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance a state (size,) in place until the KKT residuals of its point are at most `tol`.

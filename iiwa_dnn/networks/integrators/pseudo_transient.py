@@ -10,6 +10,7 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import numpy as np
 
+from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.qp.layout import Vector
@@ -19,9 +20,9 @@ from iiwa_dnn.qp.residuals import within
 LONGEST = 1e8
 """Longest step of `settle` [rho]."""
 SHORTEST = 1e-6
-"""Step of `settle` [rho] below which the field is not followed any more."""
+"""Step [rho] below which the field is not followed any more."""
 MAX_NEWTON = 15
-"""Newton iterations of one backward Euler step; it is cut to a quarter if they do not converge."""
+"""Newton iterations of one backward Euler step; four short ones follow if they do not converge."""
 
 
 def settle(
@@ -58,51 +59,33 @@ def settle(
     return systems, time, *flow.read(qp, state, point)
 
 
-def advance(flow: Flow, state: Vector, step: float, count: int, tol: float) -> int:
-    """Advance `state` (size,) by `count` backward Euler steps, cut where one does not converge.
-
-    Returns:
-        Linear systems solved, or -1 where even very short steps did not converge.
-    """
-    total = 0
-    for _ in range(count):
-        left = step
-        length = step
-        while left > 1e-12 * step:
-            length = min(length, left)
-            new, systems = backward_euler(flow, state, length, tol)
-            total += systems
-            if new is not None:
-                state[:] = new
-                left -= length
-            elif length < 1e-6 * step:
-                return -1
-            else:
-                length *= 0.25
-    return total
-
-
-def backward_euler(flow: Flow, start: Vector, step: float, tol: float) -> tuple[Vector | None, int]:
-    """Take one backward Euler step, ``new = start + step F(new)``.
+def backward_euler(flow: Flow, state: Vector, step: float, tol: float) -> int:
+    """Take one backward Euler step, ``new = state + step F(new)``, in place.
 
     Args:
         flow: The network's right-hand side for the program.
-        start: The state, (size,), which is not changed.
+        state: The state, (size,).
         step: Length, in units of rho.
-        tol: Largest defect ``|new - start - step F(new)|`` that is accepted beside its rounding,
+        tol: Largest defect ``|new - state - step F(new)|`` that is accepted beside its rounding,
             in the state's unit.
 
     Returns:
-        The new state (size,), None where the iteration did not converge; linear systems solved.
+        Linear systems solved.
+
+    Raises:
+        NoSolutionError: Very short steps do not converge either.
     """
-    new = start.copy()
-    eye = np.eye(start.size)
+    new = state.copy()
+    eye = np.eye(state.size)
     for systems in range(MAX_NEWTON + 1):
-        defect = new - start - step * flow.rates(new)
+        defect = new - state - step * flow.rates(new)
         if np.abs(defect).max() <= tol + 1e-14 * step:
-            return new, systems
+            state[:] = new
+            return systems
         new = new - _solved(eye - step * flow.derivative(new), defect)
-    return None, MAX_NEWTON
+    if step < SHORTEST:
+        raise NoSolutionError("an implicit step cannot be solved to working precision")
+    return MAX_NEWTON + sum(backward_euler(flow, state, 0.25 * step, tol) for _ in range(4))
 
 
 def _solved(matrix: Vector, values: Vector) -> Vector:
