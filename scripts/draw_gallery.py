@@ -57,15 +57,11 @@ def run(*arguments):
     return [(record, iiwa_dnn.load_robot(record.settings["robot"]))]
 
 
-def arm(records, index=-1, face_on=True):
-    """Draw the arm near the end of a run, and the path face on beside it."""
+def arm(records, index=-1):
+    """Draw the arm near the end of a run."""
     record, robot = records[index]
-    widths = (340, 340) if face_on else (540,)
-    sheet = Image.new("RGB", (sum(widths), 340))
-    for left, width, view in zip((0, 340), widths, ("arm", "path"), strict=False):
-        with ArmRenderer(robot, record, width, 340, view) as renderer:
-            sheet.paste(Image.fromarray(renderer.draw(round(0.93 * record.steps))), (left, 0))
-    return sheet
+    with ArmRenderer(robot, record, 540, 340) as renderer:
+        return Image.fromarray(renderer.draw(round(0.93 * record.steps)))
 
 
 def figure(draw, records):
@@ -88,8 +84,7 @@ def turned(axes, record):
     ):
         vectors = Rotation.from_matrix(rotations @ rotations[0].T).as_rotvec()
         axes.plot(record.t, np.degrees(vectors[:, 0]), label=name, **line)
-    axes.set_ylabel("Nodding about $x$ [deg]")
-    plots.time_axis(axes, record)
+    plots.label_time(axes, record, "Nodding about $x$ [deg]")
     plots.legend_above(axes, 2)
 
 
@@ -100,8 +95,7 @@ def elbow(axes, record):
     places = [iiwa_dnn.Configuration(robot, q).frame("iiwa7_link_4").position for q in record.q]
     axes.plot(record.t, np.linalg.norm(np.subtract(places, point), axis=1), label="elbow")
     axes.axhline(0.2, color="0.5", linestyle="--", label="limit")
-    axes.set_ylabel("Distance from the point [m]")
-    plots.time_axis(axes, record)
+    plots.label_time(axes, record, "Distance from the point [m]")
     plots.legend_above(axes, 2)
 
 
@@ -121,8 +115,7 @@ def pivot(axes, record):
 def residual(axes, record):
     """Draw the KKT residual of the network's answers."""
     plots.draw_log(axes, record.t[:-1], record.kkt_residual[:, None], ["own network"], 1e-9)
-    axes.set_ylabel("KKT residual")
-    plots.time_axis(axes, record)
+    plots.label_time(axes, record, "KKT residual")
 
 
 def scenes(csv):
@@ -133,9 +126,9 @@ def scenes(csv):
         ("heart", arm, lambda: run("track")),
         ("csv", arm, lambda: run("track", csv)),
         ("turning", partial(figure, turned), lambda: example("own_orientation.py")),
-        ("obstacle", partial(arm, face_on=False), lambda: example("avoid_obstacle.py")),
+        ("obstacle", arm, lambda: example("avoid_obstacle.py")),
         ("clearance", partial(figure, elbow), lambda: example("own_parts.py")),
-        ("two_arms", partial(arm, index=0, face_on=False), lambda: example("two_arms.py")),
+        ("two_arms", partial(arm, index=0), lambda: example("two_arms.py")),
         ("network", partial(figure, residual), lambda: example("own_network.py", "1000")),
         ("noise", error, lambda: run("track", "--noise", "0.01")),
         ("push", error, lambda: run("physics", *push)),

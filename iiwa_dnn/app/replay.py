@@ -19,8 +19,8 @@ from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import ACTIONS, limits, position_error, rotation_angle
+from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.record import FloatArray, Record
-from iiwa_dnn.results.scenery import obstacles_of
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, outline
 from iiwa_dnn.robot.robot import urdf_of

@@ -1,7 +1,6 @@
 """The reasons why a run is not a success, in plain words, from its metrics."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,6 @@ import numpy as np
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.naming import describe
-from iiwa_dnn.results.markdown import number
 from iiwa_dnn.results.metrics import (
     BOUNDS,
     EXCESS_TOLERANCE,
@@ -27,8 +25,6 @@ INFEASIBLE = "no joint velocity inside the limits fulfils the task"
 """Beginning of a reason: a program of the continuous mode was shown to have no solution."""
 
 _DONE = {"slow": "slowed", "relax": "relaxed", "stop": "stopped"}
-
-_show = partial(number, form=".3g", unknown="not a number")
 
 
 def failures(run: Record | Mapping[str, Any]) -> list[str]:
@@ -54,7 +50,7 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     settings = run["settings"]
     return [
         *_incomplete(run),
-        *(_policies(run) if settings["mode"] == "converged" and "incidents" in run else ()),
+        *(_policies(run, run["incidents"]) if "incidents" in run else ()),
         *(_unsolved(run) if settings["mode"] == "converged" else ()),
         *_crosscheck(run["crosscheck"], run["steps"]),
         *_broken_limits(run),
@@ -72,6 +68,20 @@ def programs_checked(check: Mapping[str, Any], separator: str = ", ") -> str:
     if kinds["stopped"]:
         parts.append(f"{kinds['stopped']:,} stopped, with nothing to check")
     return separator.join(parts)
+
+
+def completed(metrics: Mapping[str, Any]) -> str:
+    """State the completed part of the path, or of the time of it that was asked for."""
+    settings = metrics["settings"]
+    part = percent(metrics["path_completed"])
+    asked = settings["duration"]
+    if (settings.get("path_duration") or 0.0) <= asked:
+        return part
+    return f"{part} of the {asked:g} s asked for, the path takes {settings['path_duration']:g} s"
+
+
+def _show(value: float | None) -> str:
+    return "not a number" if value is None else f"{value:.3g}"
 
 
 def _at(found: Mapping[str, Any]) -> str:
@@ -92,7 +102,7 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Report an incomplete path, an early end, and a program without a solution."""
     settings = metrics["settings"]
     if metrics["path_completed"] < 1.0:
-        yield f"path completed {percent(metrics['path_completed'])}"
+        yield f"path completed {completed(metrics)}"
     if settings["status"] != "completed":
         planned = round(settings["duration"] / settings["dt"])
         yield f"ended after {metrics['steps']:,} of {planned:,} steps: {settings['status']}"
@@ -104,59 +114,50 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
         yield "the tip position is not finite at every step"
 
 
-def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
+def _policies(metrics: Mapping[str, Any], incidents: Mapping[str, Any]) -> Iterator[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
-    incidents = metrics["incidents"]
-    first = incidents["first"]
-    if first is None:
-        return
     done = {word: incidents[f"{name}_steps"] for name, word in _DONE.items()}
-    if any(done.values()):
-        counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items() if steps)
-        at = f", the first at {_at(first)}"
-        if first["against"]:
-            at += f", against {_named(first['against'])}"
-        start = metrics["start_distance_m"] or 0.0
-        begins = f"; the path begins {_show(start)} m from the tip" if start > FAR else ""
-        yield (
-            f"{_count(sum(done.values()))} without a solution ({counts}){at}; "
-            f"most often in the way: {_in_the_way(metrics)}{begins}"
-        )
-    if incidents["slow_steps"]:
-        clock = f"path time {number(incidents['path_time_s'])} s"
-        took = f"{number(metrics['duration_s'])} s"
-        yield f"slowed: {clock} after {took}{_needed(metrics)}{_off_path(incidents)}"
+    if metrics["settings"]["mode"] != "converged" or not any(done.values()):
+        return
+    first = incidents["first"]
+    counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items() if steps)
+    text = f"{_count(sum(done.values()))} without a solution ({counts}), the first at {_at(first)}"
+    if first["against"]:
+        text += f", against {_named(first['against'])}"
+    text += f"; most often in the way: {_in_the_way(metrics)}"
+    if done["relaxed"]:
+        text += f"; position error up to {_show(metrics['max_position_error_m'])} m"
+    if (metrics["start_distance_m"] or 0.0) > FAR:
+        text += f"; the path begins {_show(metrics['start_distance_m'])} m from the tip"
+    yield text
+    if done["slowed"]:
+        clock = f"{incidents['path_time_s']:.4g} s of the path in {metrics['duration_s']:.4g} s"
+        yield f"slowed: {clock}{_needed(metrics)}{_off_path(incidents)}"
 
 
 def _in_the_way(metrics: Mapping[str, Any]) -> str:
     """Name the limits that were longest in the way of a solution."""
     incidents = metrics["incidents"]
     blocks = [*incidents["blocking_rows"], *incidents["blocking"]]
-    blocks.sort(key=lambda limit: -limit["steps"])
     if blocks:
-        return _named(blocks)
-    own = " or ".join(metrics["settings"].get("own_tasks", ()))
+        return _named(sorted(blocks, key=lambda limit: -limit["steps"]))
+    own = " or ".join(metrics["settings"].get("own_tasks") or ())
     return "no bound, a singular pose" + (f" or {own} against other tasks" if own else "")
 
 
 def _needed(metrics: Mapping[str, Any]) -> str:
-    """State what would have sufficed, 2 % and more above it; nothing if that is not known."""
+    """State the speed that would have sufficed, and 2 %; nothing if that is not known."""
     needed = metrics["incidents"]["needed"]
     if needed is None:
         return ""
-    part = "" if metrics["path_completed"] == 1.0 else "what was drawn "
     ratio = np.ceil(10.0 * 1.02 * needed["speed_ratio"]) / 10.0
-    time = np.ceil(10.0 * needed["time_s"]) / 10.0
-    reference = metrics["settings"].get("reference")
-    option = f"--stretch {ratio:g} times as large"
-    if isinstance(reference, Mapping) and "period" in reference:
-        period = ratio * reference["period"]
-        option = f"--period {period:g} --duration {period:g}"
-    return (
-        f"; {part}needs {ratio:g} times the joints' speed, most of all {needed['name']}'s, "
-        f"or {ratio:g} times as long a time ({option}); "
-        f"slowed as here it ends after about {time:g} s (--duration {time:g})"
-    )
+    period = (metrics["settings"].get("reference") or {}).get("period")
+    option = "--stretch" if period is None else f"--period {ratio * period:g}"
+    text = f"; at its own speed it asks {ratio:g} times as much of {needed['name']} as its limit"
+    text += f": give it {ratio:g} times the time ({option})"
+    if metrics["path_completed"] < 1.0:
+        text += f"; slowed as here, the path takes about {needed['time_s']:.3g} s"
+    return text
 
 
 def _off_path(incidents: Mapping[str, Any]) -> str:

@@ -1,6 +1,6 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import product
 from typing import Any, NamedTuple
@@ -46,7 +46,6 @@ _VELOCITY = 1 + KINDS.index("velocity")
 
 BoolArray = NDArray[np.bool_]
 Codes = NDArray[Any]
-Named = tuple[dict[str, Any], Codes]
 
 
 def position_error(record: Record) -> FloatArray:
@@ -86,14 +85,6 @@ def limits(record: Record, key: str, unlimited: float = np.inf) -> FloatArray:
     return np.array([unlimited if value is None else value for value in values], dtype=float)
 
 
-def _position_excess(record: Record) -> FloatArray:
-    """Compute the distance of each joint beyond its position limits [rad], (N+1, n)."""
-    # np.maximum, unlike max(), lets a NaN through.
-    below = limits(record, "q_lower", -np.inf) - record.q
-    excess: FloatArray = np.maximum(below, record.q - limits(record, "q_upper"))
-    return excess
-
-
 def _rate_excess(record: Record, order: int) -> FloatArray:
     """Compute the excess of each joint's acceleration or jerk over its limit, (N, n).
 
@@ -127,7 +118,16 @@ class JointLimit(NamedTuple):
 
 
 JOINT_LIMITS = (
-    JointLimit("position", "q_upper", "position_limit_violation_rad", "rad", _position_excess),
+    JointLimit(
+        "position",
+        "q_upper",
+        "position_limit_violation_rad",
+        "rad",
+        # np.maximum, unlike max(), lets a NaN through.
+        lambda record: np.maximum(
+            limits(record, "q_lower", -np.inf) - record.q, record.q - limits(record, "q_upper")
+        ),
+    ),
     JointLimit(
         "velocity",
         "dq_max",
@@ -139,17 +139,82 @@ JOINT_LIMITS = (
         "acceleration",
         "ddq_max",
         "acceleration_limit_violation_rad_s2",
-        "rad/s^2",
+        "rad/s²",
         partial(_rate_excess, order=1),
     ),
     JointLimit(
         "jerk",
         "dddq_max",
         "jerk_limit_violation_rad_s3",
-        "rad/s^3",
+        "rad/s³",
         partial(_rate_excess, order=2),
     ),
 )
+
+
+class Metric(NamedTuple):
+    """A number that sums up a run.
+
+    Attributes:
+        key: Name in metrics.json, with its unit.
+        quantity: Name in a report; empty: not in the report.
+        unit: Unit in a report.
+        compute: Computes it from the record; None if it does not exist.
+    """
+
+    key: str
+    quantity: str
+    unit: str
+    compute: Callable[[Record], Any]
+
+
+METRICS = (
+    Metric("path_completed", "path completed", "", lambda record: record.path_completed),
+    Metric("start_distance_m", "", "m", lambda record: _distance(record)[0]),
+    Metric("max_position_error_m", "largest position error", "m", lambda r: _distance(r).max()),
+    Metric(
+        "mse_position_error_m2",
+        "mean squared position error",
+        "m²",
+        lambda record: np.mean(position_error(record) ** 2),
+    ),
+    Metric(
+        "max_orientation_error_rad",
+        "largest orientation error",
+        "rad",
+        lambda record: orientation_error(record).max(),
+    ),
+    Metric(
+        "joint_drift_rad",
+        "joint drift, start to end",
+        "rad",
+        lambda record: np.abs(record.q[-1] - record.q[0]).max(),
+    ),
+    Metric(
+        "max_kinetic_index",
+        "largest kinetic index",
+        "rad²/s²",
+        lambda record: _max(record.kinetic_index),
+    ),
+    Metric("steps", "", "", lambda record: record.steps),
+    Metric("dt_s", "", "s", lambda record: record.settings["dt"]),
+    Metric("duration_s", "", "s", lambda record: float(record.t[-1] - record.t[0])),
+    Metric("wall_time_s", "wall time", "s", lambda record: record.wall_time_s),
+    Metric(
+        "realtime_factor",
+        "time simulated / wall time",
+        "",
+        lambda r: (r.t[-1] - r.t[0]) / r.wall_time_s if r.wall_time_s else None,
+    ),
+    Metric("max_kkt_residual", "largest KKT residual", "", lambda r: _max(r.kkt_residual)),
+    Metric(
+        "active_limit_steps",
+        "steps with an active bound or row",
+        "",
+        lambda record: _active(record).sum(),
+    ),
+)
+"""The numbers that every run has, but for the excess over `JOINT_LIMITS`."""
 
 
 def compute_metrics(record: Record) -> dict[str, Any]:
@@ -174,39 +239,23 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         The metrics, units in their names. A number that does not exist is None: an overflow, an
         unknown wall time, a maximum over no steps.
     """
-    error = position_error(checks.instance("record", record, Record))
-    distance = np.linalg.norm(error, axis=1)
-    duration = float(record.t[-1] - record.t[0])
-    wall = record.wall_time_s
+    checks.instance("record", record, Record)
     settings = record.settings
     broken = {
         limit.metric: limit.excess(record) for limit in JOINT_LIMITS if limit.setting in settings
     }
     metrics: dict[str, Any] = plain(
         {
-            "path_completed": record.path_completed,
-            "start_distance_m": distance[0],
-            "max_position_error_m": distance.max(),
-            "mse_position_error_m2": np.mean(error**2),
-            "max_orientation_error_rad": orientation_error(record).max(),
-            "joint_drift_rad": np.abs(record.q[-1] - record.q[0]).max(),
-            "max_kinetic_index": _max(record.kinetic_index),
-            "steps": record.steps,
-            "dt_s": settings["dt"],
-            "duration_s": duration,
-            "wall_time_s": wall,
-            "realtime_factor": duration / wall if wall else None,
+            **{metric.key: metric.compute(record) for metric in METRICS},
             **{name: excess.max(initial=0.0) for name, excess in broken.items()},
             "violations": {name: _worst(record, excess) for name, excess in broken.items()},
-            "max_kkt_residual": _max(record.kkt_residual),
             "unsolved": _unsolved(record),
-            "active_limit_steps": _active(record).sum(),
             "network_iterations": {
                 "mean": record.iterations.mean() if record.steps else None,
                 "max": _max(record.iterations),
             },
             "crosscheck": _crosscheck(record),
-            **_physics(record, distance),
+            **_physics(record),
             **_incidents(record),
             **_frames(record),
             **_collisions(record),
@@ -215,6 +264,12 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         }
     )
     return metrics
+
+
+def _distance(record: Record) -> FloatArray:
+    """Compute the distance of the tip from its target [m], (N+1,)."""
+    distance: FloatArray = np.linalg.norm(position_error(record), axis=1)
+    return distance
 
 
 def _max(values: NDArray[Any]) -> Any:
@@ -324,10 +379,11 @@ def _who(
     return found | {"solver": record.settings["check"]["solvers"][solver], "gap": gap[solver]}
 
 
-def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
-    """Sum up torques, settled error and recovery from the distance to the path [m], (N+1,)."""
+def _physics(record: Record) -> dict[str, Any]:
+    """Sum up torques, settled error and recovery from a push."""
     if not len(record.torque):
         return {}
+    distance = _distance(record)
     torque = np.abs(record.torque)
     limit = limits(record, "torque_max")
     reached = [_first(record, ~(torque[:, i] < limit[i])) for i in range(record.dof)]
@@ -404,30 +460,33 @@ def _incidents(record: Record) -> dict[str, Any]:
     if not len(kinds):
         # A bound is the velocity limit itself, or the tighter one near a position limit.
         kinds = 1 + (np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max"))
-    active = _bounds(record, record.filled("bound_multiplier"), np.abs(kinds))
+    blocking = record.filled("blocking")
     first = _first(record, action != 0)
+    slow = action == _SLOW
     return {
         "incidents": {
             "clipped_steps": record.filled("clipped").any(axis=1).sum(),
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
-            "needed": _needed(record, action == _SLOW),
-            "off_path_m": _off_path(record, action == _SLOW),
+            "needed": _needed(record, slow),
+            "off_path_m": _off_path(record, slow),
             "first": first and _what(record, first, action),
-            "blocking": _spells(record, _blocking(record)),
-            "blocking_rows": _spells(record, _rows(record, "blocking_rows")),
-            "active_bounds": _spells(record, active, sized=True),
-            "active_rows": _spells(record, _rows(record, "row_multiplier"), sized=True),
+            "blocking": _bounds(record, blocking, np.abs(blocking)),
+            "blocking_rows": _rows(record, "blocking_rows"),
+            "active_bounds": _bounds(
+                record, record.filled("bound_multiplier"), np.abs(kinds), True
+            ),
+            "active_rows": _rows(record, "row_multiplier", True),
         }
     }
 
 
 def _begins_far(record: Record) -> bool:
-    return bool(np.linalg.norm(record.position[0] - record.position_desired[0]) > FAR)
+    return bool(_distance(record)[0] > FAR)
 
 
 def _needed(record: Record, slow: BoolArray) -> dict[str, Any] | None:
-    """Estimate what would have sufficed where velocity limits alone slowed the path.
+    """Estimate the speed that would have sufficed where velocity limits alone slowed the path.
 
     With its velocity over the fraction of the path's speed that it had, a slowed step would have
     followed the path at its own speed. The time is that of the path once at the mean pace. What is
@@ -441,9 +500,12 @@ def _needed(record: Record, slow: BoolArray) -> dict[str, Any] | None:
     fraction = record.filled("fraction")[slow, np.newaxis]
     ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
     joint = int(ratio.argmax())
-    time = record.t[-1] * record.path_duration / max(record.path_time, np.finfo(float).tiny)
-    named = {"joint": joint + 1, "name": joint_name(record.settings, joint)}
-    return named | {"speed_ratio": ratio[joint], "time_s": time}
+    return {
+        "joint": joint + 1,
+        "name": joint_name(record.settings, joint),
+        "speed_ratio": ratio[joint],
+        "time_s": record.t[-1] * record.path_duration / max(record.path_time, 1e-300),
+    }
 
 
 def _off_path(record: Record, slow: BoolArray) -> float | None:
@@ -455,56 +517,50 @@ def _off_path(record: Record, slow: BoolArray) -> float | None:
     slowed = rows & slow & (np.abs(record.filled("blocking")) <= _VELOCITY).all(axis=1)
     if not slowed.any() or _begins_far(record):
         return None
-    return float(np.linalg.norm(position_error(record)[1:][slowed], axis=1).max())
+    return float(_distance(record)[1:][slowed].max())
 
 
 def _what(record: Record, first: dict[str, Any], action: Codes) -> dict[str, Any]:
-    """Name the action at the first step that a policy decided, and what was in its way."""
+    """Name the action at the first step that a policy decided, and the limits in its way."""
     step = first["step"]
-    name = ACTIONS.get(int(action[step]), "unknown")
     acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
-    against = in_the_way({"rows": (), **record.settings}, *acting)
-    return {"step": step, "time_s": first["time_s"], "action": name, "against": against}
+    return {
+        "step": step,
+        "time_s": first["time_s"],
+        "action": ACTIONS.get(int(action[step]), "unknown"),
+        "against": in_the_way({"rows": (), **record.settings}, *acting),
+    }
 
 
-def blocking_limits(record: Record) -> Iterator[Named]:
-    """Name the bounds and rows of a run, each with steps above 0 where it was in the way, (N,)."""
-    yield from _blocking(record)
-    yield from _rows(record, "blocking_rows")
-
-
-def _blocking(record: Record) -> Iterator[Named]:
-    return _bounds(record, record.filled("blocking"), np.abs(record.filled("blocking")))
-
-
-def _bounds(record: Record, signed: Codes, kinds: Codes) -> Iterator[Named]:
-    """Split entries by bound: positive ones belong to an upper bound, negative ones to a lower."""
+def _bounds(
+    record: Record, values: Codes, kinds: Codes, sized: bool = False
+) -> list[dict[str, Any]]:
+    """Sum up entries (N, n) by the bound: positive ones are an upper one's, negative a lower's."""
     words = bound_words(record.settings)
     joints = record.settings.get("joints", ())
-    codes = range(1, 1 + len(words))
-    for joint, sign, code in product(range(record.dof), (-1, 1), codes):
-        name = bound_name(joint, sign * code, words, joints)
-        yield name, np.where(kinds[:, joint] == code, sign * signed[:, joint], 0)
+    return [
+        _spell(record, bound_name(joint, sign * code, words, joints), acting, sized)
+        for joint, sign, code in product(range(record.dof), (-1, 1), range(1, 1 + len(words)))
+        if (acting := sign * values[:, joint] * (kinds[:, joint] == code)).max(initial=0.0) > 0.0
+    ]
 
 
-def _rows(record: Record, column: str) -> Iterator[Named]:
-    """Name the inequality rows of a column."""
+def _rows(record: Record, column: str, sized: bool = False) -> list[dict[str, Any]]:
+    """Sum up a column of the inequality rows by the row."""
     rows = record.settings.get("rows") or ()
-    for row, values in zip(rows, record.filled(column).T, strict=True):
-        yield {key: row[key] for key in ("part", "row", "about") if key in row}, values
+    return [
+        _spell(record, row, values, sized)
+        for row, values in zip(rows, record.filled(column).T, strict=True)
+        if (values > 0).any()
+    ]
 
 
-def _spells(record: Record, named: Iterable[Named], sized: bool = False) -> list[dict[str, Any]]:
-    """Count the steps at which bounds or rows acted, those with an entry above zero."""
-    spells = []
-    for name, values in named:
-        steps = np.flatnonzero(values > 0)
-        if not steps.size:
-            continue
-        time = float(record.settings["dt"]) * steps.size
-        spell = {**name, "steps": steps.size, "time_s": time, "first_s": record.t[steps[0]]}
-        if sized:
-            multiplier = values[steps]
-            spell |= {"max_multiplier": multiplier.max(), "mean_multiplier": multiplier.mean()}
-        spells.append(spell)
-    return spells
+def _spell(record: Record, name: Mapping[str, Any], values: Codes, sized: bool) -> dict[str, Any]:
+    """Count the steps at which a limit acted, those with an entry (N,) above zero."""
+    steps = np.flatnonzero(values > 0)
+    time = float(record.settings["dt"]) * steps.size
+    spell = {**name, "steps": steps.size, "time_s": time, "first_s": record.t[steps[0]]}
+    if sized:
+        multiplier = values[steps]
+        spell |= {"max_multiplier": multiplier.max(), "mean_multiplier": multiplier.mean()}
+    return spell

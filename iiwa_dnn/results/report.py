@@ -12,30 +12,18 @@ from typing import Any
 
 from tabulate import tabulate
 
-from iiwa_dnn.files import percent, prepare_folder, write_json
+from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import describe, unwatched
-from iiwa_dnn.results.failures import INFEASIBLE, failures, programs_checked
-from iiwa_dnn.results.markdown import bullets, markdown_table, save_markdown, show_figures
-from iiwa_dnn.results.metrics import PROOF, compute_metrics
+from iiwa_dnn.results.failures import INFEASIBLE, completed, failures, programs_checked
+from iiwa_dnn.results.markdown import markdown_table
+from iiwa_dnn.results.metrics import JOINT_LIMITS, METRICS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
 
 Row = tuple[str, str, str]
 """Quantity, value and unit."""
 
-_RESULTS = (
-    ("path completed", "path_completed", ""),
-    ("largest position error", "max_position_error_m", "m"),
-    ("mean squared position error", "mse_position_error_m2", "m²"),
-    ("largest orientation error", "max_orientation_error_rad", "rad"),
-    ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "rad²/s²"),
-    ("beyond position limits", "position_limit_violation_rad", "rad"),
-    ("beyond velocity limits", "velocity_limit_violation_rad_s", "rad/s"),
-    ("beyond acceleration limits", "acceleration_limit_violation_rad_s2", "rad/s²"),
-    ("beyond jerk limits", "jerk_limit_violation_rad_s3", "rad/s³"),
-    ("largest KKT residual", "max_kkt_residual", ""),
-    ("steps with an active bound or row", "active_limit_steps", ""),
+_OF_CHECK = (
     ("linear systems a step, mean", "network_iterations.mean", ""),
     ("linear systems a step, most", "network_iterations.max", ""),
     ("largest gap to the reference", "crosscheck.max_solution_gap", "rad/s"),
@@ -51,8 +39,11 @@ _RESULTS = (
     ("steps relaxed", "incidents.relax_steps", ""),
     ("steps stopped", "incidents.stop_steps", ""),
     ("steps taken by Euler's method", "incidents.euler_steps", ""),
-    ("wall time", "wall_time_s", "s"),
-    ("time simulated / wall time", "realtime_factor", ""),
+)
+_RESULTS = (
+    *((metric.quantity, metric.key, metric.unit) for metric in METRICS if metric.quantity),
+    *((f"beyond {limit.kind} limits", limit.metric, limit.unit) for limit in JOINT_LIMITS),
+    *_OF_CHECK,
 )
 """Rows of numbers: quantity, place in the metrics, and unit."""
 
@@ -78,10 +69,6 @@ _WHY = {
 }
 """Reasons of a collision model to leave a pair of links out, in words."""
 
-_STEP = (
-    "At each step, one control period long, the network settles the quadratic program that the "
-    "scheme builds for the joint positions of the moment; a reference solver gets the same program."
-)
 _SPELLS = {
     "active": ("active_bounds", "active_rows"),
     "in the way": ("blocking", "blocking_rows"),
@@ -143,19 +130,19 @@ def write_report(
     )
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
-        _STEP,
         "## Verdict",
-        bullets(failures(metrics) or [_success(metrics)]),
+        *(f"- {line}" for line in _verdict(metrics)),
         "## Results",
         markdown_table(("quantity", "value", "unit"), rows(metrics, paper)),
         "## Settings",
-        *_pairs(settings),
         markdown_table(("setting", "value"), _named(settings)),
         "## Made",
-        bullets(made),
-        *show_figures(figures, CAPTIONS),
+        *(f"- {line}" for line in made),
+        *(f"![{CAPTIONS[path.stem]}]({path.name})" for path in figures if path.suffix == ".png"),
     ]
-    return save_markdown(folder, parts)
+    path = Path(folder) / "report.md"
+    write_text(path, "\n\n".join(parts).replace("\n\n- ", "\n- ") + "\n")
+    return path
 
 
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
@@ -163,12 +150,11 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
 
     An incomplete path is its first line, or that the path cannot be followed.
     """
-    reasons = failures(metrics) if reasons is None else reasons
-    verdict = [*(reasons or [_success(metrics)]), *_unwatched(metrics["settings"])]
+    verdict = _verdict(metrics, reasons)
     lines = [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
     lines += zip(["verdict", *[""] * len(verdict)], verdict, strict=False)
     table = tabulate(lines, tablefmt="plain", disable_numparse=True)
-    first = [text for text in reasons[:1] if text.startswith(("path ", INFEASIBLE))]
+    first = [text for text in verdict[:1] if text.startswith(("path ", INFEASIBLE))]
     aligned = [line.rstrip() for line in table.splitlines()]
     return "\n".join([*first, *aligned]).replace("²", "^2").replace("³", "^3")
 
@@ -200,9 +186,9 @@ def _numbers(metrics: Mapping[str, Any], paper: Mapping[str, float]) -> Iterator
         value = _at(metrics, place)
         if value is None or (value == 0 and place.startswith("incidents.")):
             continue
-        if place.startswith("network_") and not _is_implicit(settings):
+        if (settings.get("integrator") or {}).get("name") != "ImplicitEuler":
             name = name.replace("linear systems", "network sub-steps")
-        shown = percent(value) if place == "path_completed" else _text(value)
+        shown = completed(metrics) if place == "path_completed" else _text(value)
         if place in paper:
             shown += f" (the paper's {_text(paper[place])})"
         yield name, shown, _unit(settings, place, unit)
@@ -246,64 +232,52 @@ def _checked(metrics: Mapping[str, Any]) -> str:
     return f"{solver}: {programs_checked(check)}, {disagreements}{judged}"
 
 
+def _verdict(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> list[str]:
+    """State the reasons of a failure, or the success no stronger than the check; and warn."""
+    said = list(failures(metrics) if reasons is None else reasons) or [_success(metrics)]
+    links = (metrics["settings"].get("collisions") or {}).get("unwatched")
+    return [*said, f"Beware: {unwatched(links)}."] if links else said
+
+
 def _success(metrics: Mapping[str, Any]) -> str:
     """State the verdict on a run without failures, no stronger than the check."""
     check = metrics["crosscheck"]
     solver = check["solver"]
-    solved = f"all {metrics['steps']:,} steps solved, within all limits and"
-    if check["judged"]:
-        agreed = "proven" if solver == PROOF else f"in agreement with {solver}"
-        asked = solver.split("+")
-        for name, count in check["judged_by"].items():
-            if name not in asked:
-                agreed += f", {count:,} of them with {name} in its place"
-        return f"{solved} {agreed}"
     if solver == "none":
         return "completed within all limits; no reference solver was asked"
-    return f"completed within all limits; the gap to {solver} is a lag, not judged"
-
-
-def _unwatched(settings: Mapping[str, Any]) -> list[str]:
-    """Name the links of a run that nothing kept clear of obstacles."""
-    links = settings.get("collisions", {}).get("unwatched")
-    return [f"Beware: {unwatched(links)}."] if links else []
-
-
-def _pairs(settings: Mapping[str, Any]) -> list[str]:
-    """State which pairs of bodies are watched, and which are not and why."""
-    collisions = settings.get("collisions", {})
-    groups = {"Watched pairs": [" and ".join(pair) for pair in collisions.get("pairs", ())]}
-    for first, second, why in collisions.get("left_out", ()):
-        groups.setdefault(f"Not watched, {_WHY.get(why, why)}", []).append(f"{first} and {second}")
-    items = groups.items()
-    lines = [f"{name} ({len(pairs)}): {'; '.join(pairs)}." for name, pairs in items if pairs]
-    return lines + _unwatched(settings)
+    if not check["judged"]:
+        return f"completed within all limits; the gap to {solver} is a lag, not judged"
+    agreed = "proven" if solver == PROOF else f"in agreement with {solver}"
+    for name, count in check["judged_by"].items():
+        if name not in solver.split("+"):
+            agreed += f", {count:,} of them with {name} in its place"
+    return f"all {metrics['steps']:,} steps solved, within all limits and {agreed}"
 
 
 def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
     """Return the unit of a metric; of two it depends on the scheme."""
-    scheme = settings.get("scheme")
-    known = scheme if isinstance(scheme, Mapping) else {}
+    scheme = settings.get("scheme") or {}
     if place == "max_kinetic_index":
-        return {"identity": unit, "inertia": "J"}.get(str(known.get("kinetic")), "")
-    free = place == "max_orientation_error_rad" and known.get("orientation") == "none"
+        return {"identity": unit, "inertia": "J"}.get(str(scheme.get("kinetic")), "")
+    free = place == "max_orientation_error_rad" and scheme.get("orientation") == "none"
     return f"{unit} (orientation free)" if free else unit
-
-
-def _is_implicit(settings: Mapping[str, Any]) -> bool:
-    """Test whether each iteration of the network's integrator solves a linear system."""
-    integrator = settings.get("integrator")
-    return isinstance(integrator, Mapping) and integrator.get("name") == "ImplicitEuler"
 
 
 def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Put the settings in words, (name, value), without those that are not set."""
     shown = {key: value for key, value in settings.items() if value not in (None, [], {})}
-    shown.pop("collisions", None)
-    if "rows" in shown:
-        shown["rows"] = dict(Counter(row["part"] for row in shown["rows"]))
-    units = {key: f" [{unit}]" for key, unit in _UNITS.items()}
-    return [(key.replace("_", " ") + units.get(key, ""), _text(v)) for key, v in shown.items()]
+    watched = shown.pop("collisions", {})
+    shown["watched pairs"] = [" and ".join(pair) for pair in watched.get("pairs", ())]
+    shown["pairs not watched"] = [
+        f"{first} and {second} ({_WHY.get(why, why)})"
+        for first, second, why in watched.get("left_out", ())
+    ]
+    shown["rows"] = dict(Counter(row["part"] for row in shown.get("rows", ())))
+    named = [
+        (key.replace("_", " ") + (f" [{_UNITS[key]}]" if key in _UNITS else ""), _text(value))
+        for key, value in shown.items()
+    ]
+    return [(name, text) for name, text in named if text]
 
 
 def _text(value: object) -> str:
@@ -314,7 +288,8 @@ def _text(value: object) -> str:
     if isinstance(value, list):
         if len(value) > 1 and all(item == value[0] for item in value):
             return f"{_text(value[0])} (all {len(value)})"
-        return " ".join(f"({_text(v)})" if isinstance(v, dict) else _text(v) for v in value)
+        between = "; " if value and isinstance(value[0], str | dict) else " "
+        return between.join(map(_text, value))
     if isinstance(value, float):
         return f"{value:.4g}"
     return f"{value:,}" if type(value) is int else str(value)

@@ -251,6 +251,6 @@ def _reference_settings(reference: References | None) -> dict[str, Any]:
 
 
 def _end_of_path(reference: References | None, duration: float) -> dict[str, float]:
-    """Return the time of a path that is once through before the run of this duration is [s]."""
+    """Return the time that a path takes once [s]; without a path, the run's duration [s]."""
     end = max((path.duration for path in by_frame(reference, "").values()), default=duration)
-    return {"path_duration": end} if end < duration else {}
+    return {"path_duration": end}

@@ -9,10 +9,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from tabulate import tabulate
 
-from iiwa_dnn.results.metrics import position_error
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, draw_error, new_figure
 from iiwa_dnn.results.record import Record
 
@@ -189,9 +187,8 @@ def _short(value: float | None) -> str:
 def error_figure(records: Mapping[str, Record]) -> Figure:
     """Draw the position error of the four cases on one scale: the paper's Fig. 2 (a)-(d)."""
     figure = new_figure(DOUBLE_COLUMN, 5.0)
-    largest = max(float(np.linalg.norm(position_error(r), axis=1).max()) for r in records.values())
-    panels = zip(figure.subplots(2, 2).flat, "abcd", records.items(), strict=True)
+    panels = zip(figure.subplots(2, 2, sharey=True).flat, "abcd", records.items(), strict=True)
     for axes, letter, (case, record) in panels:
-        draw_error(axes, record, largest)
+        draw_error(axes, record)
         axes.set_xlabel(f"{axes.get_xlabel()}\n({letter}) {case}")
     return figure

@@ -31,17 +31,17 @@ def test_everything_is_written(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # What the pictures show is a matter of tests/results/test_pictures.py.
-    draw_only(monkeypatch, "torques")
+    draw_only(monkeypatch, "overview")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
     monkeypatch.setattr(pictures, "FRAME_RATE", 10)
-    for name, pixels in {"WIDTH": 480, "HEIGHT": 270, "SIDE": 210}.items():
+    for name, pixels in {"WIDTH": 480, "HEIGHT": 270}.items():
         monkeypatch.setattr(pictures, name, pixels)
     words = ("physics", "--duration", "0.2", "--out", tmp_path, "--disturb", "--push", 0, 10, 0)
     later = ("push.start=0.1", "push.duration=0.05")
     assert call(*words, *(f"--set=plant.disturbances.{text}" for text in later)) == 0
     captured = capsys.readouterr()
     assert captured.err == ""
-    for name in ("moments.png", "torques.png", "video.mp4"):
+    for name in ("moments.png", "overview.png", "video.mp4"):
         assert (tmp_path / name).stat().st_size > 1000, name
     assert "largest torque, of its limit" in captured.out
     record, metrics = results(tmp_path)
@@ -50,7 +50,7 @@ def test_everything_is_written(
     assert record["torque"].shape == (200, 7)
     report = (tmp_path / "report.md").read_text()
     assert "(moments.png)" in report
-    assert "(torques.png)" in report
+    assert "(overview.png)" in report
 
 
 @needs_mujoco

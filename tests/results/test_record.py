@@ -36,6 +36,7 @@ def full_record() -> Record:
         array = COLUMNS[name].allocate(10, **sizes)
         arrays[name] = np.arange(array.size).reshape(array.shape).astype(array.dtype) % 100
     settings = {"rows": ROWS, "torque_max": [176.0, *[np.inf] * 6], "collisions": NEAR}
+    settings["frames"] = ["elbow", "wrist"]
     return make_record(**arrays, nearest=np.arange(11) % 2, settings=settings)
 
 
@@ -107,14 +108,7 @@ def test_a_record_does_not_change_with_what_it_was_made_of():
         record.q[0] = 1.0
     with pytest.raises(dataclasses.FrozenInstanceError):
         record.q = q
-    # A protected array is taken as it is; a view of an open one is copied.
-    assert dataclasses.replace(record).q is record.q
-    whole = np.ones((11, 7))
-    view = whole[:]
-    view.setflags(write=False)
-    copied = dataclasses.replace(record, q=view)
-    whole[:] = 0.0
-    assert copied.q.all()
+    assert dataclasses.replace(record).q is record.q  # a protected array is taken as it is
 
 
 def test_columns_of_a_run_are_allocated_cut_and_taken_without_a_copy():
@@ -122,7 +116,7 @@ def test_columns_of_a_run_are_allocated_cut_and_taken_without_a_copy():
     arrays = {name: column.allocate(20, **sizes) for name, column in COLUMNS.items()}
     arrays["t"][:] = 0.1 * np.arange(21)
     taken = cut(arrays, 10)
-    settings = {"rows": ROWS, "torque_max": [1.0] * 7, "collisions": NEAR}
+    settings = {"rows": ROWS, "torque_max": [1.0] * 7, "collisions": NEAR, "frames": ["elbow"]}
     record = Record(**taken, settings=make_settings() | settings)
     assert record.steps == 10
     assert all(getattr(record, name) is array for name, array in taken.items())
@@ -138,11 +132,12 @@ def test_a_record_prints_one_line():
     position[4] = [3e-3, -4e-3, 12e-3]
     record = make_record(position=position, settings={"status": "stopped\nat step 3"})
     assert repr(record) == (
-        "Record(iiwa7, 10 steps of 0.1 s, stopped at step 3, position error max 0.013 m)"
+        "Record(iiwa7, 10 steps of 0.1 s, stopped at step 3, 100.0 % of the path asked for, "
+        "position error max 0.013 m)"
     )
     assert "\n" not in repr(make_record(steps=0))
     stuck = make_record(action=np.full(10, 2), fraction=np.full(10, 1e-5))
-    assert "completed, path completed 0.0 %, position error" in repr(stuck)
+    assert "completed, 0.0 % of the path asked for, position error" in repr(stuck)
     assert stuck.path_time == pytest.approx(1e-5)
 
 
@@ -163,9 +158,9 @@ CHECK = {"solvers": ["proxqp"], "tolerance": 1e-6, "reference_tolerance": 1e-8}
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"dq": np.zeros((9, 7))}, r"shape \(9, 7\), expected \(N, n\) = \(10, 7\)"),
-        ({"q": np.zeros((11, 6))}, r"dq: shape \(10, 7\), expected \(N, n\) = \(10, 6\)"),
-        ({"rotation": np.zeros((11, 9))}, r"rotation: shape \(11, 9\)"),
+        ({"dq": np.zeros((9, 7))}, r"shape \(9, 7\), expected numbers \(N, n\) = \(10, 7\)"),
+        ({"q": np.zeros((11, 6))}, r"dq: .* \(10, 7\), expected numbers \(N, n\) = \(10, 6\)"),
+        ({"rotation": np.zeros((11, 9))}, r"rotation: .* shape \(11, 9\)"),
         ({"rotation_desired": np.zeros((11, 3, 2))}, r"\(N\+1, 3, 3\)"),
         ({"kkt_residual": np.zeros(11)}, "kkt_residual"),
         ({"kkt_residual": []}, "kkt_residual: is empty"),
@@ -175,11 +170,11 @@ CHECK = {"solvers": ["proxqp"], "tolerance": 1e-6, "reference_tolerance": 1e-8}
         ({"position": np.full((11, 3), "x")}, "numbers"),
         ({"iterations": np.full(10, 0.5)}, "iterations"),
         ({"solution_gap": np.zeros((10, 2))}, "objective_gap"),
-        ({"action": np.zeros(9, int)}, "action: shape"),
+        ({"action": np.zeros(9, int)}, "action: .* shape"),
         ({"torque": np.zeros((10, 7))}, "'torque_max' is missing"),
         ({"torque": np.zeros((10, 7)), "settings": {"torque_max": [1.0] * 6}}, "7 entries"),
-        ({"row_multiplier": np.zeros((10, 3)), "settings": {"rows": ROWS[:2]}}, "must hold 3"),
-        ({"row_multiplier": np.zeros((10, 3))}, "must hold 3"),
+        ({"row_multiplier": np.zeros((10, 3)), "settings": {"rows": ROWS[:2]}}, "with 3 entries"),
+        ({"row_multiplier": np.zeros((10, 3))}, "'rows' is missing"),
         ({"distance": np.zeros(11)}, "pairs"),
         ({"distance": np.zeros(11), "nearest": np.full(11, 2), "settings": {"collisions": NEAR}},
          "pairs"),
@@ -188,7 +183,7 @@ CHECK = {"solvers": ["proxqp"], "tolerance": 1e-6, "reference_tolerance": 1e-8}
         ({"settings": {"dt": 0.0}}, "dt"),
         ({"settings": {"tol": float("nan")}}, "settings"),
         ({"settings": {"seed": {1}}}, "JSON"),
-        ({"settings": {"check": CHECK | {"solvers": []}}}, "1 entries"),
+        ({"settings": {"check": CHECK | {"solvers": []}}}, "with 1 entries"),
     ],
 )  # fmt: skip
 def test_refusals(changes, words):
@@ -208,13 +203,11 @@ def rewritten(path, **changes):
     [
         {"dq": None},
         {"settings": None},
-        {"crosscheck_gap": None},
         {"kind": None},  # a file of before
         {"dq": np.zeros((3, 7))},
         {"settings": np.array("not json")},
         {"settings": np.array("[1]")},
         {"settings": np.array("{}")},
-        {"crosscheck_gap": np.full(40, 1e-12)},
         {"q": np.full((41, 7), "x")},
         {"q": np.array([object()], dtype=object)},
     ],

@@ -175,9 +175,10 @@ def test_pairs_that_are_watched_and_that_are_not_are_named(tmp_path):
         "unwatched": ["camera"],
     }
     text = report(make_record(settings={"collisions": collisions}), tmp_path)
-    assert "Watched pairs (1): link_1 and link_3." in text
-    assert "Not watched, near each other in the start posture (1): link_5 and link_7." in text
-    assert "Not watched, by hand (1): link_1 and link_2." in text
+    table = rows_of(text)
+    assert table["watched pairs"] == ["link_1 and link_3"]
+    start = "link_5 and link_7 (near each other in the start posture)"
+    assert table["pairs not watched"] == [f"{start}; link_1 and link_2 (by hand)"]
     assert "Beware: nothing keeps these links clear" in text
 
 
