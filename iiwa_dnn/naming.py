@@ -48,7 +48,8 @@ def in_the_way(
     words = bound_words(settings)
     joints = settings.get("joints", ())
     bounds = [bound_name(j, int(code), words, joints) for j, code in enumerate(codes) if code]
-    return bounds + [row for row, acts in zip(settings["rows"], rows, strict=True) if acts]
+    named = settings.get("rows") or ()
+    return bounds + [row for row, acts in zip(named, rows, strict=True) if acts]
 
 
 def describe(limit: Mapping[str, Any]) -> str:

@@ -238,7 +238,7 @@ class Replay:
         step = min(k, record.steps - 1)
         angle = rotation_angle(record.rotation[k], record.rotation_desired[k])
         acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
-        against = in_the_way({"rows": (), **record.settings}, *acting)
+        against = in_the_way(record.settings, *acting)
         action = ACTIONS.get(int(record.filled("action")[step]), "none")
         bounds = zip(limits(record, "q_lower", -np.inf), limits(record, "q_upper"), strict=True)
         joints = zip(record.settings["joints"], record.q[k], bounds, strict=True)

@@ -405,7 +405,7 @@ def _physics(record: Record) -> dict[str, Any]:
 
 def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
     """Measure the recovery from a push; its time is None where the tip never came back for good."""
-    push = record.settings.get("physics", {}).get("disturbances", {}).get("push")
+    push = (record.settings.get("physics") or {}).get("disturbances", {}).get("push")
     if push is None:
         return None
     end = push["start"] + push["duration"]
@@ -528,7 +528,7 @@ def _what(record: Record, first: dict[str, Any], action: Codes) -> dict[str, Any
         "step": step,
         "time_s": first["time_s"],
         "action": ACTIONS.get(int(action[step]), "unknown"),
-        "against": in_the_way({"rows": (), **record.settings}, *acting),
+        "against": in_the_way(record.settings, *acting),
     }
 
 

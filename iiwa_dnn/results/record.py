@@ -317,7 +317,7 @@ class Record:
         """Time of the path once, or of the run if that is shorter, in whole steps [s]."""
         dt = float(self.settings["dt"])
         asked = self.settings["duration"]
-        duration = min(asked, self.settings.get("path_duration", asked))
+        duration = min(asked, self.settings.get("path_duration") or asked)
         return dt * float(max(1, round(duration / dt)))
 
     @property
@@ -448,6 +448,7 @@ def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
         raise InvalidInputError("settings", str(error), record.settings) from error
     checks.one_of("settings['mode']", settings["mode"], MODES)
     checks.positive("settings['dt']", settings["dt"])
+    checks.positive("settings['duration']", settings["duration"])
     if len(record.distance) != len(record.nearest) or record.nearest.max(initial=-1) >= len(pairs):
         raise InvalidInputError("nearest", "must count the pairs of the distances", record.nearest)
     return settings

@@ -272,7 +272,7 @@ def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
         f"{first} and {second} ({_WHY.get(why, why)})"
         for first, second, why in watched.get("left_out", ())
     ]
-    shown["rows"] = dict(Counter(row["part"] for row in shown.get("rows", ())))
+    shown["rows"] = dict(Counter(row["part"] for row in shown.get("rows") or ()))
     named = [
         (key.replace("_", " ") + (f" [{_UNITS[key]}]" if key in _UNITS else ""), _text(value))
         for key, value in shown.items()

@@ -14,7 +14,9 @@ import pytest
 from helpers_records import heart_record, make_record, make_settings
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
+from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record, cut
+from iiwa_dnn.results.report import summary
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
 NEAR = {"pairs": [["a", "b"], ["a", "c"]], "distance": 0.02}
@@ -270,3 +272,22 @@ def test_a_save_that_fails_leaves_the_old_record(heart, tmp_path, monkeypatch):
         make_record().save(tmp_path / "missing" / "record.npz")
     assert path.read_bytes() == old
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_settings_edited_by_hand_are_refused_in_one_line_or_have_a_verdict(tmp_path):
+    path = tmp_path / "record.npz"
+    rows = {"row_multiplier": np.eye(10, 3), "action": [2] * 10, "fraction": [0.5] * 10}
+    record = make_record(**rows, settings={"rows": ROWS, "joints": list("abcdefg")})
+    record.save(path)
+    refused = 0
+    for name in record.settings:
+        for value in (None, "x", -1.5, [], [1], {}, {"a": 1}):
+            rewritten(path, settings=np.array(json.dumps(record.settings | {name: value})))
+            try:
+                metrics = compute_metrics(Record.load(path))
+            except FileError as error:
+                refused += 1
+                assert "\n" not in str(error)  # noqa: PT017 - many settings are only shown
+            else:
+                assert summary(metrics)
+    assert refused > 60

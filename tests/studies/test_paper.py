@@ -159,4 +159,4 @@ def test_the_four_cases_of_fig_2_share_one_scale() -> None:
     for axes, record in zip(panels, records.values(), strict=True):
         error = np.linalg.norm(record.position - record.position_desired, axis=1)
         drawn = axes.lines[-1].get_ydata()
-        assert float(np.max(drawn)) * 1e-6 == pytest.approx(error.max(), rel=0.05)
+        assert float(np.max(drawn)) == pytest.approx(error.max(), rel=0.05)
