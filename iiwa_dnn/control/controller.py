@@ -27,7 +27,7 @@ from iiwa_dnn.control.paths import (
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
 from iiwa_dnn.control.state import LAST, ControllerState, Q
 from iiwa_dnn.control.step import ControlStep
-from iiwa_dnn.control.yielding import BRAKE, guard_step, yield_step
+from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
@@ -275,6 +275,27 @@ class Controller:
             return True
         state = self._state
         return bool(guard_step(step.arrays, state.past, state.following, step.yielding))
+
+    def clear_share(self, q: Vector, dq: Vector) -> float:
+        """Return the share of a velocity that brings no pair nearer than promised, or too near.
+
+        With limits on acceleration or jerk it is 1: to shorten a command could break them.
+
+        Args:
+            q: Joint positions [rad], (n,).
+            dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
+        """
+        step = self._laid_out()
+        if step.yields or not step.yielding.stop:
+            return 1.0
+        step.program.kinematics.update(q)
+        past = np.zeros_like(self._state.past)
+        following = np.zeros_like(past)
+        for share in TOWARDS:
+            following[LAST] = share * dq
+            if guard_step(step.arrays, past, following, step.yielding):
+                return share
+        return 0.0
 
     def _yield(self, step: ControlStep, row: Vector) -> Command:
         """Answer a step without a solution as the policy says."""

@@ -43,7 +43,6 @@ from iiwa_dnn.schemes import (
     Scheme,
 )
 from iiwa_dnn.schemes.program import StepProgram
-from iiwa_dnn.schemes.scene import BRAKED
 
 _STEP = 0.5
 """Largest change of a joint in an iteration [rad]."""
@@ -191,10 +190,7 @@ def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -
     if isinstance(avoidance, CollisionAvoidance):
         pairs = len(avoidance.scene(slowed).pairs)
         limits.append(replace(avoidance, gain=1.0, nearest=pairs))
-    program = StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
-    for start, _ in program.constants_of(CollisionAvoidance):
-        program.constants[start + BRAKED] = 1.0  # nothing moves between two iterations
-    return program
+    return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
 
 
 def _descend(
@@ -225,7 +221,7 @@ def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     """Write the program at joint positions q (n,) [rad] for a goal (1, 18)."""
     data = np.empty(program.data_size)
     program.kinematics.update(q)
-    program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), 1.0)
+    program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), np.inf)
     qp = QP.from_data(data, program.sizes)
     error = qp.b[_POSE]
     couplings = qp.b[6:]

@@ -91,7 +91,7 @@ class Yielding(NamedTuple):
             empty where there are none.
         settings: Constants with which the network settles, ``[tol, budget]``, (2,).
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
-            braking keeps away from, (scenes, 2); none without acceleration limits.
+            braking keeps away from, (scenes, 2).
         dt: Control period [s].
         answer: Address of the function that settles the network, `ANSWER`.
         stop: Address of `stopping.stopping_time`; 0 without scenes.
@@ -116,10 +116,9 @@ YIELDING = types.BaseTuple.from_types(
 def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
     """Prepare for a scheme that is laid out for a robot, a tolerance and a control period [s]."""
     limits: Vector = np.zeros(0)
-    scenes: list[tuple[int, int]] = []
     if program.rate_limits is not None:
         limits = program.rate_limits.constants(program.robot)
-        scenes = program.constants_of(CollisionAvoidance)
+    scenes = program.constants_of(CollisionAvoidance)
     return Yielding(
         program.row_weights,
         limits,

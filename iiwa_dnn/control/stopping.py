@@ -13,11 +13,13 @@ in the middle, so the jerk is linear in u and largest at an end. M is the least 
 that the limits allow, or with a jerk limit up to about an eighth more; a motion that is gone along
 keeps its M, and stays on the same curve.
 
-A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
-distances: a pair at the distance d, with the gradient g of the distance and the joints' way
-:math:`\Delta q`, still has at least
+Where no acceleration is limited, it is one period at the command, then rest.
 
-.. math::  d + g \cdot \Delta q - \tfrac12 B - \max(0,\; \omega \ell - \eta) - v_o T
+A command is **stoppable** if the motion from it to rest keeps all limits of the joints, and all
+distances: a pair at the distance d, with the gradient g of the distance of a link's end and the
+joints' way :math:`\Delta q`, still has at least
+
+.. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
 by inequality (1) of docs/collisions.md. Along the motion :math:`g \cdot \Delta q` has its least
 value at rest, or where the sum of its terms changes sign. Where the joints go straight on, their
@@ -36,6 +38,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
 from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.schemes.distances import difference, dot
+from iiwa_dnn.schemes.motion_bounds import swept
 from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
 from iiwa_dnn.schemes.tasks import rate_along
 
@@ -243,10 +246,12 @@ def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: f
     Its `bend` (n,) [rad/s] is overwritten. The limits are those of `least_periods`, dt is the
     control period [s].
     """
-    periods = least_periods(dq, last, limits, dt)
-    cubic = has_jerk(limits)
     for i in range(dq.size):
         bend[i] = 0.0
+    if limits.size == 0:
+        return Motion(dq, bend, 1.0, False)
+    periods = least_periods(dq, last, limits, dt)
+    cubic = has_jerk(limits)
     if not periods < np.inf:
         return Motion(dq, bend, -1.0, cubic)
     if cubic and periods > 0.0:
@@ -322,49 +327,6 @@ def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> 
     return True
 
 
-class Swept(NamedTuple):
-    """Bounds on the motion of a pair's second body as seen from the first.
-
-    Attributes:
-        way: Way of a point [m].
-        second_order: Bound on what the ways of points lack to be linear in the joints' [m].
-        turning: Angle by which the body turns [rad].
-        turning_change: Bound on the product of two joints' angles in it [rad^2].
-    """
-
-    way: float
-    second_order: float
-    turning: float
-    turning_change: float
-
-
-@compiled
-def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> Swept:
-    """Bound the motion of pair k by the travel of the joints (n,) [rad].
-
-    The bounds are those of `iiwa_dnn.schemes.motion_bounds`, from `moves` and `radii` (pairs, n).
-    """
-    n = travel.size
-    way = 0.0
-    second_order = 0.0
-    turning = 0.0
-    change = 0.0
-    for step in range(2 * n):  # from the first body up to the common base, then down
-        j = n - 1 - step if step < n else step - n
-        if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
-            continue
-        if radii[k, j] < 0.0:
-            way += travel[j]
-            second_order += 2.0 * travel[j] * turning
-        else:
-            moved = travel[j] * radii[k, j]
-            way += moved
-            second_order += moved * (2.0 * turning + travel[j])
-            change += travel[j] * turning
-            turning += travel[j]
-    return Swept(way, second_order, turning, change)
-
-
 @compiled
 def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: float) -> bool:
     """Test whether all pairs of a scene keep their distance on a motion to rest.
@@ -391,23 +353,19 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     for k in range(len(scene.pairs)):
         pair = pair_of(scene.pairs, k)
         contact = contact_of(scene, pair, placed)
-        bounds = swept(scene.moves, scene.radii, k, travel)
+        way, second_order = swept(scene.moves, scene.radii, k, travel)
         left = contact.distance - pair.obstacle_speed * dt * motion.periods
-        if left - bounds.way >= scene.damper.least:
+        if left - way >= scene.damper.least:
             continue
         normal = contact.normal
         change = np.inf
-        lacking = 0.5 * bounds.second_order
+        lacking = 0.5 * second_order
         a, b = ends_of(scene, placed, int(pair.second))
         for end in (a, b):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
             # No end is below the nearest point, but rounding would hold an arm that is too near.
             height = max(0.0, dot(difference(end, contact.second), normal))
             change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
-        if pair.first_is_ball == 1.0:  # seen from the link, a ball's middle is a point that moves
-            _write_rates(instant.jacobian, scene.moves, k, contact.second, normal, rates)
-            lacking = 0.5 * _seen_second_order(bounds, contact.core)
-            change = max(change, _least_rise(motion, rates, dt, lacking, straight))
         if left + change < min(scene.damper.least, left):
             return False
     return True
@@ -448,14 +406,6 @@ def _least_rise(motion: Motion, rates: Vector, dt: float, lacking: float, straig
 
 
 @compiled
-def _seen_second_order(bounds: Swept, core: float) -> float:
-    """Bound `Swept.second_order` of a point as a link sees it that turns, `core` [m] away."""
-    turning = bounds.turning
-    turned = (turning * turning + bounds.turning_change) * (core + bounds.way)
-    return turned + 2.0 * turning * bounds.way + bounds.second_order
-
-
-@compiled
 def stopping_time(instant: Instant, yielding: Yielding, dq: Vector) -> float:
     """Compute the periods of the motion to rest from a command dq (dof,) [rad/s].
 
@@ -464,7 +414,9 @@ def stopping_time(instant: Instant, yielding: Yielding, dq: Vector) -> float:
     dt = yielding.dt
     bend = np.empty(dq.size)
     motion = motion_to_rest(dq, instant.last, bend, yielding.limits, dt)
-    if motion.periods < 0.0 or not keeps_joint_limits(motion, instant.q, yielding.limits, dt):
+    if motion.periods < 0.0:
+        return -1.0
+    if yielding.limits.size and not keeps_joint_limits(motion, instant.q, yielding.limits, dt):
         return -1.0
     scenes = yielding.scenes
     for k in range(len(scenes)):

@@ -288,7 +288,7 @@ def _answer_relaxed(
     factor = scaling_factor(qp, yielding, relaxed[:size], point, views.figures)
     note_blocking(point, n, qp.h.size, 1, views.blocking)
     if factor >= FEASIBLE and _answered(views, qp, yielding, state):
-        return OWN if yielding.limits.size == 0 else SCALED, 1.0
+        return SCALED, 1.0
     on_path = action == SLOW and _is_path(views.targets)
     if on_path and factor >= CREEP and not _races(qp, point[:n]):
         asked = qp.b.copy()
@@ -473,8 +473,9 @@ def _make_stoppable(
     """
     dof = instant.q.size
     wanted = views.point[: x.size].copy()
-    _step_straight(limits, instant, yielding, wanted)
-    nearest_within(limits, wanted, yielding, views.figures)
+    if yielding.limits.size:
+        _step_straight(limits, instant, yielding, wanted)
+        nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
     left = _braking_command(limits, instant, yielding, brake)
     for share in TOWARDS:

@@ -6,8 +6,9 @@ and the nearest point :math:`x` of the second, the row is a velocity damper,
 .. math::  n \cdot \dot x \;\ge\; v_o - \kappa\,(d - d_s - \varepsilon)
 
 with the obstacle's bound on its speed :math:`v_o` and the part :math:`\varepsilon` of the distance
-that a step of dt can take although the row holds, since links turn and their points move on curves.
-`docs/collisions.md` derives it, and proves that :math:`d \ge d_s` at all times.
+that a step like the last one may take although its row holds, since points move on curves. The rows
+guide; a command is given only if the distance holds on the motion to rest from it
+(`iiwa_dnn.control.stopping`).
 
 Source: B. Faverjon, P. Tournassoud, "A local based approach for path planning of manipulators with
 a high number of degrees of freedom", ICRA 1987.
@@ -15,7 +16,6 @@ a high number of degrees of freedom", ICRA 1987.
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
@@ -28,19 +28,17 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import Triple, compiled
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
-from iiwa_dnn.schemes.distances import difference, dot
+from iiwa_dnn.schemes.motion_bounds import swept
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import (
     Contact,
     Damper,
-    PairConstants,
     Scene,
     contact_of,
-    ends_of,
     make_scene,
     pair_of,
     place_bodies,
@@ -67,15 +65,19 @@ def collision_rows(
     slacks = np.empty(pairs)
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, step.placements, placed)
+    travel = np.empty(dof)
+    for j in range(dof):
+        travel[j] = abs(step.last[j]) / step.rate
     for k in range(pairs):
         pair = pair_of(scene.pairs, k)
         contact = contact_of(scene, pair, placed)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
-        taken = 0.0
-        if scene.damper.braked == 0.0:
-            ends = ends_of(scene, placed, int(pair.second))
-            taken = _taken_distance(pair, contact, ends, 1.0 / step.rate)
-        limits[k] = _approach_limit(scene.damper, pair, contact, taken, step.rate)
+        _, eps = swept(scene.moves, scene.radii, k, travel)
+        slack = contact.distance - scene.damper.least - eps
+        gain = min(scene.damper.gain, step.rate)
+        limits[k] = gain * slack - pair.obstacle_speed
+        if slack < 0.0 and eps > 0.0:
+            limits[k] -= (step.rate - gain) * min(-slack, eps)
         slacks[k] = limits[k] - fastest
     row = 0
     for k in range(pairs):
@@ -113,40 +115,6 @@ def _write_gradient(
         gradients[k, j] = -moves[k, j] * value
         fastest += abs(value) * dq_max[j]
     return fastest
-
-
-@compiled
-def _taken_distance(
-    pair: PairConstants, contact: Contact, ends: tuple[Triple, Triple], dt: float
-) -> float:
-    """Bound the distance of a pair that a step of dt [s] can take although its row holds [m]."""
-    speed = pair.speed
-    turning = pair.turning
-    taken = 0.5 * dt * dt * pair.acceleration
-    a = difference(ends[0], contact.second)
-    b = difference(ends[1], contact.second)
-    if pair.first_is_ball == 1.0 and (dot(a, a) > 0.0 or dot(b, b) > 0.0):
-        # Seen from the link, a ball's middle is a point that moves.
-        turned = (turning * turning + pair.turning_change) * (contact.core + dt * speed)
-        taken += 0.5 * dt * dt * (turned + 2.0 * turning * speed)
-    else:
-        lost_a = dt * turning * math.sqrt(dot(a, a)) - dot(a, contact.normal)
-        lost_b = dt * turning * math.sqrt(dot(b, b)) - dot(b, contact.normal)
-        taken += max(0.0, lost_a, lost_b)
-    return taken
-
-
-@compiled
-def _approach_limit(
-    damper: Damper, pair: PairConstants, contact: Contact, taken: float, rate: float
-) -> float:
-    """Limit the rate at which a pair's distance may shrink [m/s]."""
-    gain = min(damper.gain, rate)
-    slack = contact.distance - damper.least - taken
-    approach = gain * slack
-    if slack < 0.0 and rate < np.inf:
-        approach = rate * max(slack, -taken) + gain * min(slack + taken, 0.0)
-    return approach - pair.obstacle_speed
 
 
 @dataclass(frozen=True, eq=False)

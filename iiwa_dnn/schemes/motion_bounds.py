@@ -1,18 +1,16 @@
-r"""Bounds on the motion of a link's points within a step, in which every joint keeps its velocity.
+r"""Bounds on the motion of a link's points, by how far each joint goes.
 
-Along the joints :math:`1 \dots n` between a body at rest and the link, with velocities bounded by
-:math:`\bar q_k` and a point at most :math:`r_k` from the axis of joint k, the point's velocity,
-acceleration, and the link's turning rate with its change are at most
+Along the joints :math:`1 \dots n` between a body at rest and the link, which travel by
+:math:`\delta_k`, and with a point at most :math:`r_k` from the axis of joint k, the point's way,
+and what that lacks to be linear in the joints' (twice), are at most
 
 .. math::
 
-    V = \sum_k \bar q_k r_k, \quad
-    A = \sum_k r_k \bar q_k \Bigl(\bar q_k + 2 \sum_{j<k} \bar q_j\Bigr), \quad
-    \omega = \sum_k \bar q_k, \quad
-    \dot\omega = \sum_{j<k} \bar q_j \bar q_k
+    V = \sum_k \delta_k r_k, \qquad
+    B = \sum_k r_k \delta_k \Bigl(\delta_k + 2 \sum_{j<k} \delta_j\Bigr)
 
 (docs/collisions.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
-:math:`\bar q_k^2`.
+:math:`\delta_k^2`. With velocities in place of ways they bound velocity and acceleration.
 """
 
 from typing import NamedTuple
@@ -20,33 +18,26 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 
 
 class MotionBounds(NamedTuple):
-    """Bounds on the motion of a link's points as seen from another link.
+    """Joints between two links, by which the second moves as seen from the first.
 
     Attributes:
-        speed: Speed of a point [m/s].
-        acceleration: Acceleration of a point [m/s^2].
-        turning: Turning rate of the link [rad/s].
-        turning_change: Change of the turning rate [rad/s^2].
-        moves: 1 for each joint that moves the link alone, -1 for each that moves the other link
+        moves: 1 for each joint that moves the second link alone, -1 for each that moves the first
             alone, else 0, (n,).
         radii: Largest distance of the points from the axis of each joint that moves them [m], -1
             for a prismatic joint, 0 for the others, (n,).
     """
 
-    speed: float
-    acceleration: float
-    turning: float
-    turning_change: float
     moves: Vector
     radii: Vector
 
 
 def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> MotionBounds:
-    """Bound the motion of points (k, 3) [m] of the second joint's link as seen from the first's.
+    """Find the joints that move points (k, 3) [m] of the second joint's link beside the first's.
 
     The joints are Pinocchio's, 0 the world; the points are in the frame of the second.
     """
@@ -54,29 +45,43 @@ def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> M
     above = [set(list(model.supports[joint])[1:]) for joint in (first, second)]
     up = sorted(above[0] - above[1], reverse=True)
     path = [*up, *sorted(above[1] - above[0])]
-    speed = 0.0
-    acceleration = 0.0
-    turning = 0.0
-    change = 0.0
+    moves = np.zeros(robot.dof)
     radii = np.zeros(robot.dof)
     for index, joint in enumerate(path):
         at = model.idx_vs[joint]
-        fastest = float(robot.dq_max[at])
-        if _slides(robot, joint):
-            radii[at] = -1.0
-            speed += fastest
-            acceleration += 2.0 * fastest * turning
+        moves[at] = -1.0 if joint in up else 1.0
+        slides = _slides(robot, joint)
+        radii[at] = -1.0 if slides else _largest_radius(robot, path[index:], up, points)
+    return MotionBounds(moves, radii)
+
+
+@compiled
+def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> tuple[float, float]:
+    """Bound V and B for pair k, whose joints travel by `travel` (n,) [rad].
+
+    Args:
+        moves: `MotionBounds.moves` of all pairs, (pairs, n).
+        radii: `MotionBounds.radii` of all pairs, (pairs, n).
+        k: Index of the pair.
+        travel: Way of each joint, at least 0, (n,) [rad].
+    """
+    n = travel.size
+    way = 0.0
+    second_order = 0.0
+    turning = 0.0
+    for step in range(2 * n):  # from the first body up to the common base, then down
+        j = n - 1 - step if step < n else step - n
+        if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
+            continue
+        if radii[k, j] < 0.0:
+            way += travel[j]
+            second_order += 2.0 * travel[j] * turning
         else:
-            radii[at] = _largest_radius(robot, path[index:], up, points)
-            moved = fastest * radii[at]
-            speed += moved
-            acceleration += moved * (2.0 * turning + fastest)
-            change += fastest * turning
-            turning += fastest
-    moves = np.zeros(robot.dof)
-    for joint in path:
-        moves[model.idx_vs[joint]] = -1.0 if joint in up else 1.0
-    return MotionBounds(speed, acceleration, turning, change, moves, radii)
+            moved = travel[j] * radii[k, j]
+            way += moved
+            second_order += moved * (2.0 * turning + travel[j])
+            turning += travel[j]
+    return way, second_order
 
 
 def _largest_radius(robot: Robot, path: list[int], up: list[int], points: Matrix) -> float:

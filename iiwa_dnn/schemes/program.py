@@ -33,7 +33,6 @@ from iiwa_dnn.schemes.parts import (
     answer_of,
     answer_size,
 )
-from iiwa_dnn.schemes.scene import BRAKED
 from iiwa_dnn.schemes.step import Step, StepViews
 
 if TYPE_CHECKING:
@@ -139,9 +138,6 @@ class StepProgram:
         self.table: Table = np.array([head, *(block[1:] for block in self.blocks)], dtype=np.int64)
         self.refreshed = [block for block in self.blocks if block.part.refreshes]
         self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
-        if self.rate_limits is not None:
-            for start, _ in self.constants_of(CollisionAvoidance):
-                self.constants[start + BRAKED] = 1.0
 
     def _add(self, kind: int, parts: Sequence[Part], n: int) -> int:
         """Add the blocks of the parts of a kind in programs of n variables; count their rows."""

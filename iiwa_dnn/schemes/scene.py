@@ -17,16 +17,13 @@ from iiwa_dnn.robot.collision import LinkCapsule, collision_model, unwatched_lin
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.distances import beyond, depth, difference, dot, moved, nearest_parameter
-from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
+from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, swept
 from iiwa_dnn.schemes.tasks import axis_at, vector_at
 
-_HEAD = 5
+_HEAD = 4
 """Constants of a scene before those of joints, bodies and pairs."""
 
-BRAKED = 2
-"""Index of `Damper.braked` among the constants of a scene."""
-
-_PER_PAIR = 9
+_PER_PAIR = 4
 """Length of `PairConstants`."""
 
 _PER_BODY = 16
@@ -92,37 +89,25 @@ class Damper(NamedTuple):
     Attributes:
         least: Least distance [m].
         gain: Largest rate at which a distance shrinks towards it [1/s].
-        braked: 1 where braking in time keeps the least distance, not the rows.
     """
 
     least: float
     gain: float
-    braked: float = 0.0
 
 
 class PairConstants(NamedTuple):
     """Constants of a pair of bodies.
 
     Attributes:
-        speed: Bound on the speed of the second body's points as seen from the first [m/s].
-        acceleration: Bound on their acceleration [m/s^2].
-        turning: Bound on the second body's turning rate [rad/s].
-        turning_change: Bound on the change of that rate [rad/s^2].
         obstacle_speed: Bound on the obstacle's speed [m/s].
         second: Index of the second body, a segment with a radius.
         first: Index of the first body, any box with a radius.
-        first_is_ball: 1 if the box of the first body is a point.
         radii: Sum of both radii [m].
     """
 
-    speed: float
-    acceleration: float
-    turning: float
-    turning_change: float
     obstacle_speed: float
     second: float
     first: float
-    first_is_ball: float
     radii: float
 
 
@@ -138,12 +123,13 @@ class _Body(NamedTuple):
 
 
 class _Row(NamedTuple):
-    """A pair, its constants, and `MotionBounds.moves` and `radii`."""
+    """A pair, its constants, `MotionBounds`, and a bound on the rate of its distance [m/s]."""
 
     names: Pair
     constants: PairConstants
     moves: Vector
     radii: Vector
+    speed: float
 
 
 def make_scene(
@@ -179,9 +165,9 @@ def make_scene(
         if obstacle.moves
     ]
     frames = tuple(dict.fromkeys(body.name for body in bodies if body.joint))
-    largest = np.array([row.constants.speed + row.constants.obstacle_speed for row in rows])
+    speeds = np.array([row.speed for row in rows])
     constants = _constants(robot, damper, bodies, rows)
-    return Scene(robot, [row.names for row in rows], frames, moving, largest, constants)
+    return Scene(robot, [row.names for row in rows], frames, moving, speeds, constants)
 
 
 def _check_velocity_limits(robot: Robot) -> None:
@@ -212,11 +198,10 @@ def _row(robot: Robot, bodies: list[_Body], i: int, k: int) -> _Row:
     if second.joint:  # bounds are told the points in the joint's frame
         placement = robot.model.frames[second.frame].placement
         ends = np.array([placement.act(end) for end in ends])
-    bounds = bounds_of_motion(robot, first.joint, second.joint, ends)
-    ball = float(not first.box.half_extents.any())
-    radii = first.radius + second.radius
-    constants = PairConstants(*bounds[:4], first.speed, k, i, ball, radii)
-    return _Row(Pair(first.name, second.name), constants, bounds.moves, bounds.radii)
+    moves, radii = bounds_of_motion(robot, first.joint, second.joint, ends)
+    speed, _ = swept(moves[np.newaxis], radii[np.newaxis], 0, robot.dq_max)
+    constants = PairConstants(first.speed, k, i, first.radius + second.radius)
+    return _Row(Pair(first.name, second.name), constants, moves, radii, speed + first.speed)
 
 
 class SceneViews(NamedTuple):
@@ -227,7 +212,7 @@ class SceneViews(NamedTuple):
         dq_max: Velocity limits of the joints [rad/s], (n,).
         bodies: Of each body the index of its frame or -1, half-extents [m], and placement in the
             frame as of `Kinematics.placements`, (b, 16).
-        pairs: `PairConstants` of each pair, (k, 9).
+        pairs: `PairConstants` of each pair, (k, 4).
         moves: `MotionBounds.moves` of each pair, (k, n).
         radii: `MotionBounds.radii` of each pair, (k, n).
     """
@@ -262,14 +247,14 @@ def _numbers(body: _Body) -> Vector:
 @compiled
 def scene_views(constants: Vector, dof: int) -> SceneViews:
     """Make the views of a scene's constants (k,) for a robot of `dof` joints."""
-    bodies = int(constants[3])
-    pairs = int(constants[4])
+    bodies = int(constants[2])
+    pairs = int(constants[3])
     at_bodies = _HEAD + dof
     at_pairs = at_bodies + _PER_BODY * bodies
     at_moves = at_pairs + _PER_PAIR * pairs
     at_radii = at_moves + dof * pairs
     return SceneViews(
-        Damper(constants[0], constants[1], constants[BRAKED]),
+        Damper(constants[0], constants[1]),
         constants[_HEAD:at_bodies],
         constants[at_bodies:at_pairs].reshape(bodies, _PER_BODY),
         constants[at_pairs:at_moves].reshape(pairs, _PER_PAIR),
@@ -280,18 +265,8 @@ def scene_views(constants: Vector, dof: int) -> SceneViews:
 
 @compiled
 def pair_of(pairs: Matrix, k: int) -> PairConstants:
-    """Return a row of `SceneViews.pairs`, (k, 9), by its names."""
-    return PairConstants(
-        pairs[k, 0],
-        pairs[k, 1],
-        pairs[k, 2],
-        pairs[k, 3],
-        pairs[k, 4],
-        pairs[k, 5],
-        pairs[k, 6],
-        pairs[k, 7],
-        pairs[k, 8],
-    )
+    """Return a row of `SceneViews.pairs`, (k, 4), by its names."""
+    return PairConstants(pairs[k, 0], pairs[k, 1], pairs[k, 2], pairs[k, 3])
 
 
 class Contact(NamedTuple):

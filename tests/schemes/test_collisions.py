@@ -15,7 +15,7 @@ from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.motion_bounds import bounds_of_motion
+from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, swept
 from iiwa_dnn.schemes.scene import pair_distances
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
@@ -72,40 +72,46 @@ def test_h_is_the_damper_without_a_control_period() -> None:
     assert (4.0 * (distances - 0.02) >= np.abs(qp.G) @ ROBOT.dq_max - 1e-9)[idle].all()
 
 
-def test_with_a_control_period_h_is_the_theorems() -> None:
-    # The wall is shifted; what a step may take, eps, does not depend on the distance of a wall.
+def test_in_a_loop_h_leaves_what_a_step_like_the_last_one_may_take() -> None:
     dt, gain, promised = 0.02, 4.0, 0.02
-    step = iiwa_dnn.Step(ROBOT, ROBOT.start_posture(), dt=dt)
+    last = np.array([0.3, 1.5, -0.4, 1.0, 0.5, -0.7, 0.1])
 
     def wall(offset: float) -> iiwa_dnn.CollisionAvoidance:
         plane = iiwa_dnn.HalfSpace([-1.0, 0.0, 0.0], offset)
-        return iiwa_dnn.CollisionAvoidance(
-            [plane], self_collision=False, distance=promised, gain=gain
-        )
+        return iiwa_dnn.CollisionAvoidance([plane], self_collision=False, gain=gain)
 
     far = wall(-1.0)
-    distances = pair_distances_at(far, ROBOT, step.q)
+    distances = pair_distances_at(far, ROBOT, START)
     pair = int(distances.argmin())
 
-    def row(spare: float) -> float:
-        """Return h where the pair is so much farther away than what is promised."""
-        _, h = wall(-1.0 + distances[pair] - promised - spare).inequalities(step)
-        return float(h[pair])
+    def row(spare: float, dq: np.ndarray) -> tuple[np.ndarray, float]:
+        """Return G and h where the pair is so much farther away than what is promised."""
+        near = wall(-1.0 + distances[pair] - promised - spare)
+        G, h = near.inequalities(iiwa_dnn.Step(ROBOT, START, dt=dt, dq=dq))
+        return G[pair], float(h[pair])
 
-    eps = -dt * row(0.0)
-    assert eps > 1e-3
-    assert row(0.5 * eps) == pytest.approx(-0.5 * eps / dt, rel=1e-9)
-    assert row(eps) == pytest.approx(0.0, abs=1e-12)
-    assert row(eps + 5e-3) == pytest.approx(gain * 5e-3, rel=1e-9)
-    assert row(-1e-3) == pytest.approx(-eps / dt - gain * 1e-3, rel=1e-9)
+    g, still = row(0.05, np.zeros(7))
+    assert still == pytest.approx(gain * 0.05, rel=1e-9)
+    eps = (still - row(0.05, last)[1]) / gain
+    # A wall is flat: the distance after the step is as the row says, less what the points' curves
+    # take, and those may bend to either side.
+    for sign in (-1.0, 1.0):
+        after = pair_distances_at(far, ROBOT, START + sign * dt * last)[pair]
+        assert abs(distances[pair] - sign * dt * (g @ last) - after) < eps
+    # In the range that such a step could take the row asks for all of it at once.
+    assert row(0.0, last)[1] == pytest.approx(-eps / dt, rel=1e-9)
+    assert row(0.5 * eps, last)[1] == pytest.approx(-0.5 * eps / dt, rel=1e-9)
+    assert row(eps + 5e-3, last)[1] == pytest.approx(gain * 5e-3, rel=1e-9)
+    assert row(-1e-3, last)[1] == pytest.approx(-eps / dt - gain * 1e-3, rel=1e-9)
 
 
 def test_no_acceleration_is_above_its_bound() -> None:
     random, joint, h = np.random.default_rng(1), 7, 1e-4
     point = np.array([0.02, -0.03, 0.06])
     for first in (0, 2):
-        bounds = bounds_of_motion(ROBOT, first, joint, point[None])
-        assert bounds.moves.tolist() == [0.0] * first + [1.0] * (joint - first)
+        moves, radii = bounds_of_motion(ROBOT, first, joint, point[None])
+        assert moves.tolist() == [0.0] * first + [1.0] * (joint - first)
+        speed, acceleration = swept(moves[None], radii[None], 0, ROBOT.dq_max)
         found = []
         for _ in range(300):
             q, dq = random.uniform(-2.0, 2.0, 7), ROBOT.dq_max * random.choice([-1.0, 1.0], 7)
@@ -121,9 +127,8 @@ def test_no_acceleration_is_above_its_bound() -> None:
             found.append([np.linalg.norm(place[2] - place[0]) / (2 * h),
                           np.linalg.norm(place[2] - 2 * place[1] + place[0]) / h**2])  # fmt: skip
         largest = np.max(found, axis=0)
-        assert 0.2 * bounds.speed < largest[0] < bounds.speed
-        assert 0.1 * bounds.acceleration < largest[1] < bounds.acceleration
-        assert bounds.turning == pytest.approx(ROBOT.dq_max[first:].sum())
+        assert 0.2 * speed < largest[0] < speed
+        assert 0.1 * acceleration < largest[1] < acceleration
 
 
 @pytest.mark.parametrize(("name", "seed", "moving"), [("iiwa7", 2, True), ("panda", 1, False)])
