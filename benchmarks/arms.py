@@ -21,7 +21,6 @@ from benchmarks.collisions import read_arguments
 from benchmarks.control import LOOPS, measure_steps
 from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.robot import urdf_of
 from scripts.arm_scenes import SCENES, scene
 
 OWN = "iiwa_dnn, with q + dt dq"
@@ -31,7 +30,7 @@ ARRIVED = 1e-4  # [m]
 
 def write_urdf(robot: iiwa_dnn.Robot, folder: Path) -> Path:
     """Write a robot's URDF in one file, without shapes, its locked joints fixed."""
-    root = ET.fromstring(urdf_of(robot))
+    root = ET.fromstring(str(robot.urdf))
     urdf.weld(root, dict(zip(robot.locked, robot.q_locked, strict=True)))
     for link in root.findall("link"):
         for shape in [*link.findall("visual"), *link.findall("collision")]:

@@ -24,7 +24,6 @@ from iiwa_dnn.qp.program import Vector
 from iiwa_dnn.references import Heart
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.robot.robot import file_of
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies import paper
@@ -188,7 +187,7 @@ def measure_steps(
     with tempfile.TemporaryDirectory() as folder:
         task = Path(folder) / "task.npz"
         heart = {
-            "urdf": str(file_of(robot)),
+            "urdf": str(robot.path),
             "tip": robot.tip,
             "names": robot.joint_names,
             "dt": dt,

@@ -13,7 +13,6 @@ from benchmarks.control import Loop, take_turns
 from benchmarks.report import tabulate
 from benchmarks.targets import STREAMS
 from iiwa_dnn.robot import Configuration, load_robot
-from iiwa_dnn.robot.robot import file_of
 
 JERK = 500.0
 """Jerk limit of this package's loop [rad/s^3]."""
@@ -67,7 +66,7 @@ def measure_targets(
             task = Path(folder) / "task.npz"
             np.savez(
                 task,
-                urdf=str(file_of(robot)),
+                urdf=str(robot.path),
                 tip=robot.tip,
                 names=robot.joint_names,
                 dt=dt,

@@ -63,7 +63,7 @@ def _opengl_is_there() -> bool:
     from iiwa_dnn.robot import offscreen
 
     try:
-        offscreen.opengl_library()
+        offscreen.prepare_renderer()
     except iiwa_dnn.MissingDependencyError:
         return False
     return True

@@ -23,7 +23,7 @@ from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, outline
-from iiwa_dnn.robot.robot import urdf_of
+from iiwa_dnn.robot.robot import source_of
 from iiwa_dnn.robot.shapes import read_shapes
 
 PIECES = 300
@@ -106,7 +106,7 @@ def show_robot(server: Any, robot: Robot) -> Any:
 
     shapes = pin.GeometryModel()
     with suppress(ValueError):  # a mesh is missing
-        for shape in read_shapes(robot, pin.GeometryType.VISUAL, urdf_of(robot)):
+        for shape in read_shapes(robot, pin.GeometryType.VISUAL, source_of(robot)[1]):
             shapes.addGeometryObject(shape)
     visualizer = ViserVisualizer(robot.model, pin.GeometryModel(), shapes)
     visualizer.initViewer(viewer=server, loadModel=True)

@@ -19,7 +19,7 @@ from iiwa_dnn.files import write_text
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.pictures import import_encoder, save_moments, save_video
 from iiwa_dnn.results.report import save_run, summary
-from iiwa_dnn.robot.offscreen import opengl_library
+from iiwa_dnn.robot.offscreen import prepare_renderer
 from iiwa_dnn.simulation import Disturbances, count_steps, simulate
 from iiwa_dnn.studies.paper import published
 
@@ -49,7 +49,7 @@ def _draw(options: Track, more: Tables, pictured: bool) -> int:
     folder = Path("runs") / name if options.config is None else options.config.parent
     folder = claim_folder(options.out or folder, tables, options.overwrite)
     if pictured:  # before the run, what draws them is asked for
-        opengl_library()
+        prepare_renderer()
         import_encoder()
     # Hidden if standard error is no terminal.
     with tqdm(total=steps, unit="step", disable=True if options.quiet else None) as bar:

@@ -37,7 +37,6 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import Obstacle
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
-    JointCouplingTask,
     JointLimits,
     PoseTask,
     Scheme,
@@ -58,9 +57,6 @@ _STILL = 1e-7
 
 _ACTS = 1e-3
 """Least ratio of a multiplier to the error for which a limit counts as in the way."""
-
-_POSE = slice(6)
-"""Rows of the pose among the equalities; those of mimic joints follow."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,9 +106,8 @@ class _Point(NamedTuple):
         q: Joint positions [rad], (n,).
         jacobian: Jacobian of the tip, linear over angular, (6, n).
         error: Position [m] over rotation vector [rad] from the tip to the goal, (6,).
-        qp: Program of a step at `q`, whose equalities begin with the pose.
-        missing: Squared error, the distances by which pairs are too near, and how far mimic joints
-            are from where their leaders put them.
+        qp: Program of a step at `q`, whose equalities are the pose.
+        missing: Squared error, and the distances by which pairs are too near.
         far: Largest of the errors of the pose [m], [rad], and of those distances.
     """
 
@@ -223,21 +218,19 @@ def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     program.kinematics.update(q)
     program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), np.inf)
     qp = QP.from_data(data, program.sizes)
-    error = qp.b[_POSE]
-    couplings = qp.b[6:]
-    couplings /= JointCouplingTask.gain  # of a step, as the pose
-    apart = np.concatenate([np.abs(couplings), np.maximum(-qp.h, 0.0)])
-    missing = float(error @ error + apart.sum())
-    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), apart.max(initial=0.0))
-    return _Point(q, qp.A[_POSE], error, qp, missing, far)
+    error = qp.b
+    too_near = np.maximum(-qp.h, 0.0)
+    missing = float(error @ error + too_near.sum())
+    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), too_near.max(initial=0.0))
+    return _Point(q, qp.A, error, qp, missing, far)
 
 
 def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
     P = point.jacobian.T @ point.jacobian
     P.flat[:: P.shape[1] + 1] += damping * float(point.error @ point.error)
-    _, _, G, h, A, b, lb, ub = point.qp.arrays()
-    return solver.solve(QP(P, -point.jacobian.T @ point.error, G, h, A[6:], b[6:], lb, ub))
+    _, _, G, h, _, _, lb, ub = point.qp.arrays()
+    return solver.solve(QP(P, -point.jacobian.T @ point.error, G, h, lb=lb, ub=ub))
 
 
 def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:

@@ -9,10 +9,9 @@ that are as near in the start posture.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 from itertools import combinations
 from pathlib import Path
@@ -27,7 +26,7 @@ from iiwa_dnn.files import one_line, read_toml, write_text
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.loading import robots_folder
 from iiwa_dnn.robot.obstacles import Box, box_around
-from iiwa_dnn.robot.robot import Robot, file_of, urdf_of
+from iiwa_dnn.robot.robot import Robot, source_of
 from iiwa_dnn.robot.shapes import read_shapes
 
 SAMPLES = 10_000
@@ -82,15 +81,11 @@ class CollisionModel:
         return pairs
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the model as a TOML file that `collision_model` reads."""
-        pairs = "".join(f"  {json.dumps(pair)},\n" for pair in self.left_out)
-        text = "# Collision geometry: pairs of links left out, capsules in link frames [m]\n"
-        text += f"left_out = [\n{pairs}]\n"
-        for capsule in self.capsules:
-            radius = round(capsule.radius + 1.4e-6, 6)  # rounding never makes it smaller
-            text += f"\n[[capsule]]\nlink = {json.dumps(capsule.link)}\n"
-            text += f"a = {_rounded(capsule.a)}\nb = {_rounded(capsule.b)}\nradius = {radius}\n"
-        write_text(path, text)
+        """Write the model as a TOML file that `collision_model` reads; lengths in [m]."""
+        import tomli_w  # for those who use it
+
+        capsules = [asdict(capsule) for capsule in self.capsules]
+        write_text(path, tomli_w.dumps({"left_out": self.left_out, "capsule": capsules}))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> CollisionModel:
@@ -120,7 +115,7 @@ class CollisionModel:
 
 def collision_file(robot: Robot) -> Path:
     """Return the file that the collision geometry of a robot is kept in; it need not exist."""
-    path = file_of(robot)
+    path = source_of(robot)[0]
     if robot.name in ARMS and ARMS[robot.name].path == path:
         # The package's own file: the arm's folder is somebody else's.
         return robots_folder() / robot.name / f"{robot.name}.collisions.toml"
@@ -164,28 +159,36 @@ def make_collision_model(robot: Robot, samples: int = SAMPLES) -> CollisionModel
     """
     whole = CollisionModel(tuple(_capsules(robot)), ())
     pairs = whole.pairs(robot)
-    model = robot.model
-    lower = np.maximum(model.lowerPositionLimit, -np.pi)
-    upper = np.minimum(model.upperPositionLimit, np.pi)
+    lower = np.maximum(robot.model.lowerPositionLimit, -np.pi)
+    upper = np.minimum(robot.model.upperPositionLimit, np.pi)
     postures = np.random.default_rng(0).uniform(lower, upper, (samples, robot.dof))
     distances = _distances(robot, whole, pairs, np.vstack([robot.start_posture(), postures]))
-    links = [(whole.capsules[i].link, whole.capsules[k].link) for i, k in pairs]
-    left_out = []
-    for first, second in dict.fromkeys(links):
-        chosen = [column for column, each in enumerate(links) if each == (first, second)]
-        at_start, *nearest = distances[:, chosen].min(axis=1)
-        reason = ""
-        if model.parents[_joint(robot, second)] == _joint(robot, first):
-            reason = "adjacent"
-        elif min(nearest) > CLEARANCE:
-            reason = "never"
-        elif (np.array(nearest) <= 0.0).mean() >= ALWAYS:
-            reason = "always"
-        elif at_start <= CLEARANCE:
-            reason = "start"
-        if reason:
-            left_out.append((first, second, reason))
-    return CollisionModel(whole.capsules, tuple(left_out))
+    of_links: dict[tuple[str, str], checks.Array] = {}
+    for (i, k), column in zip(pairs, distances.T, strict=True):
+        links = (whole.capsules[i].link, whole.capsules[k].link)
+        of_links[links] = np.minimum(of_links.get(links, np.inf), column)
+    reasons = {links: _reason(robot, links, nearest) for links, nearest in of_links.items()}
+    return CollisionModel(
+        whole.capsules, tuple((*links, why) for links, why in reasons.items() if why)
+    )
+
+
+def _reason(robot: Robot, links: tuple[str, str], distances: checks.Array) -> str:
+    """Say why two links need no watching; "" if they do.
+
+    Args:
+        robot: The robot.
+        links: Both links, the one nearer to the base first.
+        distances: Their distances in the start posture and in random ones, (1 + k,) [m].
+    """
+    first, second = (_joint(robot, link) for link in links)
+    if robot.model.parents[second] == first:
+        return "adjacent"
+    if distances[1:].min() > CLEARANCE:
+        return "never"
+    if (distances[1:] <= 0.0).mean() >= ALWAYS:
+        return "always"
+    return "start" if distances[0] <= CLEARANCE else ""
 
 
 def _distances(
@@ -229,12 +232,13 @@ def _capsules(robot: Robot) -> Iterator[LinkCapsule]:
 
     Spheres that another capsule of the link holds, such as the ends of a cylinder, are left out.
     """
+    path, text = source_of(robot)
     try:
-        shapes = read_shapes(robot, pin.GeometryType.COLLISION, urdf_of(robot))
+        shapes = read_shapes(robot, pin.GeometryType.COLLISION, text)
     except ValueError as error:
         problem = f"a shape cannot be read: {one_line(error)}"
         hint = "; ROS_PACKAGE_PATH names the folder of its packages" * ("package://" in problem)
-        raise FileError(file_of(robot), problem + hint) from error
+        raise FileError(path, problem + hint) from error
     found: dict[str, list[LinkCapsule]] = {}
     for shape in sorted(shapes, key=lambda each: isinstance(each.geometry, coal.Sphere)):
         frame = robot.model.frames[shape.parentFrame]
@@ -293,8 +297,3 @@ def _enclosing_capsule(points: checks.Array) -> tuple[checks.Array, checks.Array
             least = volume
             best = (middle + low * axis, middle + high * axis, radius)
     return best
-
-
-def _rounded(point: checks.Vector3) -> list[float]:
-    """Round to micrometers."""
-    return [round(x, 6) + 0.0 for x in point]  # no -0.0

@@ -45,29 +45,26 @@ class Configuration(FrameState):
     """Joint positions of a robot, with pose and Jacobian of one frame, its tip.
 
     Every array is a copy, and read-only: a configuration stays as it is, whatever becomes of ``q``
-    and ``data`` afterwards. Positions outside the joint limits are accepted.
+    afterwards. Positions outside the joint limits are accepted.
 
     Args:
         robot: The robot.
         q: Joint positions [rad], shape (n,).
-        data: Pinocchio scratch memory of ``robot.model`` to reuse; a loop saves time with it. It
-            is overwritten here, by `frame`, and when `inertia` is first asked for.
 
     Raises:
         InvalidInputError: If ``q`` has a wrong shape or is not finite.
     """
 
     # Built at every control step, so: slots, and no numpy call that is not needed.
-    __slots__ = ("_data", "_inertia", "_q", "_robot")
+    __slots__ = ("_inertia", "_q", "_robot")
     _inertia: Array | None
 
-    def __init__(self, robot: Robot, q: ArrayLike, data: pin.Data | None = None) -> None:
+    def __init__(self, robot: Robot, q: ArrayLike) -> None:
         shape = instance("robot", robot, Robot).q_lower.shape
         self._robot = robot
         self._q = finite_array("q", q, shape).copy()  # not read-only, for compiled code
-        self._data = data
         self._inertia = None
-        super().__init__(*_kinematics(robot, self._q, data, robot.tip_id))
+        super().__init__(*_kinematics(robot, self._q, robot.tip_id))
 
     @property
     def arrays(self) -> tuple[Array, Array, Array]:
@@ -93,8 +90,7 @@ class Configuration(FrameState):
         """
         if self._inertia is None:
             model = self._robot.model
-            data = model.createData() if self._data is None else self._data
-            self._inertia = pin.crba(model, data, self._q)  # a copy of data's
+            self._inertia = pin.crba(model, model.createData(), self._q)
         return read_only(self._inertia)
 
     def frame(self, name: str) -> FrameState:
@@ -104,23 +100,18 @@ class Configuration(FrameState):
             NotFoundError: If there is no such frame; the error lists those of similar names.
         """
         index = self._robot.frame_id(name)
-        return FrameState(*_kinematics(self._robot, self._q, self._data, index))
+        return FrameState(*_kinematics(self._robot, self._q, index))
 
     def __repr__(self) -> str:
         q = np.array2string(self._q, precision=4, separator=", ")
         return f"<Configuration of {self._robot.name}: q = {q} rad>"
 
-    def __reduce__(self) -> tuple[object, ...]:
-        # Cheaper to compute again than to carry, and the scratch memory stays behind.
-        return Configuration, (self._robot, self._q)
 
-
-def _kinematics(robot: Robot, q: Array, data: pin.Data, index: int) -> tuple[Array, Array]:
+def _kinematics(robot: Robot, q: Array, index: int) -> tuple[Array, Array]:
     """Compute pose (4, 4) and Jacobian (6, n) of a frame."""
     model = robot.model
-    data = model.createData() if data is None else data
-    # Both results are new arrays, not views of the scratch memory. The first call has placed the
-    # joints, so the second need not run over the chain again.
+    data = model.createData()
+    # The first call has placed the joints, so the second need not run over the chain again.
     jacobian = pin.computeFrameJacobian(model, data, q, index, pin.LOCAL_WORLD_ALIGNED)
     pose = pin.updateFramePlacement(model, data, index).homogeneous
     return pose, jacobian.reshape(6, -1)  # (6,) for a single joint

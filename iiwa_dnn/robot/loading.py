@@ -15,10 +15,9 @@ from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
-from iiwa_dnn.robot.robot import Mimic, Robot, frame_id
+from iiwa_dnn.robot.robot import Robot, frame_id
 
 _Joints = dict[str, ET.Element]
-_Mimics = dict[str, Mimic]
 
 _NO_LIMIT = 1e300
 """Limit from which on Pinocchio means none [rad, rad/s]."""
@@ -61,7 +60,7 @@ def load_robot(
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
         FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
-            left free has more or less than one coordinate, or follows a joint that is locked.
+            left free has more or less than one coordinate, or follows another (``<mimic>``).
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
@@ -77,17 +76,13 @@ def load_robot(
     name = str(source) if tips else full.name
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
-    mimics = _all_mimics(joints)
     others = tips if len(tips) > 1 else ()
-    idle = _idle_joints(full, mimics, (tip, *others, *frames))
+    idle = _idle_joints(full, (tip, *others, *frames))
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    following = _following(model, mimics, tip)
-    limits = _limits(name, model, joints)
-    ramps = _ramps(model, joints)
-    positions = tuple(held.values())
-    robot = Robot(name, model, tip, limits, ramps, tuple(held), positions, following, path, text)
-    expected = {*chosen, *(_idle_joints(full, mimics, tips) if tips else ())}
+    limits, ramps = _limits(name, model, joints)
+    robot = Robot(name, model, tip, limits, ramps, tuple(held), tuple(held.values()), path, text)
+    expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     if still:
         message = f"held still, since they do not move {tip}: {', '.join(still)}"
@@ -141,17 +136,11 @@ def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
     return chosen
 
 
-def _idle_joints(model: pin.Model, mimics: _Mimics, frames: Iterable[str]) -> list[str]:
-    """List the joints that move none of the frames, and lead no joint that does."""
-    moving = {name for frame in frames for name in _support(model, frame)}
-    moving |= {mimics[name].leader for name in moving if name in mimics}
-    return [name for name in model.names if name not in moving]
-
-
-def _support(model: pin.Model, frame: str) -> list[str]:
-    """List the joints that move a frame, after the world."""
-    joint = model.frames[frame_id(model, frame)].parentJoint
-    return [str(model.names[index]) for index in model.supports[joint]]
+def _idle_joints(model: pin.Model, frames: Iterable[str]) -> list[str]:
+    """List the joints that move none of the frames."""
+    carriers = [model.frames[frame_id(model, frame)].parentJoint for frame in frames]
+    moving = {joint for carrier in carriers for joint in model.supports[carrier]}
+    return [str(name) for joint, name in enumerate(model.names) if joint not in moving]
 
 
 def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str, float]]:
@@ -165,58 +154,32 @@ def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str,
         for name, i in frozen.items()
     }
     reduced = pin.buildReducedModel(model, list(frozen.values()), posture) if held else model
+    for joint, *sizes in zip(reduced.names, reduced.nqs, reduced.nvs, strict=True):
+        if sizes not in ([0, 0], [1, 1]):  # the world; a position and its velocity differ in kind
+            problem = f"joint {joint!r} has {sizes[0]} coordinates, {sizes[1]} directions: lock it"
+            raise InvalidInputError("locked", problem, joint)
     return reduced, held
 
 
-def _all_mimics(joints: _Joints) -> _Mimics:
-    """Find the joints of a file that follow another."""
-    found = {}
-    for name, joint in joints.items():
-        mimic = joint.find("mimic")
-        if mimic is not None:
-            multiplier = float(mimic.get("multiplier", 1.0))
-            offset = float(mimic.get("offset", 0.0))
-            found[name] = Mimic(name, mimic.get("joint", ""), multiplier, offset)
-    return found
-
-
-def _following(model: pin.Model, mimics: _Mimics, tip: str) -> tuple[Mimic, ...]:
-    """Select the joints that move the tip and follow another; that one must be free as well."""
-    found = tuple(mimics[joint] for joint in _support(model, tip) if joint in mimics)
-    for joint, leader, *_ in found:
-        if leader not in tuple(model.names):
-            problem = f"joint {joint!r} follows {leader!r} (<mimic>), which is locked: lock it too"
-            raise InvalidInputError("locked", problem, joint)
-    return found
-
-
-def _ramps(model: pin.Model, joints: _Joints) -> Array:
-    """Read Franka's element of velocity limits that shrink towards position limits, (2, n)."""
-    ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
-    for i, name in enumerate(tuple(model.names)[1:]):
-        ramp = joints[name].find("position_based_velocity_limits") if name in joints else None
-        if ramp is not None:
-            ramps[0, i] = float(ramp.get("velocity_offset", "nan"))
-            ramps[1, i] = float(ramp.get("deceleration_limit", "nan"))
-    return ramps
-
-
-def _limits(name: str, model: pin.Model, joints: _Joints) -> Array:
-    """Return limits as `Robot.limits` has them, (5, n); infinite where there are none."""
-    names = tuple(model.names)[1:]
-    for joint, *sizes in zip(names, list(model.nqs)[1:], list(model.nvs)[1:], strict=True):
-        if sizes != [1, 1]:  # a position and its velocity differ in kind
-            problem = f"joint {joint!r} has {sizes[0]} coordinates, {sizes[1]} directions"
-            raise InvalidInputError("locked", f"{problem}: lock it", joint)
+def _limits(name: str, model: pin.Model, joints: _Joints) -> tuple[Array, Array]:
+    """Return `Robot.limits`, (5, n), and `Robot.ramps`, (2, n), the latter Franka's element."""
     limits = np.full((5, model.nv), np.inf)
+    ramps = np.array([[0.0], [np.inf]]) * np.ones(model.nv)
     limits[:3] = [model.lowerPositionLimit, model.upperPositionLimit, model.velocityLimit]
     limits[np.abs(limits) > _NO_LIMIT] *= np.inf
     limits[2, limits[2] == 0.0] = np.inf
-    for i, joint in enumerate(names):
-        limit = joints[joint].find("limit") if joint in joints else None
+    for i, joint in enumerate(tuple(model.names)[1:]):
+        element = joints.get(joint, ET.Element("joint"))
+        if element.find("mimic") is not None:
+            raise InvalidInputError("locked", f"joint {joint!r} follows another: lock it", joint)
+        limit = element.find("limit")
         if limit is not None and not {"lower", "upper"} & set(limit.keys()):
             limits[:2, i] = [-np.inf, np.inf]
+        ramp = element.find("position_based_velocity_limits")
+        if ramp is not None:
+            keys = ("velocity_offset", "deceleration_limit")
+            ramps[:, i] = [float(ramp.get(key, "nan")) for key in keys]
     if name in RATES and np.size(RATES[name][0]) in (1, model.nv):
         limits[3] = RATES[name][0]
         limits[4] = RATES[name][1]
-    return limits
+    return limits, ramps

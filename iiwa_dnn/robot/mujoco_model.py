@@ -17,7 +17,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.offscreen import import_mujoco
-from iiwa_dnn.robot.robot import Robot, urdf_of
+from iiwa_dnn.robot.robot import Robot, source_of
 
 TIP_SITE = "tip"
 """Name of the site at the tip frame."""
@@ -66,9 +66,8 @@ def build_spec(robot: Robot) -> Any:
         InvalidInputError: If the robot has no file, or MuJoCo refuses the URDF.
     """
     mj = import_mujoco()
-    root = ET.fromstring(urdf_of(robot))
-    held = dict(zip(robot.locked, robot.q_locked, strict=True))
-    urdf.weld(root, held)
+    root = ET.fromstring(source_of(robot)[1])
+    urdf.weld(root, robot)
     urdf.drop_meshes(root)
     urdf.mend_inertias(root)
     extension = ET.SubElement(root, "mujoco")
@@ -78,9 +77,6 @@ def build_spec(robot: Robot) -> Any:
         spec = mj.MjSpec.from_string(urdf.text_of(root))
     except ValueError as error:
         raise InvalidInputError("robot", f"MuJoCo refuses its URDF: {error}", robot) from error
-    for joint in list(spec.joints):
-        if joint.name in held:
-            _weld(spec, joint, held[joint.name])
     joints = {joint.name: joint for joint in spec.joints}
     if tuple(joints) != robot.joint_names:
         raise InvalidInputError("robot", "MuJoCo and Pinocchio order its joints differently", robot)
@@ -100,21 +96,6 @@ def build_spec(robot: Robot) -> Any:
         if {first, second} not in _COLLISION_PAIRS.get(robot.name, []):
             spec.add_exclude(bodyname1=first, bodyname2=second)
     return spec
-
-
-def _weld(spec: Any, joint: Any, q: float) -> None:
-    """Fix the body of a joint at a joint position [rad or m], and delete the joint."""
-    mj = import_mujoco()
-    body = joint.parent
-    place = pin.SE3(pin.Quaternion(*body.quat).matrix(), np.array(body.pos))
-    step = q * np.array(joint.axis) / np.linalg.norm(joint.axis)
-    if joint.type == mj.mjtJoint.mjJNT_SLIDE:
-        place *= pin.SE3(np.eye(3), step)
-    else:
-        place *= pin.SE3(pin.exp3(step), np.zeros(3))
-    body.pos = place.translation
-    body.quat = np.roll(pin.Quaternion(place.rotation).coeffs(), 1)
-    spec.delete(joint)
 
 
 def compile_model(

@@ -10,7 +10,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError, suggestion
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.files import one_line
 
 BEYOND = 100.0
@@ -209,10 +209,6 @@ def make_obstacle(table: dict[str, Any]) -> Obstacle:
     kind = next((kind for shape, kind in SHAPES.items() if shape.lower() == name), None)
     if kind is None:
         raise InvalidInputError("shape", f"must be one of {', '.join(SHAPES)}, not {name!r}")
-    known = {field.name for field in fields(kind)}
-    for unknown in sorted(values.keys() - known):
-        problem = f"is no parameter of {kind.__name__}{suggestion(unknown, sorted(known))}"
-        raise InvalidInputError(unknown, problem)
     try:
         return kind(**values)
     except TypeError as error:

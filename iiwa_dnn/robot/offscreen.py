@@ -32,32 +32,20 @@ def import_mujoco() -> Any:
         raise MissingDependencyError("the OpenGL library of MUJOCO_GL", _REMEDY) from error
 
 
-def opengl_library() -> str:
-    """Return the module of MuJoCo that draws without a display.
-
-    Returns:
-        ``"egl"``, or what MUJOCO_GL names; off Linux ``"gl_context"``, MuJoCo's own choice.
-
-    Raises:
-        MissingDependencyError: On Linux, if it opens no context; it names the Debian package.
-    """
-    import_mujoco()
-    if not sys.platform.startswith("linux"):
-        return "gl_context"
-    library = os.environ.get("MUJOCO_GL", "").lower() or "egl"
-    try:
-        importlib.import_module(f"mujoco.{library}").GLContext(1, 1).free()
-    except Exception as error:  # whatever PyOpenGL meets
-        raise MissingDependencyError(f"OpenGL by {library}, without a display", _REMEDY) from error
-    return library
-
-
 def prepare_renderer() -> None:
     """Let ``mujoco.Renderer`` draw without a display, whatever MuJoCo chose at its import.
 
     Raises:
-        MissingDependencyError: If MuJoCo or an OpenGL library is not there.
+        MissingDependencyError: If MuJoCo is not there or, on Linux, an OpenGL library that opens a
+            context; it names the Debian package.
     """
     renderer = importlib.import_module(import_mujoco().Renderer.__module__)
-    context = importlib.import_module(f"mujoco.{opengl_library()}").GLContext
+    if not sys.platform.startswith("linux"):
+        return  # MuJoCo's own choice
+    library = os.environ.get("MUJOCO_GL", "").lower() or "egl"
+    try:
+        context = importlib.import_module(f"mujoco.{library}").GLContext
+        context(1, 1).free()
+    except Exception as error:  # whatever PyOpenGL meets
+        raise MissingDependencyError(f"OpenGL by {library}, without a display", _REMEDY) from error
     renderer.gl_context.GLContext = context

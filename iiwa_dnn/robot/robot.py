@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -20,15 +19,6 @@ _LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 
 _BENT = 0.15
 """Distance of an unknown arm's start from the middle of its joints, in ranges of the joints."""
-
-
-class Mimic(NamedTuple):
-    """A joint that follows another: q = multiplier q_leader + offset [rad]; see URDF's <mimic>."""
-
-    joint: str
-    leader: str
-    multiplier: float
-    offset: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,7 +39,6 @@ class Robot:
             has none.
         locked: Names of the URDF's joints that were frozen on loading.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
-        mimics: Joints between base and tip that follow others; schemes hold them to it.
         path: The URDF file, where the robot came from one; it is read once, on loading.
         urdf: Text of the URDF as it was read: xacro expanded.
         tip_id: Pinocchio's index of the tip frame.
@@ -66,7 +55,6 @@ class Robot:
     ramps: checks.Array
     locked: tuple[str, ...] = ()
     q_locked: tuple[float, ...] = ()
-    mimics: tuple[Mimic, ...] = ()
     path: Path | None = None
     urdf: str | None = None
     tip_id: int = field(init=False)
@@ -214,7 +202,7 @@ class Robot:
     @property
     def has_known_start(self) -> bool:
         """True if `start_posture` is known of the robot's name and number of joints."""
-        return len(STARTS.get(self.name, ())) == self.dof and not self.mimics
+        return len(STARTS.get(self.name, ())) == self.dof
 
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
@@ -226,11 +214,10 @@ class Robot:
         """
         if not self.has_known_start:
             bent = np.where(np.arange(self.dof) % 2, 0.5 - _BENT, 0.5 + _BENT)
-            posture: checks.Array = self._inside(bent[np.newaxis])[0]
-            return posture
+            return self._inside(bent)
         known = np.array(STARTS[self.name])
         inside = (self.q_lower < known) & (known < self.q_upper)
-        low, high = self._inside(np.array([[0.05], [0.95]]) * np.ones(self.dof))
+        low, high = self._inside(np.array([[0.05], [0.95]]))
         return np.where(inside, known, np.clip(known, low, high))
 
     def draw(self, random: np.random.Generator, count: int) -> checks.Array:
@@ -238,7 +225,7 @@ class Robot:
         return self._inside(random.uniform(0.0, 1.0, (count, self.dof)))
 
     def _inside(self, ratios: checks.Array) -> checks.Array:
-        """Return postures at ratios of the joints' ranges, (k, n) [rad], mimics at their leaders.
+        """Return postures (..., n) [rad] at ratios (..., n) of the joints' ranges.
 
         In place of an infinite limit there is one 2 pi from 0, or from the other limit.
         """
@@ -246,11 +233,6 @@ class Robot:
         lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)
         upper = np.minimum(self.q_upper, nearest + 2.0 * np.pi)
         postures: checks.Array = lower + (upper - lower) * ratios
-        for mimic in self.mimics:
-            j = self.joint_names.index(mimic.joint)
-            followed = postures[:, self.joint_names.index(mimic.leader)]
-            position = mimic.multiplier * followed + mimic.offset
-            postures[:, j] = np.clip(position, lower[j], upper[j])
         return postures
 
     def __repr__(self) -> str:
@@ -277,14 +259,8 @@ def frame_id(model: pin.Model, name: str) -> int:
     return (links or found)[0]
 
 
-def file_of(robot: Robot) -> Path:
-    """Return the URDF file of a robot, or raise an InvalidInputError if it comes from none."""
+def source_of(robot: Robot) -> tuple[Path, str]:
+    """Return file and text of a robot's URDF, or raise an InvalidInputError if it has no file."""
     if robot.path is None:
         raise InvalidInputError("robot", "must come from a URDF file", robot)
-    return robot.path
-
-
-def urdf_of(robot: Robot) -> str:
-    """Return the text of a robot's URDF, or raise an InvalidInputError if it comes from no file."""
-    file_of(robot)
-    return str(robot.urdf)
+    return robot.path, str(robot.urdf)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from iiwa_dnn.checks import vector3
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.obstacles import Capsule, outline
-from iiwa_dnn.robot.robot import Robot, file_of, urdf_of
+from iiwa_dnn.robot.robot import Robot, source_of
 
 _STICK_RADIUS = 0.02  # [m]
 _STICK_COLOR = (0.6, 0.6, 0.6)
@@ -41,7 +41,7 @@ def read_shapes(robot: Robot, kind: pin.GeometryType, text: str) -> list[pin.Geo
         InvalidInputError: The robot does not come from a file.
         ValueError: A mesh is missing or damaged.
     """
-    path = file_of(robot)
+    path = source_of(robot)[0]
     folders = [str(folder) for folder in (*path.absolute().parents, *path.resolve().parents)]
     try:
         found = pin.buildGeomFromUrdfString(robot.model, text, kind, package_dirs=folders)
@@ -59,7 +59,7 @@ def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
     Raises:
         InvalidInputError: If the robot does not come from a file.
     """
-    text = urdf_of(robot)
+    text = source_of(robot)[1]
     try:
         shapes = read_shapes(robot, pin.GeometryType.VISUAL, text)
     except ValueError:

@@ -6,7 +6,6 @@ follow others.
 
 import io
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
 from contextlib import redirect_stderr
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pinocchio as pin
 
 from iiwa_dnn.errors import FileError, import_extra
 from iiwa_dnn.files import one_line
+from iiwa_dnn.robot.robot import Robot
 
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
@@ -103,12 +103,23 @@ def drop_meshes(root: ET.Element) -> None:
                 link.remove(shape)
 
 
-def weld(root: ET.Element, held: Mapping[str, float]) -> None:
-    """Replace joints that are held at 0, by name, by fixed ones; none follows or leads another."""
+def weld(root: ET.Element, robot: Robot) -> None:
+    """Fix the locked joints of a robot where they are; none of them follows or leads another."""
+    held = dict(zip(robot.locked, robot.q_locked, strict=True))
     for joint in root.findall("joint"):
         name = joint.get("name", "")
         mimic = joint.find("mimic")
         if mimic is not None and {name, mimic.get("joint")} & held.keys():
             joint.remove(mimic)
-        if held.get(name) == 0.0:
+        if held.get(name):
+            # In Pinocchio's model both links have become frames of one joint.
+            ends = [*joint.findall("parent"), *joint.findall("child")]
+            frames = [robot.model.frames[robot.frame_id(end.get("link", ""))] for end in ends]
+            pose = frames[0].placement.actInv(frames[1].placement)
+            for origin in joint.findall("origin"):
+                joint.remove(origin)
+            xyz = " ".join(map(repr, pose.translation.tolist()))
+            rpy = " ".join(map(repr, pin.rpy.matrixToRpy(pose.rotation).tolist()))
+            ET.SubElement(joint, "origin", xyz=xyz, rpy=rpy)
+        if name in held:
             joint.set("type", "fixed")

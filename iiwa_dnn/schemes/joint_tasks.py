@@ -91,14 +91,6 @@ class JointCouplingTask(GainTask):
         return np.array([self.gain, *_row(robot, self.coefficients), self.offset])
 
 
-def couplings(robot: Robot) -> list[JointCouplingTask]:
-    """Return the tasks that hold a robot's mimic joints to those they follow."""
-    return [
-        JointCouplingTask(coefficients={joint: 1.0, leader: -multiplier}, offset=offset)
-        for joint, leader, multiplier, offset in robot.mimics
-    ]
-
-
 def _row(robot: Robot, coefficients: Mapping[str, float]) -> Vector:
     """Return the coefficients of all joints, (n,); raise NotFoundError for an unknown name."""
     row = np.zeros(robot.dof)

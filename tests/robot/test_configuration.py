@@ -43,7 +43,7 @@ def test_the_jacobian_of_any_frame_is_the_derivative_of_its_pose(name: str) -> N
             found = Configuration(robot, x).frame(frame)
             return found.position, found.rotation
 
-        found = Configuration(robot, q, robot.model.createData()).frame(frame)
+        found = Configuration(robot, q).frame(frame)
         np.testing.assert_allclose(found.jacobian, pose_jacobian(pose, q), rtol=0, atol=1e-6)
         assert found.jacobian.shape == (6, robot.dof)
     conf = Configuration(robot, q)
@@ -87,25 +87,12 @@ def test_inertia_is_the_sum_over_the_links(iiwa7: Robot) -> None:
         assert np.linalg.eigvalsh(inertia)[0] > 0
 
 
-def test_stays_valid_when_q_and_the_scratch_memory_change(iiwa7: Robot, q: Array) -> None:
-    data = iiwa7.model.createData()
+def test_it_stays_as_it_is(iiwa7: Robot, q: Array) -> None:
     given = q.copy()
-    conf = Configuration(iiwa7, given, data)
+    conf = Configuration(iiwa7, given)
     given[:] = 0.0
-    other = Configuration(iiwa7, q[::-1], data)
-    fresh = Configuration(iiwa7, q)
-    assert other.inertia[0, 0] != fresh.inertia[0, 0]
-    for name in ("q", "position", "rotation", "jacobian", "inertia"):
-        np.testing.assert_array_equal(getattr(conf, name), getattr(fresh, name))
-        assert not np.shares_memory(getattr(conf, name), getattr(other, name))
-    elbow = conf.frame("iiwa7_link_4")
-    Configuration(iiwa7, np.zeros(7), data).inertia.sum()
-    np.testing.assert_array_equal(elbow.pose, fresh.frame("iiwa7_link_4").pose)
-    np.testing.assert_array_equal(conf.inertia, fresh.inertia)
-
-
-def test_immutable(iiwa7: Robot, q: Array) -> None:
-    conf = Configuration(iiwa7, q)
+    np.testing.assert_array_equal(conf.q, q)
+    np.testing.assert_array_equal(conf.inertia, Configuration(iiwa7, q).inertia)
     for name in ("q", "position", "rotation", "jacobian", "inertia"):
         with pytest.raises(ValueError, match="read-only"):
             getattr(conf, name)[0] = 0.0
@@ -121,7 +108,7 @@ def test_any_finite_q_is_accepted(iiwa7: Robot) -> None:
 
 
 def test_repr_and_pickling(iiwa7: Robot, q: Array) -> None:
-    conf = Configuration(iiwa7, q, iiwa7.model.createData())
+    conf = Configuration(iiwa7, q)
     copy = pickle.loads(pickle.dumps(conf))
     np.testing.assert_array_equal(copy.jacobian, conf.jacobian)
     assert repr(copy) == repr(conf)

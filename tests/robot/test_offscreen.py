@@ -13,16 +13,11 @@ from iiwa_dnn.robot import offscreen
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="a matter of Linux")
 
 
-def test_elsewhere_mujoco_chooses(monkeypatch):
-    monkeypatch.setattr(sys, "platform", "darwin")
-    assert offscreen.opengl_library() == "gl_context"
-
-
 @linux
 def test_a_library_that_is_not_there_is_named_with_a_remedy(monkeypatch):
     monkeypatch.setenv("MUJOCO_GL", "glfw_of_nobody")
     with pytest.raises(MissingDependencyError, match="apt-get install libegl1") as caught:
-        offscreen.opengl_library()
+        offscreen.prepare_renderer()
     assert "glfw_of_nobody" in str(caught.value)
     assert "\n" not in str(caught.value)
 
