@@ -376,7 +376,7 @@ def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path, few_sam
         ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_extents"),
         ("distance = -1", "distance: must be a finite number above 0"),
         ("distanz = 1", "unexpected keyword argument 'distanz'; did you mean: distance"),
-        ("[[obstacle]]\nshape = 'Sphere'\nradus = 1", "Sphere: got an unexpected keyword argument 'radus'"),
+        ("[[obstacle]]\nshape = 'Sphere'\nradus = 1", "unexpected keyword argument 'radus'"),
         ("obstacle = 3", "not"),
         ("x = [", "cannot be read as TOML"),
     ],
