@@ -2,7 +2,8 @@ r"""Implicit Euler with growing steps: pseudo-transient continuation to the equi
 
 **The rules** of `settle`: first a linearly implicit step that is so long that it is Newton's step
 on the active set. A warm start in a control loop needs only that. If it does not halve the largest
-rate, a backward Euler step follows, ten times as long as the last one.
+rate, a backward Euler step follows, ten times as long as the last one. Both may undo each other's
+work, so the end comes when some rounds have not halved the smallest of all rates.
 
 **The primal projection.** `advance` integrates the network as it is. `settle` leaves the projection
 of x out, with which a step would no longer be a convex problem
@@ -54,9 +55,9 @@ GROWTH = 10.0
 """Growth of that length from round to round."""
 LONGEST = 1e8
 """Length of the linearly implicit steps, and of the longest backward Euler steps [rho]."""
-STUCK = 12
-"""Rounds without progress before the end: the longest steps do not halve the rates, since there is
-no solution, or rounding keeps the residuals above the tolerance."""
+STUCK = 15
+"""Rounds in which the smallest rate so far is not halved, before the end: there is no solution, or
+rounding keeps the residuals above the tolerance."""
 MAX_NEWTON = 50
 """Newton iterations of one backward Euler step of `settle`, half as many as one of `advance`."""
 
@@ -159,14 +160,16 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     time = 0.0
     stuck = 0
     rate = field(qp, s, now)
-    while stuck <= STUCK:
+    smallest = np.inf
+    while systems < budget:
+        stuck += 1
+        if rate <= 0.5 * smallest:
+            smallest = rate
+            stuck = 0
         if not rate > tol:
             primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
                 return systems, time, primal, dual, gap
-            stuck += 1
-        if systems >= budget:
-            break
         mark_active(s, now, matrix.active)
         systems += 1
         if linear_step(qp, s, now, LONGEST, matrix, new):
@@ -176,8 +179,9 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
                 now, then = then, now
                 rate = new_rate
                 time += LONGEST
-                stuck = 0
                 continue
+        if stuck > STUCK:
+            break
         taken = backward_euler(
             qp, s, step, new, 0.1 * rate, min(MAX_NEWTON, budget - systems), matrix
         )
@@ -187,12 +191,9 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         systems += taken
         time += step
         copy_into(s, new)
-        new_rate = field(qp, s, now)
+        rate = field(qp, s, now)
         if step < LONGEST:
             step *= GROWTH
-        elif not new_rate <= 0.5 * rate:
-            stuck += 1
-        rate = new_rate
     primal, dual, gap = kkt_point(qp, s, point)
     outlived(owner)
     return systems, time, primal, dual, gap
