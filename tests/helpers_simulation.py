@@ -16,7 +16,7 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, JointLimits, OrientationTask, Scheme, block_form
+from iiwa_dnn.schemes import DoubleIndicator, JointLimits, Limit, OrientationTask, Scheme
 from iiwa_dnn.simulation import simulate
 
 UNCHECKED = CrossCheck(())
@@ -82,10 +82,16 @@ def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
     return solution.x
 
 
+def rows_of(part: Any, conf: Configuration, target: Target | None = None, **options: Any) -> QP:
+    """The program of one limit or task alone; by default the tip is to stay where it is."""
+    kind = "limits" if isinstance(part, Limit) else "tasks"
+    target = target or Target(conf.position, conf.rotation)
+    return Scheme(**{kind: [part]}).build_qp(conf, target, **options)
+
+
 def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:
     """Lower and upper velocity bounds of the joint limits at a configuration."""
-    target = Target(conf.position, conf.rotation)
-    qp = Scheme(limits=[JointLimits(gain=gain)]).build_qp(conf, target)
+    qp = rows_of(JointLimits(gain=gain), conf)
     return qp.lb, qp.ub
 
 
@@ -93,7 +99,7 @@ def orientation_rows(
     form: str, conf: Configuration, target: Target, gain: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rows and right-hand side of the orientation task alone."""
-    qp = Scheme(tasks=[OrientationTask(gain=gain, form=form)]).build_qp(conf, target)
+    qp = rows_of(OrientationTask(gain=gain, form=form), conf, target)
     return qp.A, qp.b
 
 
@@ -104,6 +110,5 @@ def block_vector(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def block_map(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
     """W(R), (4, 3): the rate of `block_vector` is W(R) times the angular velocity."""
-    result = np.empty((4, 3))
-    block_form.block_map(np.ascontiguousarray(rotation), result)
-    return result
+    columns = [rotation[:, 0], rotation[:, 1], rotation[:, 0], rotation[:, 1]]
+    return np.cross(columns, np.eye(3)[[0, 0, 1, 1]])

@@ -40,7 +40,7 @@ from iiwa_dnn.qp.layout import Triple, compiled
 from iiwa_dnn.schemes.distances import difference, dot
 from iiwa_dnn.schemes.motion_bounds import swept
 from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
-from iiwa_dnn.schemes.tasks import rate_along
+from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6
 """Periods after which a motion counts as endless."""

@@ -21,7 +21,7 @@ class Kinematics:
     Attributes:
         robot: The robot, n joints.
         data: Pinocchio's data of the robot's model, current after `update`.
-        frame_ids: Pinocchio's indices of the frames that `update` places, the tip's first.
+        frame_ids: Pinocchio's indices of the frames that `update` places: tip, world, others.
         jacobian: Joint Jacobian, (n, 6): row j is the twist [linear velocity of the world's origin;
             angular velocity] for each unit of velocity of joint j, along the world's axes.
         placements: Frame placements by frame index, (frames, 12): the rotation's columns, then the
@@ -38,7 +38,7 @@ class Kinematics:
         """
         self.robot = robot
         self.data = robot.model.createData()
-        ids = [robot.tip_id, *(robot.frame_id(name) for name in frames)]
+        ids = [robot.tip_id, 0, *(robot.frame_id(name) for name in frames)]
         self.frame_ids = tuple(dict.fromkeys(ids))
         self._dynamics = dynamics
         # With one joint Pinocchio's views have one axis less.

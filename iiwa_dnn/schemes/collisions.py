@@ -44,8 +44,7 @@ from iiwa_dnn.schemes.scene import (
     place_bodies,
     scene_views,
 )
-from iiwa_dnn.schemes.step import Step, StepViews
-from iiwa_dnn.schemes.tasks import rate_along
+from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 
 
 @compiled

@@ -6,7 +6,7 @@ With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's c
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.parts import Cost
+from iiwa_dnn.schemes.parts import Checks, Cost
 from iiwa_dnn.schemes.step import Step, StepViews
 
 Kinetic = Literal["identity", "inertia"]
@@ -30,10 +30,8 @@ class WeightedCost(Cost):
         weight: w, at least 0.
     """
 
+    _checks: ClassVar[Checks] = {"weight": checks.not_negative}
     weight: float = 1.0
-
-    def __post_init__(self) -> None:
-        checks.not_negative("weight", self.weight)
 
 
 @compiled
@@ -101,12 +99,12 @@ class CyclicMotion(WeightedCost):
     """
 
     kernel = staticmethod(add_cyclic_motion)
+    _checks: ClassVar[Checks] = {"gain": checks.not_negative}
     gain: float = 10.2
     home: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.not_negative("gain", self.gain)
         if self.home is not None:
             self._set(home=tuple(checks.finite_array("home", self.home, (-1,)).tolist()))
 
@@ -142,11 +140,8 @@ class JointAcceleration(WeightedCost):
             it needs a control period.
     """
 
+    _checks: ClassVar[Checks] = {"damping": checks.not_negative}
     damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.not_negative("damping", self.damping)
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""

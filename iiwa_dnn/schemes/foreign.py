@@ -1,5 +1,7 @@
 """Schemes that are any object with a `build_qp` of its own, as parts that copy its programs."""
 
+from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 from iiwa_dnn import checks
@@ -8,30 +10,15 @@ from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.parts import Cost, Limit, Task
+from iiwa_dnn.schemes.parts import Cost, Limit, Part, Task
 from iiwa_dnn.schemes.step import Step
 
 
-class _Builder:
-    """Programs of an object with `build_qp`, one for each step."""
+class _Built(Part):
+    """Base of the parts of such programs, which are built once a step."""
 
-    def __init__(self, scheme: Any) -> None:
-        self._scheme = scheme
-        self._step: Step | None = None
-        self._qp: QP
-
-    def program(self, step: Step) -> QP:
-        if step is not self._step:
-            self._qp = self._scheme.build_qp(Configuration(step.robot, step.q), step.target())
-            self._step = step
-        return self._qp
-
-
-class _Built:
-    """Base of the parts of such programs."""
-
-    def __init__(self, builder: _Builder, rows: int = 0) -> None:
-        self._builder = builder
+    def __init__(self, build: Callable[[Step], QP], rows: int = 0) -> None:
+        self._build = build
         self.rows = rows
 
 
@@ -40,8 +27,7 @@ class BuiltCost(_Built, Cost):
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n, n) and q (n,)."""
-        qp = self._builder.program(step)
-        return qp.P, qp.q
+        return self._build(step).P, self._build(step).q
 
 
 class BuiltRows(_Built, Task):
@@ -49,8 +35,7 @@ class BuiltRows(_Built, Task):
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        qp = self._builder.program(step)
-        return qp.A, qp.b
+        return self._build(step).A, self._build(step).b
 
 
 class BuiltLimits(_Built, Limit):
@@ -58,13 +43,11 @@ class BuiltLimits(_Built, Limit):
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,)."""
-        qp = self._builder.program(step)
-        return qp.G, qp.h
+        return self._build(step).G, self._build(step).h
 
     def bounds(self, step: Step) -> tuple[Vector, Vector]:
         """Return lb (n,) and ub (n,)."""
-        qp = self._builder.program(step)
-        return qp.lb, qp.ub
+        return self._build(step).lb, self._build(step).ub
 
 
 def composed(scheme: Any, robot: Robot, q: Vector) -> Scheme:
@@ -73,13 +56,17 @@ def composed(scheme: Any, robot: Robot, q: Vector) -> Scheme:
     Raises:
         InvalidInputError: The program has another number of variables than the object states.
     """
+
+    @lru_cache(maxsize=1)
+    def build(step: Step) -> QP:
+        qp: QP = scheme.build_qp(Configuration(robot, step.q), step.target())
+        return checks.instance("build_qp", qp, QP)
+
     conf = Configuration(robot, q)
-    qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
-    n, m, p = checks.instance("build_qp", qp, QP).sizes
+    target = Target(conf.position, conf.rotation)
+    n, m, p = build(Step(robot, q, target)).sizes
     slack = getattr(scheme, "slack", 0)
     if n != robot.dof + slack:
         problem = f"built a program in {n} variables for {robot.dof} joints and {slack} slacks"
         raise InvalidInputError("scheme", problem, scheme)
-    builder = _Builder(scheme)
-    limits = [BuiltLimits(builder, m)]
-    return Scheme([BuiltCost(builder)], [BuiltRows(builder, p)], limits, slack)
+    return Scheme([BuiltCost(build)], [BuiltRows(build, p)], [BuiltLimits(build, m)], slack)

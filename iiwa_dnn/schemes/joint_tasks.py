@@ -3,8 +3,8 @@ r"""Tasks of joints, their positions and couplings: :math:`C \dot q = \delta\,(c
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
+from iiwa_dnn.schemes.parts import Checks
 from iiwa_dnn.schemes.step import StepViews
 from iiwa_dnn.schemes.tasks import GainTask
 
@@ -30,8 +31,46 @@ def joint_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b:
         b[i] = gain * missing
 
 
+def numbers_of(argument: str, value: Any) -> dict[str, float]:
+    """Return finite numbers by joint name; refuse any other value."""
+    if not isinstance(value, Mapping):
+        problem = "must be numbers by joint name: dict(zip(robot.joint_names, q))"
+        raise InvalidInputError(argument, problem, value)
+    return {name: checks.finite(argument, number) for name, number in value.items()}
+
+
+class JointTask(GainTask):
+    """Base of tasks of joints, which name the rows of C and state c."""
+
+    kernel = staticmethod(joint_rows)
+    tracks = False
+
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        """Return for each row its coefficients by joint name, and its c [rad]."""
+        raise NotImplementedError
+
+    def row_count(self, robot: Robot) -> int:
+        """Return the number of relations."""
+        return len(self._relations())
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, C (rows, n) and c (rows,).
+
+        Raises:
+            NotFoundError: The robot has no joint of a name.
+        """
+        relations = self._relations()
+        C = np.zeros((len(relations), robot.dof))
+        for row, (coefficients, _) in zip(C, relations, strict=True):
+            for name, coefficient in coefficients.items():
+                if name not in robot.joint_names:
+                    raise NotFoundError("joint", name, robot.joint_names)
+                row[robot.joint_names.index(name)] = coefficient
+        return np.array([self.gain, *C.ravel(), *(wanted for _, wanted in relations)])
+
+
 @dataclass(frozen=True)
-class PostureTask(GainTask):
+class PostureTask(JointTask):
     r"""Positions of some joints; one row a joint (`CyclicMotion` draws back all of them, softly).
 
     .. math::  \dot q_j = \delta\,(q_{d,j} - q_j)
@@ -40,28 +79,16 @@ class PostureTask(GainTask):
         joints: Desired positions by joint name [rad].
     """
 
-    kernel = staticmethod(joint_rows)
+    _checks: ClassVar[Checks] = {"joints": numbers_of}
+    row_weight = 0.1
     joints: Mapping[str, float]
-    tracks: bool = field(default=False, init=False, repr=False)
-    row_weight: float = field(default=0.1, init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        given: Any = self.joints
-        if not isinstance(given, Mapping):
-            problem = "must be positions by joint name: dict(zip(robot.joint_names, q))"
-            raise InvalidInputError("joints", problem, given)
-        joints = {name: checks.finite("joints", value) for name, value in given.items()}
-        self._set(joints=joints, rows=len(joints))
-
-    def constants(self, robot: Robot) -> Vector:
-        """Return gain, a row of C for each joint, and the desired positions."""
-        C = [_row(robot, {name: 1.0}) for name in self.joints]
-        return np.concatenate([[self.gain], *C, list(self.joints.values())])
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        return [({name: 1.0}, position) for name, position in self.joints.items()]
 
 
 @dataclass(frozen=True)
-class JointCouplingTask(GainTask):
+class JointCouplingTask(JointTask):
     r"""One linear relation between joints, as of a gear or a mimic joint.
 
     .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
@@ -73,29 +100,10 @@ class JointCouplingTask(GainTask):
         offset: c_0 [rad].
     """
 
-    kernel = staticmethod(joint_rows)
+    _checks: ClassVar[Checks] = {"coefficients": numbers_of, "offset": checks.finite}
+    row_weight = 0.0
     coefficients: Mapping[str, float]
     offset: float = 0.0
-    tracks: bool = field(default=False, init=False, repr=False)
-    rows: int = field(default=1, init=False, repr=False)
-    row_weight: float = field(default=0.0, init=False, repr=False)
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.finite("offset", self.offset)
-        given = self.coefficients.items()
-        self._set(coefficients={name: checks.finite("coefficients", c) for name, c in given})
-
-    def constants(self, robot: Robot) -> Vector:
-        """Return gain, the coefficient of each joint, and the offset, (2 + n,)."""
-        return np.array([self.gain, *_row(robot, self.coefficients), self.offset])
-
-
-def _row(robot: Robot, coefficients: Mapping[str, float]) -> Vector:
-    """Return the coefficients of all joints, (n,); raise NotFoundError for an unknown name."""
-    row = np.zeros(robot.dof)
-    for name, coefficient in coefficients.items():
-        if name not in robot.joint_names:
-            raise NotFoundError("joint", name, robot.joint_names)
-        row[robot.joint_names.index(name)] = coefficient
-    return row
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        return [(self.coefficients, self.offset)]

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.step import StepViews
 
 
@@ -69,10 +70,8 @@ class JointLimits(Limit):
     """
 
     kernel = staticmethod(joint_limits)
+    _checks: ClassVar[Checks] = {"gain": checks.positive}
     gain: float = 20.0
-
-    def __post_init__(self) -> None:
-        checks.positive("gain", self.gain)
 
     def constants(self, robot: Robot) -> Vector:
         """Return the gain and the first rows of `Robot.limits`, and `Robot.ramps`, (1 + 5 n,)."""

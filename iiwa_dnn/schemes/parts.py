@@ -11,11 +11,12 @@ that function reads. All kernels of a kind have one signature:
 `step` is a `StepViews`, `target` (18,) the `Target.data` of the frame that the task tracks. The
 rows come in as zeros, h as zeros, and n counts the joints and then the scheme's slack variables.
 
-A part may override a method in numpy instead. It is asked before each step, and the kernel of its
-kind copies the answer, which are its constants.
+A part may override a method in numpy instead. It is asked before each step, and its kernel, that
+of its kind, copies the answer out of the constants.
 """
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from typing import Any, ClassVar, TypeVar
 
@@ -30,6 +31,9 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
 PartT = TypeVar("PartT", bound="Part")
+
+Checks = Mapping[str, Callable[[str, Any], Any]]
+"""Checks of a part's parameters by their names, `iiwa_dnn.checks`."""
 
 V = types.float64[::1]
 M = types.float64[:, ::1]
@@ -55,28 +59,36 @@ class Part:
     A part that is made with a wrong parameter raises an `InvalidInputError` that names it.
 
     Attributes:
-        kernel: Compiled function that writes the rows; None for a part written with numpy.
+        kernel: Compiled function that writes the rows; in a class with methods in numpy it copies
+            their answers.
         rows: Number of rows; none for a cost.
-        copies: Whether methods in numpy give the rows; set by each class that has such a method,
-            or a kernel.
         signature: Types of the kernels of this kind.
-        copy: Kernel that copies the answers of those methods.
     """
 
     kernel: Any = None
     rows: int = 0
-    copies: ClassVar[bool] = False
     signature: Signature
-    copy: Any
+    _copy: Any
     _methods: ClassVar[dict[str, tuple[str, str]]] = {}
+    _checks: ClassVar[Checks] = {}
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Note whether the class gives its rows by methods in numpy or by a kernel."""
+        """Take the kernel that copies answers if the class has a method in numpy."""
         super().__init_subclass__(**options)
-        if any(name in vars(cls) for name in cls._methods):
-            cls.copies = True
-        elif "kernel" in vars(cls):
-            cls.copies = False
+        if not cls._methods.keys().isdisjoint(vars(cls)):
+            cls.kernel = staticmethod(cls._copy)
+
+    def __post_init__(self) -> None:
+        """Check the parameters that are given, and put them into the form that is needed."""
+        for kind in type(self).__mro__:
+            for name, check in vars(kind).get("_checks", {}).items():
+                if getattr(self, name) is not None:
+                    self._set(**{name: check(name, getattr(self, name))})
+
+    @property
+    def copies(self) -> bool:
+        """Test whether methods in numpy give the rows."""
+        return self.kernel is self._copy
 
     def constants(self, robot: Robot) -> Vector:
         """Return the numbers that the kernel reads, (k,).
@@ -99,8 +111,7 @@ class Part:
 
     def frame_name(self, robot: Robot) -> str:
         """Return the name of the frame that the part is about, the tip's by default."""
-        name = getattr(self, "frame", None)
-        return robot.tip if name is None else str(name)
+        return getattr(self, "frame", None) or robot.tip
 
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows for a robot; `rows`, unless a part says otherwise."""
@@ -121,24 +132,14 @@ class Part:
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
-        parts = fields(self) if "__dataclass_fields__" in dir(self) else ()  # type: ignore[arg-type]
-        names = [field.name for field in parts if field.init]
+        parameters = fields(self) if "__dataclass_fields__" in dir(self) else ()  # type: ignore[arg-type]
+        names = [field.name for field in parameters if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
-    def _evaluated(self, step: Step, *names: str) -> list[Matrix]:
-        """Return the arrays that the kernel writes at an instant."""
-        if self.kernel is None:
-            methods = " or ".join(self._methods)
-            raise TypeError(f"{type(self).__name__} has no kernel and does not override {methods}")
-        robot = step.robot
-        constants = self.constants(robot).copy()
-        self.refresh(step, constants)
-        views = step.views(self.frame_name(robot))
-        sizes = (robot.dof, self.row_count(robot))
-        arrays = [np.full(_shape(name, *sizes), _UNBOUNDED.get(name, 0.0)) for name in names]
-        targets = [views.targets[0]] if isinstance(self, Task) else []
-        self.kernel(views, constants, *targets, *arrays)
-        return arrays
+    def _missing(self, method: str) -> NotImplementedError:
+        """Return the error of a part that is asked by a method in numpy which it does not have."""
+        problem = f"{type(self).__name__} does not override {method}"
+        return NotImplementedError(f"{problem}; `Scheme.build_qp` shows a compiled part's rows")
 
 
 def answer_size(part: Part, n: int, rows: int) -> int:
@@ -235,7 +236,7 @@ class Cost(Part):
     """A term of the cost, 1/2 x^T P x + q^T x."""
 
     signature = COST
-    copy = staticmethod(copy_cost)
+    _copy = staticmethod(copy_cost)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {"quadratic": ("P", "q")}
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
@@ -244,8 +245,7 @@ class Cost(Part):
         n counts the scheme's variables, the joints and then its slack variables, or the joints
         alone: slack variables may be left out of any part.
         """
-        P, q = self._evaluated(step, "P", "q")
-        return P, q
+        raise self._missing("quadratic")
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
         P = arrays["P"]
@@ -268,7 +268,7 @@ class Task(Part):
     """
 
     signature = TASK
-    copy = staticmethod(copy_task)
+    _copy = staticmethod(copy_task)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {"equations": ("A", "b")}
     tracks: bool = True
     row_weight: float = 1.0
@@ -276,8 +276,7 @@ class Task(Part):
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        A, b = self._evaluated(step, "A", "b")
-        return A, b
+        raise self._missing("equations")
 
 
 class Limit(Part):
@@ -287,7 +286,7 @@ class Limit(Part):
     """
 
     signature = LIMIT
-    copy = staticmethod(copy_limit)
+    _copy = staticmethod(copy_limit)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {
         "inequalities": ("G", "h"),
         "bounds": ("lb", "ub"),
@@ -298,18 +297,16 @@ class Limit(Part):
         return []
 
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return G (rows, n) and h (rows,); without rows of one's own there are none."""
-        if self.kernel is None and not self.row_count(step.robot):
-            return np.zeros((0, step.robot.dof)), np.zeros(0)
-        G, h, _, _ = self._evaluated(step, "G", "h", "lb", "ub")
-        return G, h
+        """Return G (rows, n) and h (rows,), by default none."""
+        if self.rows or not self.copies:
+            raise self._missing("inequalities")
+        return np.zeros((0, step.q.size)), np.zeros(0)
 
     def bounds(self, step: Step) -> tuple[Vector, Vector]:
         """Return lb (n,) and ub (n,), infinite by default; those of all limits are intersected."""
-        if self.kernel is None:
-            return np.full(step.robot.dof, -np.inf), np.full(step.robot.dof, np.inf)
-        _, _, lb, ub = self._evaluated(step, "G", "h", "lb", "ub")
-        return lb, ub
+        if not self.copies:
+            raise self._missing("bounds")
+        return np.full(step.q.size, -np.inf), np.full(step.q.size, np.inf)
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
         lower = arrays["lb"]

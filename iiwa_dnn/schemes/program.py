@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.checks import read_only
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.compiling import borrowed
 from iiwa_dnn.qp.layout import QPViews, compiled, inlined, qp_views
+from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import (
     COST,
@@ -151,7 +150,7 @@ class StepProgram:
             target = self.target_frames.index(name) if name in self.target_frames else 0
             start = self.constants.size
             stop = start + own.size
-            address = part.signature.address(part.copy if part.copies else part.kernel)
+            address = part.signature.address(part.kernel)
             self.blocks.append(Block(part, kind, address, first, rows, start, stop, target))
             weight = [part.weight] if kind == SOFT_TASKS and isinstance(part, Task) else []
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
@@ -182,8 +181,7 @@ class StepProgram:
     @property
     def needs_inertia(self) -> bool:
         """Test whether a cost takes the inertia matrix."""
-        energies = [part for part in self.parts if isinstance(part, KineticEnergy)]
-        return any(energy.kinetic == "inertia" for energy in energies)
+        return any(getattr(part, "kinetic", "") == "inertia" for part in self.parts)
 
     @property
     def tasks(self) -> list[Task]:
@@ -256,8 +254,8 @@ class StepProgram:
         """
         if not self.refreshed:
             return
-        by_name = dict(zip(self.target_frames, targets, strict=True))
-        step = Step.from_kinematics(self.kinematics, by_name, t, dt, read_only(q), read_only(last))
+        named = dict(zip(self.target_frames, map(Target.from_data, targets), strict=True))
+        step = Step(self.robot, q, named, dt, t, last, self.kinematics)
         for block in self.refreshed:
             own = self.constants[block.start : block.stop]
             if block.part.copies:

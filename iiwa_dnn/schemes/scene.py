@@ -18,7 +18,7 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.distances import beyond, depth, difference, dot, moved, nearest_parameter
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, swept
-from iiwa_dnn.schemes.tasks import axis_at, vector_at
+from iiwa_dnn.schemes.step import axis_at, vector_at
 
 _HEAD = 4
 """Constants of a scene before those of joints, bodies and pairs."""

@@ -10,16 +10,22 @@ from numpy.typing import ArrayLike
 from pinocchio import rnea
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import read_only
+from iiwa_dnn.checks import Vector3, read_only
 from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.references import Target
+from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.configuration import FrameState
 from iiwa_dnn.robot.kinematics import Kinematics
 
 TARGET_SIZE = 18
 """Length of `Target.data`."""
+
+FRAME, GAIN, BASE, OWN = range(4)
+"""Constants of a task of a frame: its index, the gain [1/s], the index of the frame that it is seen
+from (0: the world's), and the first of the task's own."""
 
 
 class StepViews(NamedTuple):
@@ -71,60 +77,33 @@ class Step:
         dt: float = np.inf,
         t: float = 0.0,
         dq: ArrayLike | None = None,
+        kinematics: Kinematics | None = None,
     ) -> None:
         """Compute the kinematics of one instant, for example to test a part of one's own.
 
         Args:
             robot: The robot, n joints.
             q: Joint positions [rad], (n,).
-            targets: Target of the tip, or targets by frame name; None: each frame's own pose.
+            targets: Target of the tip, or targets by frame name.
             dt: Control period [s]; inf outside of a loop.
             t: Time [s].
             dq: Last command [rad/s], (n,); None: zero.
+            kinematics: Kinematics of the robot that are at `q` already; None: they are computed.
 
         Raises:
             InvalidInputError: `q` or `dq` has a wrong shape or is not finite.
         """
         shape = (robot.dof,)
-        posture = checks.finite_array("q", q, shape)
-        command = np.zeros(robot.dof) if dq is None else checks.finite_array("dq", dq, shape)
-        kinematics = Kinematics(robot, robot.frame_names, dynamics=True)
-        kinematics.update(posture)
-        by_frame = targets if isinstance(targets, Mapping) else {robot.tip: targets}
-        data = {name: target.data for name, target in by_frame.items() if target is not None}
-        self._set(kinematics, data, t, dt, posture, command)
-
-    @classmethod
-    def from_kinematics(
-        cls,
-        kinematics: Kinematics,
-        targets: Mapping[str, Vector],
-        t: float,
-        dt: float,
-        q: Vector,
-        dq: Vector,
-    ) -> Step:
-        """Make the instant that `kinematics` hold, without checks; targets by frame, (18,) each."""
-        step = cls.__new__(cls)
-        step._set(kinematics, targets, t, dt, q, dq)
-        return step
-
-    def _set(
-        self,
-        kinematics: Kinematics,
-        targets: Mapping[str, Vector],
-        t: float,
-        dt: float,
-        q: Vector,
-        dq: Vector,
-    ) -> None:
-        self._kinematics = kinematics
-        self._targets = targets
-        self.robot = kinematics.robot
+        self.robot = robot
         self.t = t
         self.dt = dt
-        self.q = q
-        self.dq = dq
+        self.q = checks.finite_array("q", q, shape)
+        self.dq = checks.finite_array("dq", np.zeros(shape) if dq is None else dq, shape)
+        self._targets = {robot.tip: targets} if isinstance(targets, Target) else targets or {}
+        if kinematics is None:
+            kinematics = Kinematics(robot, robot.frame_names)
+            kinematics.update(self.q)
+        self._kinematics = kinematics
 
     def frame(self, name: str | None = None) -> FrameState:
         """Return pose and Jacobian of a frame of the robot; None stands for the tip.
@@ -143,7 +122,7 @@ class Step:
         frame = self.robot.tip if name is None else name
         if frame not in self._targets:
             raise NotFoundError("target of frame", frame, self._targets)
-        return Target.from_data(self._targets[frame])
+        return self._targets[frame]
 
     @property
     def inertia(self) -> Matrix:
@@ -157,25 +136,61 @@ class Step:
         model = self._kinematics.robot.model
         return np.array(rnea(model, data, self.q, self.dq, np.zeros(self.q.size)))
 
-    def views(self, frame: str) -> StepViews:
-        """Return the instant for a compiled part that tracks a frame, its target the first.
 
-        Without a target, the frame is to stay where it is.
-        """
-        kinematics = self._kinematics
-        target = self._targets.get(frame)
-        if target is None:
-            state = self.frame(frame)
-            target = Target(state.position, state.rotation).data
-        return StepViews(
-            self.t,
-            1.0 / self.dt if self.dt < np.inf else np.inf,
-            self.q,
-            self.dq,
-            self.dq,
-            kinematics.jacobian,
-            kinematics.placements,
-            kinematics.moves,
-            kinematics.inertia,
-            np.array(target).reshape(1, TARGET_SIZE),
-        )
+@compiled
+def vector_at(array: Vector, start: int) -> Vector3:
+    """Return three numbers of an array (k,), from an index on."""
+    return array[start], array[start + 1], array[start + 2]
+
+
+@compiled
+def axis_at(placement: Vector, axis: Vector3) -> Vector3:
+    """Turn a direction in a frame's own coordinates, by its placement (12,), into the world's."""
+    x = scaled(axis[0], vector_at(placement, 0))
+    return added(x, combined(axis[1], vector_at(placement, 3), axis[2], vector_at(placement, 6)))
+
+
+@compiled
+def seen_from(placement: Vector, v: Vector3) -> Vector3:
+    """Turn a vector (3,) of the world into the coordinates of a placement (12,)."""
+    x = dot(vector_at(placement, 0), v)
+    y = dot(vector_at(placement, 3), v)
+    return x, y, dot(vector_at(placement, 6), v)
+
+
+@compiled
+def twist_part(jacobian: Matrix, j: int, first: int) -> Vector3:
+    """Return the linear (from 0) or angular (from 3) part of a twist out of (n, 6)."""
+    return jacobian[j, first], jacobian[j, first + 1], jacobian[j, first + 2]
+
+
+@compiled
+def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> float:
+    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad].
+
+    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
+    """
+    turned = cross(twist_part(jacobian, j, 3), point)
+    return dot(normal, added(twist_part(jacobian, j, 0), turned))
+
+
+@compiled
+def write_velocity(
+    step: StepViews, constants: Vector, point: Vector3, axis: Vector3, row: Vector
+) -> None:
+    """Write the velocity along an axis of a frame's point as seen from its base, a row (n,)."""
+    frame = int(constants[FRAME])
+    base = int(constants[BASE])
+    for j in range(step.q.size):
+        sign = step.moves[frame, j] - step.moves[base, j]
+        row[j] = sign * rate_along(step.jacobian, j, point, axis)
+
+
+@compiled
+def write_spin(step: StepViews, constants: Vector, axis: Vector3, row: Vector) -> None:
+    """Write the angular velocity about an axis of a frame as seen from its base, a row (n,)."""
+    frame = int(constants[FRAME])
+    base = int(constants[BASE])
+    for j in range(step.q.size):
+        sign = step.moves[frame, j] - step.moves[base, j]
+        row[j] = sign * dot(axis, twist_part(step.jacobian, j, 3))

@@ -12,20 +12,30 @@ but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, wh
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
-from iiwa_dnn.checks import Vector3
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
-from iiwa_dnn.references.rotations import added, combined, cross, dot, rotation_log, row_of, scaled
+from iiwa_dnn.references.rotations import added, combined, cross, dot, rotation_log, row_of
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.block_form import block_rows
-from iiwa_dnn.schemes.parts import Task
-from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.parts import Checks, Task
+from iiwa_dnn.schemes.step import (
+    BASE,
+    FRAME,
+    GAIN,
+    OWN,
+    StepViews,
+    axis_at,
+    seen_from,
+    vector_at,
+    write_spin,
+    write_velocity,
+)
 
 Form = Literal["so3", "block"]
 Orientation = Literal["so3", "block", "none"]
@@ -38,122 +48,56 @@ ROTATION_LENGTH = 0.5
 About an arm's forearm. With a fifth of it, more arms rest at joints' limits with the tip in place
 and the hand turned away; with twice as much, no more arrive."""
 
-FRAME, GAIN, BASE = range(3)
-"""Constants of a task of a frame: its index, the gain [1/s], and the index of the frame that it is
-seen from, 0 for the world's."""
-
-WORLD = 3
-WANTED = 15
-"""Beginnings of the world's placement and of a fixed target among those constants."""
-
-
-@compiled
-def vector_at(array: Vector, start: int) -> Vector3:
-    """Return three numbers of an array (k,), from an index on."""
-    return array[start], array[start + 1], array[start + 2]
-
-
-@compiled
-def axis_at(placement: Vector, axis: Vector3) -> Vector3:
-    """Turn a direction in a frame's own coordinates, by its placement (12,), into the world's."""
-    x = scaled(axis[0], vector_at(placement, 0))
-    return added(x, combined(axis[1], vector_at(placement, 3), axis[2], vector_at(placement, 6)))
-
-
-@compiled
-def joint_spin(step: StepViews, j: int) -> Vector3:
-    """Return the angular velocity for each unit of velocity of joint j."""
-    return vector_at(step.jacobian[j], 3)
-
-
-@compiled
-def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> float:
-    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad].
-
-    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
-    """
-    x, y, z = point
-    wx = jacobian[j, 3]
-    wy = jacobian[j, 4]
-    wz = jacobian[j, 5]
-    value: float = normal[0] * (jacobian[j, 0] + (wy * z - wz * y))
-    value += normal[1] * (jacobian[j, 1] + (wz * x - wx * z))
-    value += normal[2] * (jacobian[j, 2] + (wx * y - wy * x))
-    return value
-
-
-@compiled
-def write_position(
-    step: StepViews, constants: Vector, base: Vector, wanted: Vector, A: Matrix, b: Vector
-) -> None:
-    """Write the rows of a frame's position as seen from the placement of a base (12,), three."""
-    frame = int(constants[FRAME])
-    other = int(constants[BASE])
-    gain = min(constants[GAIN], step.rate)
-    point = vector_at(step.placements[frame], 9)
-    offset = combined(1.0, point, -1.0, vector_at(base, 9))
-    for i in range(3):
-        axis = vector_at(base, 3 * i)
-        b[i] = wanted[12 + i] + gain * (wanted[i] - dot(axis, offset))
-        for j in range(step.q.size):
-            sign = step.moves[frame, j] - step.moves[other, j]
-            A[i, j] = sign * rate_along(step.jacobian, j, point, axis)
-
-
-@compiled
-def write_rotation(
-    step: StepViews, constants: Vector, base: Vector, wanted: Vector, A: Matrix, b: Vector
-) -> None:
-    """Write the rows of a frame's orientation as seen from the placement of a base (12,), three."""
-    frame = int(constants[FRAME])
-    other = int(constants[BASE])
-    gain = min(constants[GAIN], step.rate)
-    placement = step.placements[frame]
-    relative = np.empty((3, 3))
-    error = np.empty(3)
-    for i in range(3):
-        for k in range(3):
-            value = 0.0
-            for j in range(3):
-                turned = dot(vector_at(base, 3 * k), vector_at(placement, 3 * j))
-                value += wanted[3 + 3 * i + j] * turned
-            relative[i, k] = value
-    rotation_log(relative, error)
-    for i in range(3):
-        b[i] = wanted[15 + i] + gain * error[i]
-        for j in range(step.q.size):
-            sign = step.moves[frame, j] - step.moves[other, j]
-            A[i, j] = sign * dot(vector_at(base, 3 * i), joint_spin(step, j))
-
 
 @compiled
 def position_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
-    """Write the rows of `PositionTask`, three."""
-    write_position(step, constants, constants[WORLD:WANTED], target, A, b)
+    """Write the rows of a frame's position as seen from its base, three."""
+    gain = min(constants[GAIN], step.rate)
+    base = step.placements[int(constants[BASE])]
+    point = vector_at(step.placements[int(constants[FRAME])], 9)
+    offset = combined(1.0, point, -1.0, vector_at(base, 9))
+    for i in range(3):
+        axis = vector_at(base, 3 * i)
+        b[i] = target[12 + i] + gain * (target[i] - dot(axis, offset))
+        write_velocity(step, constants, point, axis, A[i])
 
 
 @compiled
 def rotation_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
-    """Write the rows of `OrientationTask` in the form ``so3``, three."""
-    write_rotation(step, constants, constants[WORLD:WANTED], target, A, b)
+    """Write the rows of a frame's orientation as seen from its base, three."""
+    gain = min(constants[GAIN], step.rate)
+    base = step.placements[int(constants[BASE])]
+    placement = step.placements[int(constants[FRAME])]
+    missing = np.empty((3, 3))
+    error = np.empty(3)
+    for i in range(3):
+        for k in range(3):
+            seen = seen_from(placement, vector_at(base, 3 * k))
+            missing[i, k] = dot(row_of(target, i), seen)
+    rotation_log(missing, error)
+    for i in range(3):
+        b[i] = target[15 + i] + gain * error[i]
+        write_spin(step, constants, vector_at(base, 3 * i), A[i])
 
 
 @compiled
 def pose_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
-    """Write the rows of `PoseTask`, six."""
+    """Write the rows of a frame's position and orientation as seen from its base, six."""
     position_rows(step, constants, target, A[:3], b[:3])
     rotation_rows(step, constants, target, A[3:], b[3:])
 
 
 @compiled
-def relative_pose_rows(
+def held_pose_rows(
     step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
 ) -> None:
-    """Write the rows of `RelativePoseTask`, six."""
-    base = step.placements[int(constants[BASE])]
-    wanted = constants[WANTED:]
-    write_position(step, constants, base, wanted, A[:3], b[:3])
-    write_rotation(step, constants, base, wanted, A[3:], b[3:])
+    """Write the rows of a pose that is among the constants, six."""
+    pose_rows(step, constants, constants[OWN:], A, b)
+
+
+def feedback_gain(argument: str, value: float) -> float:
+    """Return a gain of at least 0, inf among them; refuse any other value."""
+    return np.inf if value == np.inf else checks.not_negative(argument, value)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,14 +110,9 @@ class GainTask(Task):
         weight: None for hard rows, else the weight of the soft task, at least 0.
     """
 
+    _checks: ClassVar[Checks] = {"gain": feedback_gain, "weight": checks.not_negative}
     gain: float = 10.2
     weight: float | None = None
-
-    def __post_init__(self) -> None:
-        if self.gain != np.inf:
-            checks.not_negative("gain", self.gain)
-        if self.weight is not None:
-            checks.not_negative("weight", self.weight)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,24 +125,28 @@ class FrameTask(GainTask):
 
     frame: str | None = None
 
-    def _constants(
-        self, robot: Robot, base: str | None = None, pose: ArrayLike | None = None
-    ) -> Vector:
-        """Return `FRAME`, `GAIN`, `BASE`, the world's placement, and the target of a pose (4, 4).
+    @property
+    def _base(self) -> str | None:
+        """Name of the frame that this one is seen from; None stands for the world."""
+        return None
+
+    def _own(self) -> ArrayLike:
+        """Return the constants beside `FRAME`, `GAIN` and `BASE`, (k,)."""
+        return ()
+
+    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
+        """Return the name of the frame that this one is seen from, if it is a robot's."""
+        return () if self._base is None else (self._base,)
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return `FRAME`, `GAIN`, `BASE` and, from `OWN` on, the task's own, (3 + k,).
 
         Raises:
             NotFoundError: The robot has no such frame.
         """
         frame = robot.frame_id(self.frame_name(robot))
-        other = 0 if base is None else robot.frame_id(base)
-        fixed = np.eye(4) if pose is None else np.array(pose)
-        world = [*np.eye(3).ravel(), *np.zeros(3)]
-        wanted = [*fixed[:3, 3], *fixed[:3, :3].ravel(), *np.zeros(6)]
-        return np.array([frame, self.gain, other, *world, *wanted])
-
-    def constants(self, robot: Robot) -> Vector:
-        """Return `FRAME`, `GAIN`, `BASE`, the world's placement and a target, (33,)."""
-        return self._constants(robot)
+        base = 0 if self._base is None else robot.frame_id(self._base)
+        return np.array([frame, self.gain, base, *np.ravel(self._own())])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,7 +164,7 @@ class PositionTask(FrameTask):
     """
 
     kernel = staticmethod(position_rows)
-    rows: int = field(default=3, init=False, repr=False)
+    rows = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -246,8 +189,8 @@ class OrientationTask(FrameTask):
 
     kernel = staticmethod(rotation_rows)
     form: Form = "so3"
-    rows: int = field(default=3, init=False, repr=False)
-    row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
+    rows = 3
+    row_weight = ROTATION_LENGTH
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -264,7 +207,7 @@ class PoseTask(FrameTask):
     """
 
     kernel = staticmethod(pose_rows)
-    rows: int = field(default=6, init=False, repr=False)
+    rows = 6
 
 
 @dataclass(frozen=True)
@@ -285,12 +228,12 @@ class RelativePoseTask(FrameTask):
         pose: Desired pose as a homogeneous matrix, (4, 4); None: the one where a run begins.
     """
 
-    kernel = staticmethod(relative_pose_rows)
+    kernel = staticmethod(held_pose_rows)
     frame: str = field()
     base: str = field()
     pose: Rows | None = None
-    tracks: bool = field(default=False, init=False, repr=False)
-    rows: int = field(default=6, init=False, repr=False)
+    tracks = False
+    rows = 6
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -303,15 +246,19 @@ class RelativePoseTask(FrameTask):
         if self.pose is not None:
             return self
         pose = np.linalg.inv(conf.frame(self.base).pose) @ conf.frame(self.frame).pose
-        return replace(self, pose=tuple(map(tuple, pose.tolist())))
+        return replace(self, pose=pose.tolist())
 
-    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the name of the base frame."""
-        return (self.base,)
+    @property
+    def _base(self) -> str:
+        return self.base
+
+    def _own(self) -> ArrayLike:
+        pose = np.eye(4) if self.pose is None else np.array(self.pose)
+        return [*pose[:3, 3], *pose[:3, :3].ravel(), *np.zeros(6)]
 
     def constants(self, robot: Robot) -> Vector:
-        """Return those of a task of a frame, (33,); without a pose the gain is 0."""
-        found = self._constants(robot, self.base, self.pose)
+        """Return those of a task of a frame, (21,); without a pose the gain is 0."""
+        found = super().constants(robot)
         found[GAIN] *= self.pose is not None
         return found
 
@@ -319,19 +266,15 @@ class RelativePoseTask(FrameTask):
 @compiled
 def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
     """Write the rows of `AxisTask`, two."""
-    frame = int(constants[FRAME])
-    placement = step.placements[frame]
-    axis = vector_at(constants, 2)
-    if constants[11] == 0.0:
+    placement = step.placements[int(constants[FRAME])]
+    axis = vector_at(constants, OWN)
+    spin = (0.0, 0.0, 0.0)
+    wanted = vector_at(constants, OWN + 9)
+    if dot(wanted, wanted) == 0.0:
         spin = vector_at(target, 15)
-        wanted = (
-            dot(row_of(target, 0), axis),
-            dot(row_of(target, 1), axis),
-            dot(row_of(target, 2), axis),
-        )
-    else:
-        spin = (0.0, 0.0, 0.0)
-        wanted = vector_at(constants, 12)
+        x = dot(row_of(target, 0), axis)
+        y = dot(row_of(target, 1), axis)
+        wanted = (x, y, dot(row_of(target, 2), axis))
     here = axis_at(placement, axis)
     turn = cross(here, wanted)
     sine = np.sqrt(dot(turn, turn))
@@ -339,10 +282,9 @@ def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
     factor = angle / sine if sine > 1e-12 else 1.0
     rate = combined(1.0, spin, min(constants[GAIN], step.rate) * factor, turn)
     for i in range(2):
-        normal = axis_at(placement, vector_at(constants, 5 + 3 * i))
+        normal = axis_at(placement, vector_at(constants, OWN + 3 + 3 * i))
         b[i] = dot(normal, rate)
-        for j in range(step.q.size):
-            A[i, j] = step.moves[frame, j] * dot(normal, joint_spin(step, j))
+        write_spin(step, constants, normal, A[i])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -361,23 +303,19 @@ class AxisTask(FrameTask):
     """
 
     kernel = staticmethod(axis_rows)
+    _checks: ClassVar[Checks] = {"axis": checks.direction, "direction": checks.direction}
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     direction: Sequence[float] | None = None
-    rows: int = field(default=2, init=False, repr=False)
-    row_weight: float = field(default=ROTATION_LENGTH, init=False, repr=False)
+    rows = 2
+    row_weight = ROTATION_LENGTH
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._set(axis=checks.direction("axis", self.axis))
-        if self.direction is not None:
-            self._set(direction=checks.direction("direction", self.direction), tracks=False)
+        self._set(tracks=self.direction is None)
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return frame, gain, axis, two normals of it, and 1 with a fixed direction or 0, (15,)."""
-        fixed = (0.0, 0.0, 0.0, 0.0) if self.direction is None else (1.0, *self.direction)
-        normals = _normals(self.axis).ravel()
-        frame = robot.frame_id(self.frame_name(robot))
-        return np.array([frame, self.gain, *self.axis, *normals, *fixed])
+    def _own(self) -> ArrayLike:
+        direction = (0.0, 0.0, 0.0) if self.direction is None else self.direction
+        return [*self.axis, *_normals(self.axis).ravel(), *direction]
 
 
 @compiled
@@ -385,19 +323,14 @@ def remote_center_rows(
     step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
 ) -> None:
     """Write the rows of `RemoteCenterTask`, two."""
-    frame = int(constants[FRAME])
-    carrier = int(constants[BASE])
-    placement = step.placements[frame]
-    point = vector_at(constants, 9)
-    if carrier > 0:
-        point = vector_at(step.placements[carrier], 9)
+    placement = step.placements[int(constants[FRAME])]
+    carrier = step.placements[int(constants[BASE])]
+    point = added(vector_at(carrier, 9), vector_at(constants, OWN + 6))
     offset = combined(1.0, point, -1.0, vector_at(placement, 9))
     for i in range(2):
-        normal = axis_at(placement, vector_at(constants, 3 + 3 * i))
+        normal = axis_at(placement, vector_at(constants, OWN + 3 * i))
         b[i] = min(constants[GAIN], step.rate) * dot(normal, offset)
-        for j in range(step.q.size):
-            sign = step.moves[frame, j] - step.moves[carrier, j]
-            A[i, j] = sign * rate_along(step.jacobian, j, point, normal)
+        write_velocity(step, constants, point, normal, A[i])
 
 
 @dataclass(frozen=True)
@@ -422,30 +355,27 @@ class RemoteCenterTask(FrameTask):
     """
 
     kernel = staticmethod(remote_center_rows)
+    _checks: ClassVar[Checks] = {"axis": checks.direction}
     point: Sequence[float] | str
     axis: Sequence[float] = (0.0, 0.0, 1.0)
-    tracks: bool = field(default=False, init=False, repr=False)
-    rows: int = field(default=2, init=False, repr=False)
+    tracks = False
+    rows = 2
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self._set(axis=checks.direction("axis", self.axis))
         if not isinstance(self.point, str):
             self._set(point=checks.vector3("point", self.point))
 
-    def extra_frames(self, robot: Robot) -> tuple[str, ...]:
-        """Return the name of the frame that carries the point, if there is one."""
-        return (self.point,) if isinstance(self.point, str) else ()
+    @property
+    def _base(self) -> str | None:
+        return self.point if isinstance(self.point, str) else None
 
-    def constants(self, robot: Robot) -> Vector:
-        """Return frame, gain, the carrier's index or 0, two normals of the axis, point, (12,)."""
-        carrier = robot.frame_id(self.point) if isinstance(self.point, str) else 0
+    def _own(self) -> ArrayLike:
         point = (0.0, 0.0, 0.0) if isinstance(self.point, str) else self.point
-        frame = robot.frame_id(self.frame_name(robot))
-        return np.array([frame, self.gain, carrier, *_normals(self.axis).ravel(), *point])
+        return [*_normals(self.axis).ravel(), *point]
 
 
-def _normals(axis: Sequence[float]) -> NDArray[np.float64]:
+def _normals(axis: Sequence[float]) -> Matrix:
     """Return two unit vectors normal to a unit vector (3,) and to each other, (2, 3)."""
     smallest = np.eye(3)[int(np.argmin(np.abs(axis)))]
     first = np.cross(axis, smallest)

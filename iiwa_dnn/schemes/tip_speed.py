@@ -20,6 +20,7 @@ times the robot's own has room for both.
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -28,9 +29,8 @@ from iiwa_dnn.checks import Vector3
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import Limit
-from iiwa_dnn.schemes.step import StepViews
-from iiwa_dnn.schemes.tasks import rate_along, vector_at
+from iiwa_dnn.schemes.parts import Checks, Limit
+from iiwa_dnn.schemes.step import StepViews, rate_along, vector_at
 
 NEGLIGIBLE = 1e-6
 """Contribution of a joint to the speed that is rounding, as of one whose axis meets the tip [m]."""
@@ -84,13 +84,10 @@ class TipSpeedLimit(Limit):
     """
 
     kernel = staticmethod(tip_speed_bounds)
+    _checks: ClassVar[Checks] = {"limit": checks.positive, "gain": checks.positive}
     limit: float
     frame: str | None = None
     gain: float = 100.0
-
-    def __post_init__(self) -> None:
-        checks.positive("limit", self.limit)
-        checks.positive("gain", self.gain)
 
     def constants(self, robot: Robot) -> Vector:
         """Return the index of the frame, the limit [m/s] and the gain [1/s], (3,)."""

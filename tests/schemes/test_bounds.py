@@ -9,7 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
 from helpers_simulation import near_target, paper_robot, paper_start, velocity_bounds
-from iiwa_dnn import JointLimits, Step, load_robot
+from iiwa_dnn import load_robot
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -40,8 +40,7 @@ def test_the_fr3s_velocity_limits_end_before_its_position_limits() -> None:
     robot = load_robot("fr3")
     offset, deceleration = robot.ramps
     for left in (0.0, 1e-4, 5e-3, 0.05, 0.5):
-        step = Step(robot, robot.q_upper - left, dt=1e-3)
-        lb, ub = JointLimits().bounds(step)
+        lb, ub = velocity_bounds(Configuration(robot, robot.q_upper - left), 20.0)
         ramp = np.maximum(np.sqrt(2.0 * deceleration * left) - offset, 0.0)
         expected = np.minimum(robot.dq_max, np.minimum(ramp, 20.0 * left))
         np.testing.assert_allclose(ub, expected, atol=1e-12)

@@ -12,6 +12,7 @@ import pytest
 
 import iiwa_dnn
 from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
+from helpers_simulation import rows_of
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
@@ -87,8 +88,8 @@ def test_in_a_loop_h_leaves_what_a_step_like_the_last_one_may_take() -> None:
     def row(spare: float, dq: np.ndarray) -> tuple[np.ndarray, float]:
         """Return G and h where the pair is so much farther away than what is promised."""
         near = wall(-1.0 + distances[pair] - promised - spare)
-        G, h = near.inequalities(iiwa_dnn.Step(ROBOT, START, dt=dt, dq=dq))
-        return G[pair], float(h[pair])
+        qp = rows_of(near, iiwa_dnn.Configuration(ROBOT, START), dt=dt, dq=dq)
+        return qp.G[pair], float(qp.h[pair])
 
     g, still = row(0.05, np.zeros(7))
     assert still == pytest.approx(gain * 0.05, rel=1e-9)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from helpers_simulation import paper_robot, paper_start
+from helpers_simulation import paper_robot, paper_start, rows_of
 from iiwa_dnn.errors import InvalidInputError
 
 DT = 2e-3
@@ -12,12 +12,13 @@ LAST = np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.5])
 
 
 def test_each_joint_may_add_an_equal_part_of_what_is_left() -> None:
-    step = iiwa_dnn.Step(paper_robot(), paper_start().q, dt=DT, dq=LAST)
     jacobian = paper_start().jacobian[:3]
     speed = np.linalg.norm(jacobian @ LAST)
     along = jacobian.T @ jacobian @ LAST / speed
     for limit in (0.5 * speed, 2.0 * speed):
-        lb, ub = iiwa_dnn.TipSpeedLimit(limit, gain=50.0).bounds(step)
+        limited = iiwa_dnn.TipSpeedLimit(limit, gain=50.0)
+        qp = rows_of(limited, paper_start(), dt=DT, dq=LAST)
+        lb, ub = qp.lb, qp.ub
         growth = 50.0 * DT * (limit - speed) / np.abs(along).sum()
         moves = np.abs(along) > 1e-12
         assert np.isinf(lb[(along > 0.0) | ~moves]).all()
@@ -33,9 +34,9 @@ def test_each_joint_may_add_an_equal_part_of_what_is_left() -> None:
 
 @pytest.mark.parametrize("dq", [np.zeros(7), [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]])
 def test_a_tip_at_rest_has_no_bounds(dq: np.ndarray) -> None:
-    step = iiwa_dnn.Step(paper_robot(), np.zeros(7), dt=DT, dq=dq)
-    lb, ub = iiwa_dnn.TipSpeedLimit(0.1).bounds(step)
-    assert np.isinf([lb, ub]).all()
+    conf = iiwa_dnn.Configuration(paper_robot(), np.zeros(7))
+    qp = rows_of(iiwa_dnn.TipSpeedLimit(0.1), conf, dt=DT, dq=dq)
+    assert np.isinf([qp.lb, qp.ub]).all()
 
 
 @pytest.mark.parametrize("wanted", [None, 0.4])
