@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
+from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import Target
 
@@ -127,7 +128,11 @@ class Reference(ABC):
         """Return name and parameters, in JSON types, to make the path again, not anchored."""
         own: Any = self
         names = [part.name for part in fields(own) if part.init] if is_dataclass(own) else []
-        return {"name": self.name} | {name: _plain(getattr(self, name)) for name in names}
+        values = {name: getattr(self, name) for name in names}
+        return {"name": self.name} | {
+            name: value.settings() if isinstance(value, Reference) else plain(value)
+            for name, value in values.items()
+        }
 
 
 class Ahead(Reference):
@@ -156,10 +161,3 @@ class Ahead(Reference):
     def settings(self) -> dict[str, Any]:
         """Return those of the path that is seen ahead."""
         return self.along.settings()
-
-
-def _plain(value: Any) -> Any:
-    """Return a parameter in JSON types."""
-    if isinstance(value, Reference):
-        return value.settings()
-    return np.asarray(value).tolist() if isinstance(value, np.ndarray | tuple) else value

@@ -234,34 +234,31 @@ class Waypoints(Reference):
         positive("stretch", stretch)
         path = Path(path)
         columns, table = _read(path)
-        times = table[:, 0] if columns[0] == "t" else _times_at(table, speed, rate)
         points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
         quaternions = table[:, -4:] if "qw" in columns else None
         try:
+            times = table[:, 0] if columns[0] == "t" else _times_at(table, speed, rate)
             made = cls(stretch * times, points, ends, quaternions)
-        except InvalidInputError as error:
-            raise FileError(path, str(error)) from error
+        except ValueError as error:
+            raise FileError(path, one_line(error)) from error
         for message in made._abrupt_ends():
             warnings.warn(f"{path}: {message}", stacklevel=2)
         return made
 
     def _abrupt_ends(self) -> list[str]:
         """Describe the ends at which an open path of dense rows would be at speed."""
-        if self.ends == "closed" or len(self.times) < 3:
-            return []
         steps = np.diff(self.times)
         speeds = np.linalg.norm(np.diff(self.points, axis=0), axis=1) / steps
         usual = np.average(speeds, weights=steps)
-        found = []
-        for word, end, beside in (("begin", 0, 1), ("end", -1, -2)):
-            # Rows that speed up evenly from rest are passed at a third of the next ones' speed.
-            at_speed = speeds[end] > 0.5 * max(usual, speeds[beside])
-            if at_speed and steps[end] < 0.1 * self.duration:
-                found.append(
-                    f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
-                    f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
-                )
-        return found
+        # Rows that speed up evenly from rest begin at less than half the mean speed.
+        return [
+            f"the rows {word} at {speeds[end]:.3g} m/s, the path at rest: within "
+            f"{steps[end]:.3g} s it changes its speed; let the rows {word} slowly"
+            for word, end in (("begin", 0), ("end", -1))
+            if self.ends == "clamped"
+            and speeds[end] > 0.5 * usual
+            and steps[end] < 0.1 * self.duration
+        ]
 
     def __repr__(self) -> str:
         return f"Waypoints({len(self.times)} points, {self.duration:g} s, ends={self.ends!r})"
@@ -279,12 +276,11 @@ class Waypoints(Reference):
 
 def _times_at(poses: Array, speed: float, rate: float) -> Array:
     """Compute the times (m,) [s] of poses (m, 7) passed at a speed and an angular speed."""
-    steps = np.diff(poses, axis=0)
-    lengths = np.linalg.norm(steps[:, :3], axis=1)
-    # A quarter of the angle by its chord, accurate near zero, to the nearer of the two signs.
-    chord = np.linalg.norm(steps[:, 3:], axis=1)
-    other = np.linalg.norm(poses[1:, 3:] + poses[:-1, 3:], axis=1)
-    angles = 4.0 * np.arcsin(np.minimum(0.5 * np.minimum(chord, other), 1.0))
+    from scipy.spatial.transform import Rotation
+
+    lengths = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
+    turns = Rotation.from_quat(poses[:, [4, 5, 6, 3]])
+    angles = (turns[1:] * turns[:-1].inv()).magnitude()
     return np.concatenate([[0.0], np.cumsum(np.maximum(lengths / speed, angles / rate))])
 
 
@@ -294,16 +290,16 @@ def _read(path: Path) -> tuple[list[str], Array]:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:  # no UTF-8, or a NUL in the path: a ValueError
         raise FileError(path, one_line(error)) from error
-    cells = {number: line.split(",") for number, line in enumerate(lines, 1) if line.strip()}
-    columns = [cell.strip().lower() for cell in cells.pop(min(cells, default=0), [])]
+    rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
+    columns = [cell.strip().lower() for cell in rows[0][1].split(",")] if rows else []
     if columns not in _HEADERS:
         problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
         raise FileError(path, problem)
-    rows = []
-    for number, row in cells.items():
+    table = np.empty((len(rows) - 1, len(columns)))
+    for values, (number, line) in zip(table, rows[1:], strict=True):
         try:
-            rows.append(finite_array("row", row, (len(columns),)))
+            values[:] = finite_array("row", line.split(","), values.shape)
         except InvalidInputError as error:
-            problem = f"{len(columns)} finite numbers are needed, not {','.join(row)!r}"
+            problem = f"{len(columns)} finite numbers are needed, not {line!r}"
             raise FileError(path, f"line {number}: {problem}") from error
-    return columns, np.reshape(rows, (-1, len(columns)))
+    return columns, table

@@ -192,6 +192,7 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
         (GOOD + "1.0000000000000002,1e300,1,1\n", "no spline fits"),
         (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n0,0,0,1,0,0,0\n", "must increase"),
         (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n1,0,0,2,0,0,0\n", "length 1"),
+        (f"{POSE_HEADER}\n0,0,0,1,0,0,0\n1,0,0,0,0,0,0\n", "zero norm"),
         (None, "No such file"),
     ],
 )
