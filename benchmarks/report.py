@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import os
 import platform
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -13,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import matplotlib
 import numpy as np
 
-from iiwa_dnn.app.paper import processor
 from iiwa_dnn.files import write_json, write_text
 from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, legend_above, new_figure, write_figures
@@ -70,6 +70,14 @@ _KNOWN = {
     "largest ms": "{largest_ms:.2f}",
     "largest error of x": "{largest_error:.1e}",
 }
+
+
+def processor() -> str:
+    """The processor's name, or the machine's type if the system does not give the name."""
+    file = Path("/proc/cpuinfo")
+    text = file.read_text(encoding="utf-8") if file.exists() else ""
+    found = re.search(r"(?m)^model name\s*:\s*(.+)$", text)
+    return found[1].strip() if found else platform.processor() or platform.machine()
 
 
 def environment(more: Sequence[str] = ()) -> dict[str, Any]:

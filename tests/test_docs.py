@@ -109,7 +109,7 @@ def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(pa
         words = shlex.split(line, comments=True)
         options = tyro.cli(COMMANDS[words[0]], args=words[1:], config=CONFIG)
         if options.config is None and words[0] != "export":
-            name = options.reference.path or options.reference.name or "heart"
+            name = options.path or options.reference or "heart"
             out = Path("runs") / ("physics" if words[0] == "physics" else Path(name).stem)
             owner = owners.setdefault(options.out or out, words)
             assert owner == words, f"{path.name}: iiwa-dnn {line}"

@@ -5,17 +5,15 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
 import tomli_w
 import tyro
 
-from iiwa_dnn.app.words import SweepWords
 from iiwa_dnn.errors import FileError, IiwaDnnError, NoSolutionError
-from iiwa_dnn.files import one_line, prepare_folder, write_text
-from iiwa_dnn.studies.sweeps import Task, sweep
+from iiwa_dnn.files import one_line, prepare_folder
 
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
@@ -92,17 +90,3 @@ def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> 
         problem = "holds another run or other files: choose another --out, or --overwrite"
         raise FileError(folder, problem)
     return prepare_folder(folder)
-
-
-def run_sweep(
-    words: SweepWords, name: str, task: Task, cells: Sequence[Any]
-) -> tuple[Path, list[Any]]:
-    """Compute the cells of a sweep in a command's folder, but for those that are there.
-
-    Returns the folder and the results; errors as of `claim_folder` and `sweep`.
-    """
-    settings = {"command": name}
-    folder = claim_folder(words.out or Path("runs") / name, settings, words.overwrite)
-    write_text(folder / SETTINGS_FILE, tomli_w.dumps(settings))
-    how: dict[str, Any] = {"workers": words.workers, "dask": words.dask, "quiet": words.quiet}
-    return folder, sweep(task, cells, folder / "cells", **how)

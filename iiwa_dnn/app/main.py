@@ -10,16 +10,16 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional
+from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg
 from tyro.extras import subcommand_cli_from_dict
 
 from iiwa_dnn.app.command_line import guard
-from iiwa_dnn.app.words import GROUP, Count, Export, Flag, Number, Physics, SweepWords, Track, shown
+from iiwa_dnn.app.words import Count, Export, Flag, Number, Physics, SweepWords, Track, shown
 
 PROG = "iiwa-dnn"
 CONFIG = (OmitArgPrefixes, FlagCreatePairsOff)
 Names = Annotated[tuple[str, ...], shown("NAME ...")]
-Sweeping = Annotated[SweepWords, GROUP]
+Sweeping = Annotated[SweepWords, arg(help="")]  # its title says enough
 EVERY = SweepWords()
 
 
@@ -42,17 +42,13 @@ def paper(
         table: table of the paper to run alone, 1 or 2 (everything)
         weights: weights xi in [0, 1] of the columns of Table I (all)
     """
-    from iiwa_dnn.app import paper
+    from iiwa_dnn.app import sweeps
     from iiwa_dnn.studies import runs
 
     scope = runs.QUICK if quick else runs.FULL
-    scope = replace(
-        scope,
-        seeds=scope.seeds if seeds is None else seeds,
-        duration=scope.duration if duration is None else duration,
-        weights=weights or scope.weights,
-    )
-    return paper.run(sweep, scope, f"table{table}" if table else None)
+    given = {"seeds": seeds, "duration": duration, "weights": weights or None}
+    changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    return sweeps.paper(sweep, replace(scope, **changes), f"table{table}" if table else None)
 
 
 def atlas(
@@ -80,7 +76,7 @@ def atlas(
         disturbances: disturbances beside the undisturbed runs (every one)
         work: work a control period [operations] (3e3 1e4 3e4)
     """
-    from iiwa_dnn.app import atlas
+    from iiwa_dnn.app import sweeps
     from iiwa_dnn.studies.atlas import NETWORKS, SCHEMES, Size
 
     if NETWORKS.keys().isdisjoint(networks):  # one's own beside all others
@@ -94,7 +90,7 @@ def atlas(
         seeds=(100 if whole else few.seeds) if seeds is None else seeds,
         others=few.others if other_seeds is None else other_seeds,
     )
-    return atlas.run(sweep, size)
+    return sweeps.atlas(sweep, size)
 
 
 def view(

@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 
 from iiwa_dnn.app.command_line import SETTINGS_FILE
-from iiwa_dnn.app.settings import load
+from iiwa_dnn.app.track import load
 from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way

@@ -121,13 +121,6 @@ def write_report(
         FileError: If it cannot be written.
     """
     settings = metrics["settings"]
-    versions = ", ".join(f"{name} {value}" for name, value in metrics["versions"].items())
-    made = (
-        datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
-        f"{platform.system()}, {platform.machine()}, {os.cpu_count()} cores",
-        f"Python {platform.python_version()}, {versions}",
-        f"`{shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])}`",
-    )
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
         "## Verdict",
@@ -137,12 +130,23 @@ def write_report(
         "## Settings",
         markdown_table(("setting", "value"), _named(settings)),
         "## Made",
-        *(f"- {line}" for line in made),
+        *(f"- {name}: {value}" for name, value in made(metrics["versions"]).items()),
         *(f"![{CAPTIONS[path.stem]}]({path.name})" for path in figures if path.suffix == ".png"),
     ]
     path = Path(folder) / "report.md"
     write_text(path, "\n\n".join(parts).replace("\n\n- ", "\n- ") + "\n")
     return path
+
+
+def made(versions: Mapping[str, str]) -> dict[str, str]:
+    """Return date, machine, versions of packages and command of this process, by name."""
+    packages = ", ".join(f"{name} {value}" for name, value in versions.items())
+    return {
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "machine": f"{platform.system()}, {platform.machine()}, {os.cpu_count()} cores",
+        "versions": f"Python {platform.python_version()}, {packages}",
+        "command": f"`{shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])}`",
+    }
 
 
 def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:

@@ -24,7 +24,7 @@ def test_the_settings_of_a_run_become_c(
     words = ("export", "--config", file, "--out", folder, "--speed", "0.5", "--dt", "2e-3")
     assert call(*words) == 0
     captured = capsys.readouterr()
-    assert f"written to {folder}: " in captured.out
+    assert f"written to {folder}; to test it: " in captured.out
     assert "--joint-limit datasheet" in captured.err
     exported = load(folder)
     assert (exported.dof, exported.frames, exported.dt) == (7, 1, 2e-3)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from helpers_commands import call
-from iiwa_dnn.app import paper as app
+from iiwa_dnn.app import sweeps as app
 from iiwa_dnn.studies import runs
 from iiwa_dnn.studies.runs import QUICK
 

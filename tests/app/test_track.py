@@ -9,6 +9,7 @@ import resource
 import socket
 import subprocess
 import sys
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -192,7 +193,7 @@ def test_defaults_are_the_papers_experiment(
         asked.update(arguments)
         raise IiwaDnnError("seen enough")
 
-    monkeypatch.setattr(command, "simulate", take)
+    monkeypatch.setattr(command, "simulate", wraps(command.simulate)(take))
     monkeypatch.chdir(tmp_path)
     assert call("track", *words) == 2
     if not dt:
