@@ -80,7 +80,7 @@ def test_the_reports_numbers_are_the_metrics(run):
     )
     assert table["q upper [rad]"] == ["3 (all 7)"]
     assert table["scheme"] == ["name = DoubleIndicator, weight = 0.2, kinetic = identity"]
-    assert re.search(r"- \d{4}-\d\d-\d\d \d\d:\d\d UTC\n", text)
+    assert re.search(r"- date: \d{4}-\d\d-\d\d \d\d:\d\d UTC\n", text)
     assert f"numpy {np.__version__}" in text
     links = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text)
     assert links == ["overview.png", "convergence.png"]
