@@ -25,7 +25,7 @@ from iiwa_dnn.control.paths import (
     warn_if_unwatched,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
-from iiwa_dnn.control.state import LAST, ControllerState, Q
+from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, Q
 from iiwa_dnn.control.step import ControlStep
 from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
@@ -102,7 +102,8 @@ class Controller:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self._lock = threading.Lock()
-        self._state = ControllerState(0)
+        self._state = ControllerState.at_rest(0)
+        self._next = self._state  # after the last computed command, which may not have been sent
         self._derived: ControlStep | None
         self._anchored: Scheme | None = None
         self.mode = mode
@@ -120,7 +121,7 @@ class Controller:
             self._derived = None
         object.__setattr__(self, name, value)
         if name == "robot" and self._state.past.shape[1] != value.dof:
-            self._state = ControllerState(value.dof)
+            self._state = ControllerState.at_rest(value.dof)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in _DERIVED}
@@ -134,6 +135,7 @@ class Controller:
         twin = type(self).__new__(type(self))
         twin.__setstate__(self.__getstate__())
         twin._state = copy.deepcopy(self._state)
+        twin._next = twin._state
         twin.solver = copy.copy(self.solver)
         return twin
 
@@ -144,13 +146,15 @@ class Controller:
 
     @delay.setter
     def delay(self, seconds: float) -> None:
-        self._state.delay = seconds
+        self._state = self._state._replace(delay=seconds)
 
     def step(
         self,
         q: ArrayLike,
         t: float,
         target: Target | Mapping[str, Target] | None = None,
+        *,
+        dt: float | None = None,
     ) -> Command:
         """Compute the command for joint positions at a time; it counts as sent when it is returned.
 
@@ -158,28 +162,25 @@ class Controller:
             q: Measured joint positions [rad], (n,).
             t: Time [s]; the reference is asked for the time `delay` before it.
             target: Target in place of the reference's; for tasks towards the next one `ahead` too.
+            dt: Period that this command is for [s], in a loop whose periods differ; None takes the
+                controller's. With limits on acceleration and jerk a longer one than the last may
+                leave no command that keeps them all.
 
         Returns:
             The command.
 
         Raises:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
-                there is neither reference nor target.
+                there is neither reference nor target; or `dt` is not above 0.
         """
-        state = self._state
-        before = state.past
-        delay = state.delay
+        before = self._state
         try:
             with self._lock:
-                command = self._compute(q, t, target)
-                if command.action is not Action.NONE:
-                    state.delay += self.dt * (1.0 - command.fraction)
-                state.commit()
+                command = self._compute(q, t, target, dt)
+                self._state = self._next
                 return command
-        except BaseException:
-            if state.past is not before:  # interrupted before anybody got the command
-                state.commit()
-            state.delay = delay
+        except BaseException:  # interrupted before anybody got the command
+            self._state = before
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -191,41 +192,54 @@ class Controller:
             target: Targets by frame name, in place of the reference's.
         """
         with self._lock:
-            return self._compute(q, t, target)
+            return self._compute(q, t, target, None)
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
-        self._state.send(dq)
-        self._state.delay += self.dt * (1.0 - fraction)
-        self._state.commit()
+        past = self._next.past.copy()
+        past[BEFORE] = self._state.past[LAST]
+        past[LAST] = dq
+        past[REST] = 0.0
+        delay = self._state.delay + self.dt * (1.0 - fraction)
+        self._state = self._next._replace(past=past, delay=delay)
 
     def _compute(
         self,
         q: ArrayLike,
         t: float,
         target: Target | Mapping[str, Target] | None,
+        dt: float | None,
     ) -> Command:
         step = self._derived
         state = self._state
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
+            state = self._state
+        if dt is None:
+            dt = self.dt
+        if dt != step.dt:
+            step.set_period(checks.positive("dt", dt))
         layout = step.layout
         joints: Any = q if _is_plain(q, layout.dof) else checks.finite_array("q", q, (layout.dof,))
         row = np.empty(layout.width)
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - state.delay, target)
+            layout.targets(row)[:] = self.targets(t - state.delay, target, dt)
         program = step.program
         program.kinematics.update(joints)
         if program.refreshed:
-            program.refresh(joints, state.past[LAST], layout.targets(row), t, self.dt)
+            program.refresh(joints, state.past[LAST], layout.targets(row), t, dt)
         state.past[Q] = joints
-        if self._answer(step, row, t, samples) and self._is_stoppable(step):
+        following = state.past.copy()
+        if self._answer(step, row, t, samples, following):
+            self._next = ControllerState(following, state.delay, True, False, state.halted)
             return Command(row, layout)
-        return self._yield(step, row)
+        return self._yield(step, row, following)
 
-    def _answer(self, step: ControlStep, row: Vector, t: float, samples: bool) -> bool:
-        """Write the program of a step into a row, and answer it; return whether that was done.
+    def _answer(
+        self, step: ControlStep, row: Vector, t: float, samples: bool, following: Matrix
+    ) -> bool:
+        """Write the program of a step into a row, and answer it by a command that can be stopped.
 
         The network is not asked if the task yielded at the last step, or the arm is halted.
         """
@@ -236,26 +250,32 @@ class Controller:
             row,
             step.arrays,
             state.past,
-            state.following,
+            following,
             _NOTHING if network is None else network,
             (t, state.delay),
             samples,
             asks and network is not None,
         )
-        return self._ask(step, row) if asks and network is None else solved
+        if asks and network is None:
+            solved = self._ask(step, row, following)
+        if not solved or not step.yielding.stop:
+            return solved
+        return bool(guard_step(step.arrays, state.past, following, step.yielding))
 
-    def _ask(self, step: ControlStep, row: Vector) -> bool:
+    def _ask(self, step: ControlStep, row: Vector, following: Matrix) -> bool:
         """Ask a network that is not compiled, or has no state yet, for the answer to a program."""
         layout = step.layout
         qp = QP.from_data(layout.view(row, "program"), layout.sizes)
         if self.mode == "converged":
             solution = self.solver.solve(qp)
         else:
-            solution = self.solver.advance(qp, self.dt)
+            solution = self.solver.advance(qp, step.dt)
         layout.fill(row, solution)
         dq = layout.view(row, "dq")
         dq[:] = layout.view(row, "point")[: layout.dof]
-        self._state.send(dq)
+        following[BEFORE] = following[LAST]
+        following[LAST] = dq
+        following[REST] = 0.0
         return solution.status in (Status.SOLVED, Status.ADVANCED)
 
     def _warm_state(self, step: ControlStep) -> Vector | None:
@@ -268,13 +288,6 @@ class Controller:
         if warm is None and is_projection(solver.network):
             warm = solver.cold_state(sizes)
         return warm
-
-    def _is_stoppable(self, step: ControlStep) -> bool:
-        """Test whether the arm can brake from a command without coming near to an obstacle."""
-        if not step.yielding.stop:
-            return True
-        state = self._state
-        return bool(guard_step(step.arrays, state.past, state.following, step.yielding))
 
     def clear_share(self, q: Vector, dq: Vector) -> float:
         """Return the share of a velocity that brings no pair nearer than promised, or too near.
@@ -290,14 +303,14 @@ class Controller:
             return 1.0
         step.program.kinematics.update(q)
         past = np.zeros_like(self._state.past)
-        following = np.zeros_like(past)
+        following = past.copy()
         for share in TOWARDS:
             following[LAST] = share * dq
             if guard_step(step.arrays, past, following, step.yielding):
                 return share
         return 0.0
 
-    def _yield(self, step: ControlStep, row: Vector) -> Command:
+    def _yield(self, step: ControlStep, row: Vector, following: Matrix) -> Command:
         """Answer a step without a solution as the policy says."""
         state = self._state
         layout = step.layout
@@ -311,34 +324,36 @@ class Controller:
         network = self._warm_state(step)
         if network is None or not is_projection(self.solver.network):
             network = np.zeros(3 * n + m + p)
-        if state.relaxed.size != step.relaxed_size:
-            state.relaxed = np.zeros(step.relaxed_size)
+        relaxed = state.relaxed
+        if relaxed.size != step.relaxed_size:
+            relaxed = np.zeros(step.relaxed_size)
         taken = yield_step(
             row,
             step.arrays,
             state.past,
-            state.following,
+            following,
             network,
             step.yielding,
-            state.relaxed,
+            relaxed,
             action,
         )
-        kind = layout.view(row, "decision")[3]
-        state.yields = ProgramKind.OWN < kind < ProgramKind.STOPPED
         if halted is not None:
             layout.view(row, "blocking")[:] = halted
-        return Command(row, layout, Action(taken))
+        command = Command(row, layout, Action(taken))
+        delay = state.delay + step.dt * (1.0 - command.fraction)
+        yields = ProgramKind.OWN < command.kind < ProgramKind.STOPPED
+        self._next = ControllerState(following, delay, True, yields, halted, relaxed)
+        return command
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
 
         `own` says that the targets are the reference's.
         """
-        state = self._state
         posture = checks.finite_array("q", q, (self.robot.dof,))
         checks.finite("t", t)
         start = Configuration(self.robot, posture)
-        begun = state.begun
+        begun = self._state.begun
         self.anchor(start)
         if not begun:
             warn_if_lagging(self.program, self.mode, stacklevel=4)
@@ -350,12 +365,13 @@ class Controller:
         """Return the control step, laid out anew after a change of the settings."""
         step = self._derived
         if step is None:
-            duration = 0.0 if self.mode == "converged" else self.dt
             scheme = self.scheme
             if getattr(type(scheme), "build_qp", None) is not Scheme.build_qp:
                 scheme = composed(scheme, self.robot, self._state.past[Q])
             program = scheme.program(self.robot)
-            step = ControlStep(program, self._seen() or {}, self.solver, self.dt, duration == 0.0)
+            step = ControlStep(
+                program, self._seen(self.dt) or {}, self.solver, self.dt, self.mode == "converged"
+            )
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
         return step
@@ -403,14 +419,15 @@ class Controller:
             return
         if command is None:
             n, m, _ = step.layout.sizes
-            self._state.halted = np.zeros(n + m)
+            self._state = self._state._replace(halted=np.zeros(n + m))
         elif step.yields:
-            self._state.halted = step.layout.view(command.row, "blocking").copy()
+            blocking = step.layout.view(command.row, "blocking").copy()
+            self._state = self._state._replace(halted=blocking)
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""
-        state = self._state
-        if not state.begun:
+        first = not self._state.begun
+        if first:
             warn_if_outside(start, stacklevel=5)
         anchored = getattr(self.scheme, "anchored", None)
         if anchored is not None:
@@ -418,12 +435,12 @@ class Controller:
             if scheme is not self.scheme:
                 self.scheme = scheme
         self._anchored = self.scheme
-        state.past[Q] = start.q
-        if not state.begun:
+        self._state.past[Q] = start.q
+        if first:
             warn_if_too_few(self.program, stacklevel=5)
             warn_if_unstable(self.program, self.dt, stacklevel=5)
             warn_if_unwatched(self.scheme, self.robot, stacklevel=5)
-        state.begun = True
+        self._state = self._state._replace(begun=True)
 
     def warn_if_far(
         self, start: Configuration, t: float, stacklevel: int, refuses: bool = False
@@ -440,7 +457,7 @@ class Controller:
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
         self.solver.reset()
-        self._state.reset()
+        self._state = ControllerState.at_rest(self.robot.dof, self._state.begun)
         self._derived = None
 
     def warm_up(self, q: ArrayLike | None = None, t: float | None = None) -> None:
@@ -453,7 +470,7 @@ class Controller:
                 the first step warns.
         """
         twin = copy.copy(self)
-        twin._state.begun = True  # warnings are for the first step
+        twin._state = twin._state._replace(begun=True)  # warnings are for the first step
         home = self.robot.start_posture()
         conf = Configuration(self.robot, home)
         frames = {name: conf.frame(name) for name in twin.program.target_frames}
@@ -469,14 +486,23 @@ class Controller:
             twin.step(home, 0.0, far)
         if q is None:
             return
-        state = self._state
-        begun = state.begun
-        state.begun = begun or t is None
+        begun = self._state.begun
+        self._state = self._state._replace(begun=begun or t is None)
         self._prepare(q, 0.0 if t is None else t, self.reference is not None)
-        state.begun = begun or t is not None
+        self._state = self._state._replace(begun=begun or t is not None)
 
-    def targets(self, t: float, target: Target | Mapping[str, Target] | None = None) -> Matrix:
-        """Return the targets of a time of the reference's clock [s], (k, 18), or those given.
+    def targets(
+        self,
+        t: float,
+        target: Target | Mapping[str, Target] | None = None,
+        dt: float | None = None,
+    ) -> Matrix:
+        """Return the targets of a time of the reference's clock, (k, 18), or those given.
+
+        Args:
+            t: Time [s].
+            target: Targets in place of the references'.
+            dt: Control period [s]; None takes the controller's.
 
         Raises:
             InvalidInputError: A frame that a task tracks has no reference, or another one has.
@@ -485,20 +511,20 @@ class Controller:
         frames = program.target_frames
         if target is not None:
             return np.array(targets_of(self.robot.tip, frames, target))
-        paths = paths_of(self._seen(), self.robot.tip, frames).values()
+        paths = paths_of(self._seen(dt or self.dt), self.robot.tip, frames).values()
         found = np.array([path.base for path in paths])
         for path, row in zip(paths, found, strict=True):
             path.move(t, row)
         return found
 
-    def _seen(self) -> Mapping[str, Reference] | None:
+    def _seen(self, dt: float) -> Mapping[str, Reference] | None:
         """Return the references by frame name, a period ahead if the scheme asks for it."""
         if self.reference is None:
             return None
         given = by_frame(self.reference, self.robot.tip)
         if not getattr(self.scheme, "ahead", False):
             return given
-        return {name: path.ahead(self.dt) for name, path in given.items()}
+        return {name: path.ahead(dt) for name, path in given.items()}
 
     def placement(self, q: Vector) -> Vector:
         """Compute the placement of the first tracked frame at joint positions q (n,), (12,)."""

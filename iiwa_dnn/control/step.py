@@ -54,6 +54,8 @@ class ControlStep:
     Attributes:
         program: The scheme laid out for the robot.
         layout: Columns of the rows that are written.
+        names: Names of the limits.
+        dt: Control period [s].
         arrays: Arrays that stay the same from step to step.
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
@@ -81,10 +83,10 @@ class ControlStep:
             converged: Whether the network settles at every step.
         """
         self.program = program
-        self._dt = dt
+        self.dt = dt
         frames = program.target_frames
-        names = LimitNames(program, dt)
-        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), names)
+        self.names = LimitNames(program, dt)
+        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), self.names)
         self.has_network = self._add_network(solver, 0.0 if converged else dt)
         self.samples = self._add_paths(references) and not program.reads_targets
         self.arrays = program.arrays(dt)
@@ -93,6 +95,22 @@ class ControlStep:
         self.run = self._entry()
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
         self.relaxed_size = relaxed_size(program.sizes)
+
+    def set_period(self, dt: float) -> None:
+        """Take another control period [s], without laying anything out anew.
+
+        Raises:
+            InvalidInputError: With a jerk limit, a joint's range is too short to turn round in.
+        """
+        program = self.program
+        if program.rate_limits is not None:
+            check_ranges(program.rate_limits.constants(program.robot), 1.0 / dt)
+        self.dt = dt
+        self.names.dt = dt
+        self.arrays = self.arrays._replace(rate=1.0 / dt)
+        self.yielding = self.yielding._replace(dt=dt)
+        if self.has_network:  # 0 where the network settles
+            program.constants[self._duration_at] = dt * self._duration_rate
 
     @property
     def yields(self) -> bool:
@@ -112,6 +130,8 @@ class ControlStep:
         if program.rate_limits is not None:
             # A program that a few systems do not solve most likely has no solution.
             answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
+        self._duration_at = program.constants.size + DURATION
+        self._duration_rate = answer.constants[DURATION] / self.dt
         program.append(answer.address, answer.constants, answer.rates)
         return True
 
@@ -122,7 +142,7 @@ class ControlStep:
         paths = [path.along if isinstance(path, Ahead) else path for path in seen]
         if len(paths) < len(frames) or not all(path.compiled for path in paths):
             return False
-        if any(isinstance(path, Ahead) and path.dt != self._dt for path in seen):
+        if any(isinstance(path, Ahead) and path.dt != self.dt for path in seen):
             return False
         for path, other in zip(paths, seen, strict=True):
             constants = np.concatenate([path.base, path.constants])

@@ -23,12 +23,16 @@ _CLOSE = 1e-9
 
 
 class LimitNames:
-    """Names of the bounds and inequality rows of a controller's programs."""
+    """Names of the bounds and inequality rows of a controller's programs.
+
+    Attributes:
+        dt: Control period [s].
+    """
 
     def __init__(self, program: StepProgram, dt: float) -> None:
         """Take the limits of a step program and its control period [s]."""
         self._settings = program.settings()
-        self._dt = dt
+        self.dt = dt
         self._limits = np.vstack(
             [program.robot.limits[:3], np.full((3, program.robot.dof), np.inf)]
         )
@@ -56,7 +60,7 @@ class LimitNames:
             crossed = bounds[0, i] > bounds[1, i]  # such bounds are others' than the robot's
             value = bounds[1, i] if sides[i] > 0.0 else bounds[0, i]
             sign = 1.0 if sides[i] > 0.0 else -1.0
-            kind = POSITION if crossed else bound_kind(value, sign, past, self._limits, i, self._dt)
+            kind = POSITION if crossed else bound_kind(value, sign, past, self._limits, i, self.dt)
             found[i] = int(sign) * kind
         return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 
 import numpy as np
@@ -201,3 +202,26 @@ def test_a_network_without_a_compiled_form_serves_the_loop() -> None:
     solver = DNNSolver(PrimalDualNetwork(), tol=1e-9)
     other = loop(Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT, solver=solver), 5)
     np.testing.assert_allclose(other, quick, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["converged", "continuous"])
+def test_a_loop_that_jitters_says_the_period_of_each_step(mode) -> None:
+    random = np.random.default_rng(0)
+    scheme = DoubleIndicator(home=PAPER_Q0)
+    told = Controller(paper_robot(), scheme, heart(), dt=DT, mode=mode)
+    told.step(PAPER_Q0, 0.0)
+    laid_out = told.control_step
+    q = np.array(PAPER_Q0)
+    t = 0.0
+    for period in DT * random.uniform(0.5, 1.5, 300):
+        anew = Controller(paper_robot(), scheme, heart(), dt=period, mode=mode)
+        anew.solver = copy.copy(told.solver)
+        command = told.step(q, t, dt=period)
+        expected = anew.step(q, t)
+        np.testing.assert_allclose(command.dq, expected.dq, rtol=0, atol=1e-12)
+        q = q + period * command.dq
+        t += period
+    assert told.control_step is laid_out
+    assert np.linalg.norm(dh_pose(q)[0] - heart().at(t).position) < 5e-5
+    with pytest.raises(InvalidInputError, match=r"^dt\b"):
+        told.step(q, t, dt=0.0)

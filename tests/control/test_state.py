@@ -71,30 +71,6 @@ def test_an_attribute_that_is_set_in_motion_keeps_the_last_command(name: str) ->
     assert np.abs(after - before).max() <= ACCELERATION * DT * (1.0 + 1e-9)
 
 
-def test_a_command_that_was_never_returned_does_not_count(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    controller, q, k = moving()
-    last = controller.step(q, k * DT).dq.copy()
-    q = q + DT * last
-    monkeypatch.setattr(
-        "iiwa_dnn.control.state.ControllerState.commit", _commit_and_interrupt, raising=True
-    )
-    with pytest.raises(KeyboardInterrupt):
-        controller.step(q, (k + 1) * DT)
-    monkeypatch.undo()
-    again = controller.step(q, (k + 1) * DT).dq
-    assert np.abs(again - last).max() <= ACCELERATION * DT * (1.0 + 1e-9)
-
-
-def _commit_and_interrupt(state: Any) -> None:
-    if not _commit_and_interrupt.__dict__.pop("done", False):
-        state.past, state.following = state.following, state.past
-        _commit_and_interrupt.__dict__["done"] = True
-        raise KeyboardInterrupt
-    state.past, state.following = state.following, state.past
-
-
 def test_interrupts_at_any_time_keep_the_acceleration_limit() -> None:
     controller, q, k = moving()
     sent = controller.step(q, k * DT).dq.copy()
