@@ -133,25 +133,3 @@ def test_moments_of_inertia_that_no_body_has_are_raised() -> None:
     inertia = root.find("link/inertial/inertia")
     assert inertia is not None
     assert [float(inertia.get(k, "0")) for k in ("ixx", "iyy", "izz")] == [1.0, 0.51, 0.51]
-
-
-def test_meshes_are_read_and_missing_ones_are_not_missed(tmp_path: Path) -> None:
-    (tmp_path / "meshes").mkdir()
-    solid = "\n".join(
-        f"facet normal 0 0 0\nouter loop\n{''.join(f'vertex {v}{chr(10)}' for v in face)}"
-        "endloop\nendfacet"
-        for face in (
-            ("0 0 0", "0 1 0", "1 0 0"), ("0 0 0", "1 0 0", "0 0 1"),
-            ("0 0 0", "0 0 1", "0 1 0"), ("1 0 0", "0 1 0", "0 0 1"),
-        )
-    )  # fmt: skip
-    written(tmp_path / "meshes", "corner.stl", f"solid corner\n{solid}\nendsolid corner\n")
-    text = """<robot name="one"> <link name="base"/> <link name="link"> <visual>
-      <geometry> <mesh filename="package://meshes/corner.stl" scale="0.1 0.1 0.2"/> </geometry>
-      </visual> </link> <joint name="joint" type="continuous"> <parent link="base"/>
-      <child link="link"/> <origin xyz="0 0 0.4"/> <axis xyz="0 0 1"/> </joint> </robot>"""
-    (mesh,) = visual_meshes(d.load_robot(written(tmp_path, "one.urdf", text)))
-    assert mesh.faces.shape == (4, 3)
-    np.testing.assert_allclose(
-        np.ptp(mesh.corners[mesh.faces].reshape(-1, 3), axis=0), [0.1, 0.1, 0.2]
-    )

@@ -1,7 +1,6 @@
 """The atlas: its schemes, its runs, what becomes of their numbers, and the command."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,15 +10,10 @@ from helpers_qp import known_qp
 from iiwa_dnn import (
     QP,
     Configuration,
-    Cost,
     DNNSolver,
-    PositionTask,
-    Scheme,
-    Step,
     Target,
 )
 from iiwa_dnn.app.main import main
-from iiwa_dnn.networks import Flow, Network
 from iiwa_dnn.studies import atlas, atlas_report, paper
 from iiwa_dnn.studies.runs import paper_robot
 
@@ -68,15 +62,6 @@ def test_disturbances_are_as_large_as_they_are_said_to_be() -> None:
     assert drawn["white"].std() == pytest.approx(0.01, rel=0.05)
     assert drawn["measurement"].std() == pytest.approx(1e-4, rel=0.05)
     assert not drawn["none"].any()
-
-
-def test_an_integral_rejects_what_is_constant() -> None:
-    values = [
-        atlas.measure(atlas.Cell(name, disturbance="constant", share=0.95, most=1))
-        for name in ("zeroing, Euler", "zeroing, noise-tolerant")
-    ]
-    plain, tolerant = (value["residual"][0] for value in values)
-    assert tolerant < 0.01 * plain
 
 
 def test_the_rows_towards_the_next_target_leave_no_floor() -> None:
@@ -132,40 +117,6 @@ def test_work_is_that_of_the_arrays_that_are_multiplied() -> None:
     assert atlas.NETWORKS["one-layer, corrected"].work(sizes) == (0.0, 4 * (4 + 2 + 2))
     assert atlas.NETWORKS["dual"].work(sizes)[1] == 2 * 3 * 3
     assert atlas.NETWORKS["zeroing, Euler"].work(sizes)[1] == 32 + 18 + 18
-
-
-@dataclass(frozen=True)
-class Damped(Network):
-    """A network added by docs/atlas.md and docs/own_network.md alone: A^T (A x - b) damps x."""
-
-    def state_size(self, qp: QP) -> int:
-        return qp.q.size + qp.b.size
-
-    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        n = qp.q.size
-
-        def rates(s: np.ndarray) -> np.ndarray:
-            over = qp.A @ s[:n] - qp.b
-            gradient = qp.P @ s[:n] + qp.q + qp.A.T @ (s[n:] + over)
-            return np.concatenate([np.clip(s[:n] - gradient, qp.lb, qp.ub) - s[:n], over])
-
-        return Flow(rates)
-
-
-class Slow(Cost):
-    """A cost added by docs/own_scheme.md alone."""
-
-    def quadratic(self, step: Step) -> tuple[np.ndarray, np.ndarray]:
-        return np.diag(np.arange(1.0, 8.0)), np.zeros(7)
-
-
-def test_a_network_and_a_scheme_are_added_by_a_line_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(atlas, "DURATION", 0.1)
-    scheme = Scheme([Slow()], [PositionTask()])
-    monkeypatch.setitem(atlas.SCHEMES, "slow", lambda: scheme)
-    monkeypatch.setitem(atlas.NETWORKS, "damped", atlas.settled(Damped()))
-    values = atlas.measure(atlas.Cell("damped", "slow"))
-    assert values["rms_error_m"][0] < 1e-4
 
 
 OUTSIDE = """

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import ttest_rel
 
-from helpers_records import make_record
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.studies.statistics import (
     Estimate,
     estimate,
@@ -54,37 +52,9 @@ def test_a_paired_difference_sees_what_the_shared_noise_hides() -> None:
     np.testing.assert_allclose([paired.low, paired.high], other, rtol=1e-12)
 
 
-def test_paired_differences_of_made_up_records() -> None:
-    """Records whose largest error is 1 to 5 mm without the filter and 10 % less with it."""
-    errors = np.arange(1.0, 6.0) * 1e-3
-
-    def largest(error: float) -> float:
-        position = np.zeros((11, 3))
-        position[5] = (0.6 * error, 0.0, -0.8 * error)
-        metric: float = compute_metrics(make_record(position=position))["max_position_error_m"]
-        return metric
-
-    found = paired_difference([largest(0.9 * e) for e in errors], [largest(e) for e in errors])
-    assert found.mean == pytest.approx(-0.3e-3, rel=1e-12)
-    # The differences are 0.1 to 0.5 mm: standard deviation sqrt(0.025) mm; t of 4 is 2.776445.
-    assert found.half_width == pytest.approx(2.776445 * np.sqrt(0.025 / 5.0) * 1e-3, rel=1e-6)
-    assert found.sign == -1
-
-
-def test_signs() -> None:
-    assert Estimate(1.0, 0.5, 9).sign == 1
-    assert Estimate(-1.0, 0.5, 9).sign == -1
-    assert Estimate(0.1, 0.5, 9).sign == 0
-    assert [Estimate.exact(value).sign for value in (-2.0, 0.0, 2.0)] == [-1, 0, 1]
-
-
 def test_a_constant_difference_has_no_width() -> None:
     found = paired_difference([3.0, 4.0, 5.0], [1.0, 2.0, 3.0])
     assert (found.mean, found.half_width, found.sign) == (2.0, 0.0, 1)
-
-
-def test_an_estimate_in_json() -> None:
-    assert Estimate(2.0, 0.5, 7).to_json() == {"mean": 2.0, "low": 1.5, "high": 2.5, "samples": 7}
 
 
 def test_a_trend_is_the_sign_of_the_pairs_in_order_minus_those_out_of_order() -> None:

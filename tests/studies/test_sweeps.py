@@ -63,12 +63,6 @@ def test_answers_come_in_the_order_of_the_cells_and_are_kept(tmp_path: Path, log
     assert finished(folder).items() >= kept.items()
 
 
-def test_a_changed_setting_is_a_new_cell(tmp_path: Path, log: Path) -> None:
-    sweep(draw, cells(log, 2), tmp_path, workers=1)
-    sweep(draw, cells(log, 2, sleep=0.0), tmp_path, workers=1)
-    assert sorted(computed(log)) == [0, 0, 1, 1]
-
-
 def test_a_changed_package_or_task_is_a_new_cell(
     tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -160,16 +154,6 @@ def test_an_error_names_the_cell(tmp_path: Path) -> None:
 def test_a_worker_with_another_version_refuses() -> None:
     with pytest.raises(IiwaDnnError, match="another version"):
         sweeps._compute(draw, {}, "other")
-
-
-def test_one_bar_for_the_whole_sweep(
-    tmp_path: Path, log: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    sweep(draw, cells(log, 3), tmp_path, workers=1)
-    assert "3/3" in capsys.readouterr().err
-    sweep(draw, cells(log, 3), tmp_path, workers=1, quiet=True)
-    assert capsys.readouterr().err == ""
 
 
 @pytest.fixture
