@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from iiwa_dnn import QP, InvalidInputError
+from iiwa_dnn import QP
 from iiwa_dnn.networks import NoiseSuppressingNetwork
 from iiwa_dnn.networks.kkt_system import EPSILON
 
@@ -90,10 +90,3 @@ def test_steps_below_the_stable_one_settle_and_others_do_not() -> None:
         for _ in range(500):
             state = state + share * limit * rates(state)
         assert bool(np.abs(rates(state)[3:]).max() < 1e-9) is settles
-
-
-def test_parameters_that_make_no_sense_are_named() -> None:
-    with pytest.raises(InvalidInputError, match="proportional"):
-        NoiseSuppressingNetwork(proportional=0.0)
-    with pytest.raises(InvalidInputError, match="noise"):
-        NoiseSuppressingNetwork(noise=np.inf)

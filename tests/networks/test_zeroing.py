@@ -255,20 +255,3 @@ def test_drives_an_arm_and_its_record_names_it() -> None:
     error = np.linalg.norm(record.position - record.position_desired, axis=1)
     assert error[-1] < 2e-5
     assert "PowerSigmoid" in str(record.settings)
-
-
-@pytest.mark.parametrize(
-    ("change", "name"),
-    [({"form": "other"}, "form"), ({"integral": -1.0}, "integral"), ({"growth": -1}, "growth")],
-)
-def test_wrong_parameters_are_named(change: dict, name: str) -> None:
-    with pytest.raises(InvalidInputError, match=name):
-        ZeroingNetwork(**change)
-
-
-@pytest.mark.parametrize(
-    "make", [lambda: SignBiPower(1.0), lambda: FixedTime(upper_power=1.0), lambda: Linear(1)]
-)
-def test_wrong_activations_are_refused(make) -> None:
-    with pytest.raises((InvalidInputError, TypeError)):
-        make()

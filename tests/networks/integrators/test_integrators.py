@@ -57,30 +57,6 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", ["heart", "bounds"])
-@pytest.mark.parametrize(
-    ("project", "substeps_of"),
-    [(True, ExplicitEuler), (False, ExplicitEuler), (True, ImplicitEuler), (False, ImplicitEuler)],
-)
-def test_order_by_regression_against_scipy(name: str, project: bool, substeps_of: type) -> None:
-    qp, duration = CASES[name], 2.0
-    exact = flow(name, duration, project)
-    network = ProjectionNetwork(primal_projection=project)
-    counts = np.array([100, 200, 400, 800])
-    errors = []
-    for count in counts:
-        if substeps_of is ExplicitEuler:
-            integrator = ExplicitEuler(substeps=int(count))
-        else:
-            integrator = ImplicitEuler(step=duration / count)
-        state = network.initial_state(qp)
-        integrator.advance(network, qp, state, duration)
-        errors.append(np.abs(state - exact).max())
-    slope = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert slope == pytest.approx(substeps_of.order, abs=0.15)
-    assert errors[-1] < 0.02 * np.abs(exact).max()
-
-
 def test_computed_substeps_follow_the_flow() -> None:
     qp = CASES["heart"]
     network, state = ProjectionNetwork(), ProjectionNetwork().initial_state(qp)
@@ -152,14 +128,10 @@ def test_a_flow_of_a_subclass_is_integrated(integrator: Integrator, project: boo
     assert DNNSolver(network).compiled_answer(qp.sizes) is None
 
 
-class Subclass(ProjectionNetwork):
-    """A subclass that changes nothing stays compiled."""
-
-
 def test_a_subclass_that_changes_nothing_stays_compiled() -> None:
-    sizes = CASES["bounds"].sizes
-    assert DNNSolver(Subclass()).compiled_answer(sizes) is not None
-    assert DNNSolver(Subclass()).compiled_answer(sizes, 1e-4) is not None
+    solver = DNNSolver(type("Subclass", (ProjectionNetwork,), {})())
+    for duration in (0.0, 1e-4):
+        assert solver.compiled_answer(CASES["bounds"].sizes, duration) is not None
 
 
 @pytest.mark.parametrize(
@@ -198,16 +170,3 @@ def test_integrators_and_networks_name_themselves() -> None:
     }  # fmt: skip
     assert Doubled().settings()["name"] == "Doubled"
     json.dumps(ExplicitEuler(np.int64(8)).settings())
-
-
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: ExplicitEuler(substeps=0),
-        lambda: ImplicitEuler(step=0.0),
-        lambda: ImplicitEuler(max_steps=0),
-    ],
-)
-def test_impossible_settings_are_refused(make: object) -> None:
-    with pytest.raises(InvalidInputError):
-        make()

@@ -1,0 +1,416 @@
+"""All networks: fields, derivatives, equilibria and steps, against their sources' equations."""
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import iiwa_dnn
+from benchmarks import programs
+from helpers_qp import known_qp, network_rates
+from iiwa_dnn import (
+    QP,
+    ActivatedNetwork,
+    DNNSolver,
+    DualNetwork,
+    ExplicitEuler,
+    GradientNetwork,
+    ImplicitEuler,
+    InvalidInputError,
+    Network,
+    OneLayerNetwork,
+    PrimalDualNetwork,
+    ProjectionNetwork,
+    SimplifiedDualNetwork,
+    Status,
+    ZeroingNetwork,
+)
+from iiwa_dnn.networks import NoiseSuppressingNetwork
+from iiwa_dnn.networks.activations import Activation, FixedTime, PredefinedTime, SignBiPower
+from iiwa_dnn.networks.admm import AdmmSolver
+from iiwa_dnn.networks.primal_dual import variational
+from iiwa_dnn.studies.paper import START
+
+Array = np.ndarray
+
+
+def dual_rates(qp: QP, u: Array) -> Array:
+    """Zhang, Wang and Xia's equations, row by row."""
+    rows = [*qp.A, *qp.G, *np.eye(qp.q.size)]
+    lower = [*qp.b, *[-np.inf] * qp.h.size, *qp.lb]
+    upper = [*qp.b, *qp.h, *qp.ub]
+    x = np.linalg.inv(qp.P) @ (sum(row * value for row, value in zip(rows, u, strict=True)) - qp.q)
+    values = np.array([row @ x for row in rows])
+    return np.minimum(np.maximum(values - u, lower), upper) - values
+
+
+def simplified_dual_rates(qp: QP, u: Array) -> Array:
+    """x of a state minimises the cost less u^T E x on the equalities: one linear system."""
+    n, m, p = qp.sizes
+    rows = np.vstack([qp.G, np.eye(n)])
+    whole = np.block([[qp.P, qp.A.T], [qp.A, np.zeros((p, p))]])
+    x = np.linalg.solve(whole, np.concatenate([rows.T @ u - qp.q, qp.b]))[:n]
+    lower, upper = np.r_[np.full(m, -np.inf), qp.lb], np.r_[qp.h, qp.ub]
+    return np.clip(rows @ x - u, lower, upper) - rows @ x
+
+
+def products(qp: QP, u: Array) -> tuple[Array, Array, Array]:
+    """H u + c of the variational inequality, part by part."""
+    n, _, p = qp.sizes
+    x, y, z = u[:n], u[n : n + p], u[n + p :]
+    return qp.P @ x + qp.q + qp.A.T @ y + qp.G.T @ z, qp.b - qp.A @ x, qp.h - qp.G @ x
+
+
+def projected(qp: QP, u: Array, alpha: float) -> Array:
+    n, _, p = qp.sizes
+    aim = u - alpha * np.concatenate(products(qp, u))
+    return np.r_[np.clip(aim[:n], qp.lb, qp.ub), aim[n : n + p], np.maximum(aim[n + p :], 0.0)]
+
+
+def primal_dual_rates(qp: QP, u: Array) -> Array:
+    """Zhang, Ge and Lee's equations, with (I + H^T) e written out."""
+    n, _, p = qp.sizes
+    e = projected(qp, u, 1.0) - u
+    x, y, z = e[:n], e[n : n + p], e[n + p :]
+    turned = [qp.P @ x - qp.A.T @ y - qp.G.T @ z, qp.A @ x, qp.G @ x]
+    return e + np.concatenate(turned)
+
+
+def one_layer_rates(qp: QP, u: Array, corrected: bool = True) -> Array:
+    """Xia and Wang's equation, and Tseng's correction."""
+    alpha = 0.5 / np.linalg.norm(variational(qp)[0], 2)
+    v = projected(qp, u, alpha)
+    change = np.concatenate(products(qp, u)) - np.concatenate(products(qp, v))
+    return v - u + (alpha * change if corrected else 0.0)
+
+
+def activated_rates(qp: QP, u: Array) -> Array:
+    inner = dual_rates(qp, u)
+    size = np.linalg.norm(inner)
+    return inner / size * (size**0.5 + size**2)
+
+
+SOURCES: dict[str, tuple[Network, Callable[..., Array]]] = {
+    "projection": (ProjectionNetwork(), network_rates),
+    "free": (
+        ProjectionNetwork(primal_projection=False),
+        lambda qp, u: network_rates(qp, u, project=False),
+    ),
+    "dual": (DualNetwork(), dual_rates),
+    "simplified dual": (SimplifiedDualNetwork(), simplified_dual_rates),
+    "primal-dual": (PrimalDualNetwork(), primal_dual_rates),
+    "one-layer": (OneLayerNetwork(), one_layer_rates),
+    "uncorrected": (
+        OneLayerNetwork(corrected=False),
+        lambda qp, u: one_layer_rates(qp, u, corrected=False),
+    ),
+    "activated": (ActivatedNetwork(activation=FixedTime()), activated_rates),
+}
+OTHERS = ["dual", "primal-dual"]
+LINEAR = QP(np.diag([1.0, 2.0, 4.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
+MATRIX = np.block([[LINEAR.P, LINEAR.A.T], [LINEAR.A, np.zeros((1, 1))]])
+
+
+@pytest.fixture(params=SOURCES)
+def name(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def test_rates_are_the_sources_equations(name: str) -> None:
+    rng, (network, reference) = np.random.default_rng(0), SOURCES[name]
+    for case in range(20):
+        qp, _ = known_qp(rng, 6, 2, case % 7, inequalities=case % 4)
+        qp.lb[0], qp.ub[1] = -np.inf, np.inf
+        state = 2.0 * rng.standard_normal(network.state_size(qp))
+        np.testing.assert_allclose(network.rates(qp, state), reference(qp, state), atol=1e-9)
+
+
+def test_derivatives_by_finite_differences(name: str) -> None:
+    rng, (network, _) = np.random.default_rng(1), SOURCES[name]
+    network = getattr(network, "network", network)  # of an activated one: at a constant speed
+    for case in range(8):
+        qp, _ = known_qp(rng, 5, 2, case % 6, inequalities=3)
+        flow, state = network.flow(qp), 2.0 * rng.standard_normal(network.state_size(qp))
+        assert flow.jacobian is not None
+        columns = [
+            (flow.rates(state + step) - flow.rates(state - step)) / 2e-6
+            for step in 1e-6 * np.eye(state.size)
+        ]
+        expected = np.array(columns).T
+        np.testing.assert_allclose(flow.jacobian(state), expected, rtol=1e-5, atol=1e-6)
+
+
+def test_at_rest_exactly_at_kkt_points(name: str) -> None:
+    rng, (network, reference) = np.random.default_rng(2), SOURCES[name]
+    solver = DNNSolver(getattr(network, "network", network))
+    for case in range(20):
+        qp, x = known_qp(rng, 6, 2, case % 7, inequalities=3)
+        solver.reset()
+        solution = solver.solve(qp)
+        assert solution.found
+        assert np.abs(solution.x - x).max() < 1e-6
+        assert np.abs(solver.network.rates(qp, solver.state)).max() < 1e-8
+        moved = solver.state + 1e-2 * rng.standard_normal(solver.state.size)
+        assert np.abs(reference(qp, moved)).max() > 1e-5
+
+
+def test_explicit_steps_are_those_of_the_rates(name: str) -> None:
+    rng, (network, reference) = np.random.default_rng(7), SOURCES[name]
+    qp, _ = known_qp(rng, 5, 2, 2, inequalities=2)
+    state = rng.standard_normal(network.state_size(qp))
+    expected = state.copy()
+    for _ in range(7):
+        expected += 0.01 * reference(qp, expected)
+    assert ExplicitEuler(substeps=7).advance(network, qp, state, 0.07) == 7
+    np.testing.assert_allclose(state, expected, rtol=1e-9)
+    if "projection" not in name and name != "free":
+        assert DNNSolver(network).compiled_answer(qp.sizes, 0.1) is None  # set up in Python
+
+
+MANY_BOUNDS = known_qp(np.random.default_rng(3), 5, 2, 2, inequalities=2)[0]
+
+
+@cache
+def end_of_flow(name: str) -> Array:
+    """The state after one unit of time from zero: independent field, independent integrator."""
+    network, reference = SOURCES[name]
+    start = np.zeros(network.state_size(MANY_BOUNDS))
+    options = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13, "max_step": 0.02}
+    return solve_ivp(lambda _, s: reference(MANY_BOUNDS, s), (0.0, 1.0), start, **options).y[:, -1]
+
+
+@pytest.mark.parametrize("case", ["projection", "free", *OTHERS])
+@pytest.mark.parametrize("integrator", [ExplicitEuler, ImplicitEuler])
+def test_order_by_regression_against_scipy(case: str, integrator: type) -> None:
+    network, exact = SOURCES[case][0], end_of_flow(case)
+    counts, errors = np.array([400, 800, 1600]), []
+    for count in counts:
+        explicit = integrator is ExplicitEuler
+        tried = ExplicitEuler(int(count)) if explicit else ImplicitEuler(1.0 / count)
+        state = np.zeros(exact.size)
+        tried.advance(network, MANY_BOUNDS, state, 1.0)
+        errors.append(np.abs(state - exact).max())
+    assert -np.polyfit(np.log(counts), np.log(errors), 1)[0] == pytest.approx(1.0, abs=0.2)
+    assert errors[-1] < 0.02 * np.abs(exact).max()
+
+
+@pytest.mark.parametrize(
+    "network", [PrimalDualNetwork(), OneLayerNetwork(), OneLayerNetwork(share=0.8)], ids=repr
+)
+def test_stable_steps_get_nearer_to_the_solution(network: PrimalDualNetwork) -> None:
+    rng = np.random.default_rng(2)
+    for case in range(10):
+        qp, _ = known_qp(rng, 5, 2, case % 4, inequalities=2)
+        solver = DNNSolver(PrimalDualNetwork())
+        assert solver.solve(qp).found
+        rest = solver.state
+        alpha = getattr(network, "share", 1.0) / np.linalg.norm(variational(qp)[0], 2)
+        step = network.stable_step(qp)
+        for size in 3.0 * rng.random(20):
+            u = rest + size * rng.standard_normal(rest.size)
+            rates = network.rates(qp, u)
+            if isinstance(network, OneLayerNetwork):  # as proved
+                residual = projected(qp, u, alpha) - u
+                assert (u - rest) @ rates <= -(1 - network.share) * residual @ residual + 1e-9
+            assert np.linalg.norm(u + step * rates - rest) <= np.linalg.norm(u - rest) + 1e-9
+
+
+@pytest.mark.parametrize("network", [DualNetwork(), SimplifiedDualNetwork()], ids=repr)
+def test_the_dual_networks_stable_step_is_that_of_all_rows(network: DualNetwork) -> None:
+    qp, _ = known_qp(np.random.default_rng(9), 5, 2, 2, inequalities=3)
+    zero = np.zeros(network.state_size(qp))
+    free = QP(qp.P, qp.q, qp.G, np.full(3, -1e9), qp.A, qp.b, qp.lb + 1e9, qp.ub + 1e9)
+    # Every row is at a limit, so the derivative is minus E M E^T.
+    values = np.linalg.eigvalsh(network.flow(free).derivative(zero))
+    assert network.stable_step(qp) == pytest.approx(-2.0 / values[0])
+
+
+def test_the_projection_networks_stable_step_separates_decay_from_growth() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(50):
+        # Idle bounds: the network is linear, so numpy's eigenvalues say what is stable.
+        n, p = 7, 4
+        root = rng.standard_normal((n, n))
+        P, A = root @ root.T / n + 0.2 * np.eye(n), rng.standard_normal((p, n))
+        linear = np.block([[-P, -A.T], [A, np.zeros((p, p))]])
+        step = ProjectionNetwork().stable_step(QP(P, np.zeros(n), A=A, b=np.zeros(p)))
+        spread = np.abs(np.linalg.eigvals(np.eye(n + p) + 0.999 * step * linear))
+        assert spread.max() < 1.0
+    # With P = I it is sharp: h sigma^2 < 1 (the paper's own analysis).
+    A = np.diag([2.54, 1.0, 0.2, 0.0])[:3]
+    qp = QP(np.eye(4), np.zeros(4), A=A, b=np.zeros(3))
+    assert ProjectionNetwork().stable_step(qp) == pytest.approx(1.0 / 2.54**2, rel=1e-12)
+    # Rows count that are active, if a state is given; no step is known where the cost is singular.
+    bounds = {"lb": [-1.0, -1.0], "ub": [1.0, 1.0]}
+    qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 0.0]], b=[0.0], **bounds)
+    assert ProjectionNetwork().stable_step(qp, np.zeros(7)) == pytest.approx(1.0)
+    assert ProjectionNetwork().stable_step(qp) == pytest.approx(0.5)
+    singular = QP(np.diag([1.0, 0.0]), np.zeros(2), A=[[1.0, 1.0]], b=[0.0])
+    assert ProjectionNetwork().stable_step(singular) == 0.0
+
+
+def test_infinite_bounds_make_no_nan() -> None:
+    qp = QP(np.eye(2), np.ones(2), lb=[-np.inf, 0.0], ub=[np.inf, np.inf])
+    assert np.isfinite(ProjectionNetwork().rates(qp, np.ones(6))).all()
+
+
+def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
+    network, start = GradientNetwork(), np.array([0.3, -0.2, 0.1, 0.4])
+    rest = np.linalg.solve(MATRIX, np.concatenate([-LINEAR.q, LINEAR.b]))
+    values, vectors = np.linalg.eigh(MATRIX @ MATRIX)
+    rates = network.flow(LINEAR).rates
+    end = solve_ivp(lambda t, s: rates(s), (0, 3.0), start, rtol=1e-9, atol=1e-12).y[:, -1]
+    expected = vectors @ (np.exp(-3.0 * values) * (vectors.T @ (start - rest)))
+    np.testing.assert_allclose(end - rest, expected, atol=1e-6)
+
+
+def test_the_gradient_network_lowers_its_energy_and_rests_at_kkt_points() -> None:
+    rng, network = np.random.default_rng(3), GradientNetwork(form="smooth")
+    zeroing = ZeroingNetwork(form="smooth", integral=1.0)
+    for case in range(3):
+        qp, _ = known_qp(rng, 4, 1, case, inequalities=2)
+        state = np.zeros(network.state_size(qp))
+        ExplicitEuler(substeps=200).advance(ZeroingNetwork(form="smooth"), qp, state, 100.0)
+        assert np.abs(network.rates(qp, state)).max() < 1e-4
+        state, energy = state + rng.standard_normal(state.size), np.inf
+        for _ in range(200):
+            # The integral's rate is the residual.
+            error = zeroing.rates(qp, np.r_[state, 0.0 * state])[state.size :]
+            assert error @ error < energy
+            energy = error @ error
+            state = state + 0.4 * network.stable_step(qp, state) * network.rates(qp, state)
+
+
+@pytest.mark.parametrize("activation", [SignBiPower(), FixedTime(), PredefinedTime(2.0)], ids=repr)
+def test_activated_networks_settle_below_their_bound_from_1000_starts(
+    activation: Activation,
+) -> None:
+    """Equality rows only, where the two constants of the bound are known."""
+    rng = np.random.default_rng(4)
+    qp = QP(np.diag([1.0, 1.5, 2.0]), [1.0, -1.0, 0.5], A=[[1.0, 1.0, 1.0]], b=[0.5])
+    H = variational(qp)[0]
+    network = ActivatedNetwork(network=PrimalDualNetwork(), activation=activation)
+    rest = -np.linalg.solve(H, np.concatenate([qp.q, qp.b]))
+    field = (np.eye(4) + H.T) @ H
+    kappa, c = np.linalg.svd(field)[1][-1], 1.0 / np.linalg.norm(np.eye(4) + H, 2) ** 2
+    away = 10.0 ** rng.uniform(-1, 1, (1000, 1)) * rng.standard_normal((1000, 4))
+    for start in away[:20]:
+        F = -field @ start
+        scaled = activation(np.array([np.linalg.norm(F)])) * F / np.linalg.norm(F)
+        np.testing.assert_allclose(network.rates(qp, rest + start), scaled, rtol=1e-9, atol=1e-9)
+    bounds = [activation.settle_time(kappa * w) for w in np.linalg.norm(away, axis=1)]
+    # The trajectories are those of the network inside, run through at another speed.
+    time, stable = np.zeros(1000), 0.1 * network.network.stable_step(qp)
+    halfway = np.eye(4) - 0.5 * stable * field.T
+    while (left := (size := np.linalg.norm(away @ field.T, axis=1)) > 1e-6).any():
+        time += np.where(left, stable * size / activation(size), 0.0)
+        away = away - stable * away @ halfway @ field.T
+    assert (time <= np.array(bounds) / (c * kappa**2)).all()
+
+
+def test_an_activated_networks_stable_step_follows_its_speed() -> None:
+    qp, _ = known_qp(np.random.default_rng(5), 5, 2, 2, inequalities=2)
+    network = ActivatedNetwork(activation=FixedTime())
+    state = np.random.default_rng(5).standard_normal(network.state_size(qp))
+    size, base = np.linalg.norm(dual_rates(qp, state)), DualNetwork().stable_step(qp)
+    assert network.stable_step(qp, state) == pytest.approx(base / (size**-0.5 + size))
+    assert network.stable_step(qp) == 0.0
+    assert not network.carries_x
+    assert network.settings()["activation"]["name"] == "FixedTime"
+
+
+def test_the_yardstick_reaches_the_solution_and_starts_warm() -> None:
+    qp, x = known_qp(np.random.default_rng(6), 6, 2, 2, inequalities=3)
+    solver = AdmmSolver(substeps=50)
+    first = np.abs(solver.advance(qp, 1e-3).x - x).max()
+    for _ in range(100):
+        last = np.abs(solver.advance(qp, 1e-3).x - x).max()
+    assert last < 1e-4 < 0.01 < first
+    solver.reset()
+    assert np.abs(solver.advance(qp, 1e-3).x - x).max() == pytest.approx(first)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", OTHERS)
+def test_random_programs_are_solved_or_not_claimed(case: str) -> None:
+    found, solver = 0, DNNSolver(SOURCES[case][0])
+    for seed in range(40):
+        qp, x = programs.strictly_convex(np.random.default_rng([7, seed]), None, 1e2)
+        solver.reset()
+        solution = solver.solve(qp)
+        found += solution.found
+        assert solution.certificate is None
+        if solution.found:
+            residuals = qp.residuals(solution.x, solution.y, solution.z, solution.z_box)
+            assert residuals.largest <= 1e-9
+            assert np.abs(solution.x - x).max() < 1e-5
+    assert found >= 38
+
+
+def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
+    qp = QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
+    solution = iiwa_dnn.solve_problem(qp, solver=DNNSolver(PrimalDualNetwork()))
+    assert solution.found
+    np.testing.assert_allclose(solution.x, [1.0, 0.0], atol=1e-7)
+    for network in (DualNetwork(), SimplifiedDualNetwork()):
+        with pytest.raises(InvalidInputError, match="singular") as caught:
+            iiwa_dnn.solve_problem(qp, solver=DNNSolver(network))
+        assert caught.value.argument == "P"
+
+
+@pytest.mark.parametrize("case", OTHERS)
+def test_contradictions_are_proven_with_every_network(case: str) -> None:
+    qp = QP(np.eye(3), np.ones(3), A=[[1.0, 1.0, 0.0], [2.0, 2.0, 0.0]], b=[0.0, 1.0])
+    solver = DNNSolver(SOURCES[case][0])
+    assert solver.solve(qp).status is Status.NONE_FEASIBLE_NEAR
+    assert solver.solve(QP(qp.P, qp.q, A=qp.A, b=[0.0, 0.0])).found
+
+
+def test_x_of_the_state_is_disturbed() -> None:
+    qp, x = known_qp(np.random.default_rng(8), 4, 1, 1)
+    solver = DNNSolver(PrimalDualNetwork())
+    solver.solve(qp)
+    solver.disturb(np.full(4, 0.5))
+    np.testing.assert_allclose(solver.state[:4], x + 0.5, atol=1e-6)
+    with pytest.raises(InvalidInputError, match="network"):
+        DNNSolver(DualNetwork()).disturb(np.zeros(4))
+
+
+@pytest.mark.parametrize("case", OTHERS)
+@pytest.mark.parametrize("mode", ["converged", "continuous"])
+def test_the_robot_runs_on_every_network(case: str, mode: str) -> None:
+    robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+    heart = iiwa_dnn.Heart().anchored(iiwa_dnn.Configuration(robot, START))
+    options = {"dt": 1e-3, "duration": 0.03, "mode": mode, "solver": DNNSolver(SOURCES[case][0])}
+    record = iiwa_dnn.simulate(robot, iiwa_dnn.DoubleIndicator(), heart, START, **options)
+    assert record.q.shape == (31, 7)
+    if mode == "converged":
+        assert iiwa_dnn.failures(record) == []
+
+
+@pytest.mark.parametrize(
+    ("make", "argument"),
+    [
+        (lambda: ProjectionNetwork(rho=0.0), "rho"),
+        (lambda: ProjectionNetwork(rho=np.nan), "rho"),
+        (lambda: ProjectionNetwork(rho=np.inf), "rho"),
+        (lambda: OneLayerNetwork(share=1.0), "share"),
+        (lambda: ZeroingNetwork(form="other"), "form"),
+        (lambda: ZeroingNetwork(integral=-1.0), "integral"),
+        (lambda: ZeroingNetwork(growth=-1), "growth"),
+        (lambda: NoiseSuppressingNetwork(proportional=0.0), "proportional"),
+        (lambda: NoiseSuppressingNetwork(noise=np.inf), "noise"),
+        (lambda: SignBiPower(1.0), "power"),
+        (lambda: FixedTime(upper_power=1.0), "upper_power"),
+        (lambda: FixedTime(low=0.0), "low"),
+        (lambda: ExplicitEuler(substeps=0), "substeps"),
+        (lambda: ImplicitEuler(step=0.0), "step"),
+        (lambda: ImplicitEuler(max_steps=0), "max_steps"),
+    ],
+)  # fmt: skip
+def test_wrong_parameters_are_named(make: Callable[[], object], argument: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        make()
+    assert caught.value.argument == argument
