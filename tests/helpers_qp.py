@@ -40,6 +40,12 @@ def known_qp(
     return QP(P, q, G=G, h=h, A=A, b=A @ x, lb=lb, ub=ub), x
 
 
+def bounds_as_rows(qp: QP) -> tuple[np.ndarray, np.ndarray]:
+    """The paper's Omega and chi, its printed sign of lb corrected (docs/errata.md)."""
+    eye = np.eye(qp.q.size)
+    return np.vstack([eye, -eye]), np.concatenate([qp.ub, -qp.lb])
+
+
 def network_rates(qp: QP, state: np.ndarray, project: bool = True) -> np.ndarray:
     """The projection network's right-hand side, straight from the paper's equations."""
     n, p, m = qp.q.size, qp.b.size, qp.h.size

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.stats import kendalltau
 
 from helpers_kinematics import PAPER_Q0, dh_pose, finite_difference, rotation_angle
+from helpers_qp import bounds_as_rows
 from helpers_simulation import (
     UNCHECKED,
     block_map,
@@ -62,7 +63,7 @@ def test_forward_kinematics_go_from_joints_to_pose() -> None:
 
 def test_chi_wants_minus_the_lower_bound() -> None:
     qp = program()
-    omega, chi = qp.bounds_as_inequalities()
+    omega, chi = bounds_as_rows(qp)
     printed = np.concatenate([qp.ub, qp.lb])
     rng = np.random.default_rng(0)
     inside = rng.uniform(qp.lb, qp.ub, (200, 7))
@@ -90,7 +91,7 @@ def test_the_inequalities_of_the_kkt_conditions_are_complementary() -> None:
     qp = scheme.build_qp(conf, heart().at(0.3))
     solution = solve_problem(qp)
     assert solution.found
-    omega, chi = qp.bounds_as_inequalities()
+    omega, chi = bounds_as_rows(qp)
     slack = omega @ solution.x - chi
     mu = np.concatenate([np.maximum(solution.z_box, 0.0), np.maximum(-solution.z_box, 0.0)])
     assert (slack <= 1e-9).all()

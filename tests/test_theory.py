@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from helpers_kinematics import PAPER_Q0
-from helpers_qp import known_qp, network_rates
+from helpers_qp import bounds_as_rows, known_qp, network_rates
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start
 from iiwa_dnn import (
     QP,
@@ -208,7 +208,7 @@ def test_a_backward_euler_step_minimises_a_strongly_convex_function(step: float)
         qp = QP(np.zeros((4, 4)), qp.q, A=qp.A, b=qp.b, lb=qp.lb, ub=qp.ub)  # even so
         state = rng.standard_normal(network.state_size(qp))
         x, y, mu = state[:4], state[4:6], state[6:]
-        omega, chi = qp.bounds_as_inequalities()
+        omega, chi = bounds_as_rows(qp)
 
         def function(new: Array, qp: QP = qp, x: Array = x, y: Array = y, mu: Array = mu,
                      omega: Array = omega, chi: Array = chi) -> float:  # fmt: skip

@@ -229,8 +229,8 @@ def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
     P = point.jacobian.T @ point.jacobian
     P.flat[:: P.shape[1] + 1] += damping * float(point.error @ point.error)
-    _, _, G, h, _, _, lb, ub = point.qp.arrays()
-    return solver.solve(QP(P, -point.jacobian.T @ point.error, G, h, lb=lb, ub=ub))
+    qp = point.qp
+    return solver.solve(QP(P, -point.jacobian.T @ point.error, qp.G, qp.h, lb=qp.lb, ub=qp.ub))
 
 
 def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:

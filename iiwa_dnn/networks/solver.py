@@ -192,10 +192,6 @@ class DNNSolver:
         warm = self.warm_state(qp.sizes)
         if warm is None or not solution.found or not is_projection(self.network):
             return solution
-        x = solution.x
-        cost = np.abs(qp.q).dot(np.abs(x)) + np.abs(x.dot(qp.P.dot(x)))
-        if not 1e-14 * cost < self.tol:  # rounding of the cost is near the tolerance already
-            return solution
         state = warm.copy()
         point = np.empty_like(solution.point)
         settled = settle_program(qp, state, point, SHARPENED, SHARPENING)

@@ -185,20 +185,6 @@ class QP:
             ub if bounded else None,
         )
 
-    def arrays(self) -> tuple[Matrix, Vector, Matrix, Vector, Matrix, Vector, Vector, Vector]:
-        """Return ``(P, q, G, h, A, b, lb, ub)``, of the shapes that the class states."""
-        return self.P, self.q, self.G, self.h, self.A, self.b, self.lb, self.ub
-
-    def bounds_as_inequalities(self) -> tuple[Matrix, Vector]:
-        """Write the bounds as inequality rows, the paper's Omega and chi.
-
-        Returns:
-            ``([I; -I], [ub; -lb])`` of shapes (2n, n) and (2n,). The paper prints chi with
-            ``lb``, which has the wrong sign (docs/errata.md).
-        """
-        eye = np.eye(self.q.size)
-        return np.vstack([eye, -eye]), np.concatenate([self.ub, -self.lb])
-
     def residuals(
         self, x: Vector, y: Vector | None, z: Vector | None, z_box: Vector | None
     ) -> Residuals:
@@ -229,13 +215,12 @@ class QP:
         """
         if _well_formed(self.data, *self.sizes):
             return
-        for name in ("P", "q", "G", "A", "b"):
-            if not np.isfinite(getattr(self, name)).all():
-                raise InvalidInputError(name, "has a value that is not finite")
-        for name, forbidden in (("h", -np.inf), ("lb", np.inf), ("ub", -np.inf)):
+        limitless = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
+        for name in FIELDS:
             value = getattr(self, name)
-            if np.isnan(value).any() or (value == forbidden).any():
-                raise InvalidInputError(name, f"has a value that is NaN or {forbidden}")
+            wrong = value[~(np.isfinite(value) | (value == limitless.get(name, np.nan)))]
+            if wrong.size:
+                raise InvalidInputError(name, f"has a value that is {wrong[0]}")
         crossed = np.flatnonzero(self.lb > self.ub)
         if crossed.size:
             i = int(crossed[0])

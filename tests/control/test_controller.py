@@ -45,10 +45,7 @@ def test_a_converged_step_is_the_programs_solution() -> None:
         q = np.array(PAPER_Q0) + 0.02 * rng.standard_normal(7)
         conf, target = Configuration(paper_robot(), q), near_target(q, seed, size=2e-3)
         command = controller.step(conf.q, 0.0, target)
-        for one, other in zip(
-            command.qp.arrays(), SCHEME.build_qp(conf, target).arrays(), strict=True
-        ):
-            np.testing.assert_array_equal(one, other)
+        np.testing.assert_array_equal(command.qp.data, SCHEME.build_qp(conf, target).data)
         assert command.solution.found
         assert command.solution.residuals.largest <= 1e-9
         np.testing.assert_array_equal(command.dq, command.solution.x)

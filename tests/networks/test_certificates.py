@@ -6,7 +6,6 @@ from scipy.optimize import linprog
 
 import iiwa_dnn
 from benchmarks import programs
-from helpers_qp import known_qp
 from iiwa_dnn import QP, DNNSolver, Status
 from iiwa_dnn.qp import certificates
 
@@ -63,7 +62,9 @@ def test_a_thousand_infeasible_programs_are_recognised_with_a_proof() -> None:
         assert_farkas(qp, solution.certificate)
         if seed % 5 == 0:
             assert linprog_status(qp, np.zeros(qp.q.size)) == 2, seed
-    assert proven > 50  # outright; of the others no point within 1e8 is feasible
+    # Outright where finite bounds carry all that the multipliers leave; of the others it is shown
+    # that no point within 1e8 is feasible.
+    assert proven > 50
 
 
 @pytest.mark.long
@@ -234,14 +235,3 @@ def test_the_radius_is_what_it_says() -> None:
     # x0 = -1 is feasible: no multipliers may claim a radius above 10.
     feasible = QP(np.eye(1), np.zeros(1), [[slope]], [-1.0], lb=[-10.0])
     assert certificates.infeasibility_radius(feasible, np.ones(1)) <= 10.0
-
-
-def test_a_good_program_after_a_bad_one_is_solved() -> None:
-    good, x = known_qp(np.random.default_rng(0), 4, 2, 1)
-    bad = QP(np.zeros((4, 4)), np.ones(4), A=good.A, b=good.b)
-    solver = DNNSolver()
-    for _ in range(2):
-        assert solver.solve(bad).status is Status.NONE_OPTIMAL_NEAR
-        solution = solver.solve(good)
-        assert solution.found
-        np.testing.assert_allclose(solution.x, x, atol=1e-6)

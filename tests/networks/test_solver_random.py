@@ -128,7 +128,7 @@ def test_a_warm_start_from_anywhere_leads_to_the_same_answer(seed: int) -> None:
 def test_a_nan_anywhere_names_its_argument(seed: int, name: str) -> None:
     rng = np.random.default_rng(seed)
     qp, _ = programs.strictly_convex(rng, 6)
-    fields = dict(zip(("P", "q", "G", "h", "A", "b", "lb", "ub"), qp.arrays(), strict=True))
+    fields = {field: getattr(qp, field) for field in ("P", "q", "G", "h", "A", "b", "lb", "ub")}
     fields["G"], fields["h"] = rng.standard_normal((2, 6)), np.ones(2)
     fields["A"], fields["b"] = rng.standard_normal((1, 6)), np.ones(1)
     spoilt = fields[name].copy()

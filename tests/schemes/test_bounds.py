@@ -8,6 +8,7 @@ from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
+from helpers_qp import bounds_as_rows
 from helpers_simulation import near_target, paper_robot, paper_start, velocity_bounds
 from iiwa_dnn import load_robot
 from iiwa_dnn.qp.program import QP
@@ -117,7 +118,7 @@ def paper_qp() -> QP:
 
 def test_bounds_as_inequalities_are_the_box() -> None:
     qp = paper_qp()
-    omega, chi = qp.bounds_as_inequalities()
+    omega, chi = bounds_as_rows(qp)
     np.testing.assert_array_equal(omega, np.vstack([np.eye(7), -np.eye(7)]))
     width = qp.ub - qp.lb
     points = np.random.default_rng(33).uniform(qp.lb - 0.05 * width, qp.ub + 0.05 * width, (500, 7))
@@ -129,7 +130,7 @@ def test_bounds_as_inequalities_are_the_box() -> None:
 def test_the_chi_that_the_paper_prints_is_another_set() -> None:
     # PAPER, slip 2: with chi = [ub; lb] standing still would be forbidden.
     qp = paper_qp()
-    omega, _ = qp.bounds_as_inequalities()
+    omega, _ = bounds_as_rows(qp)
     printed = np.concatenate([qp.ub, qp.lb])
     assert (qp.lb < 0.0).all()
     assert (qp.ub > 0.0).all()
