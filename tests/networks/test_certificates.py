@@ -222,6 +222,13 @@ def test_wrong_directions_prove_nothing(wrong: list[float]) -> None:
     assert certificates.unboundedness_radius(qp, np.array(wrong)) < 10.0
 
 
+def test_what_a_constraint_ends_proves_nothing() -> None:
+    rows = QP(np.eye(1), np.zeros(1), [[1.0], [1.0]], [1.0, 0.0])  # x <= 1 and x <= 0
+    assert certificates.infeasibility_radius(rows, np.array([-1.0, 1.0])) == 0.0
+    bounded = QP(np.zeros((1, 1)), [-1.0], ub=[5.0])
+    assert certificates.unboundedness_radius(bounded, np.ones(1)) <= 5.0
+
+
 def test_the_radius_is_what_it_says() -> None:
     # x0 (1 + 1e-4) <= -1 and x0 >= -1 + 2e-4 contradict each other, and nearly do not.
     slope, bound = 1.0 + 1e-4, -1.0 + 2e-4

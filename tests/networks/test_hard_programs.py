@@ -1,8 +1,5 @@
 """Degenerate, badly scaled and large programs, each judged by qpsolvers' residuals."""
 
-import multiprocessing
-import sys
-
 import numpy as np
 import pytest
 import qpsolvers
@@ -57,20 +54,3 @@ def test_rounding_of_single_precision_in_the_cost_is_no_error(kind: str) -> None
     assert iiwa_dnn.solve_problem(problem, tol=1e-9).is_optimal(1e-9)
     with pytest.raises(iiwa_dnn.errors.InvalidInputError, match="semidefinite"):
         iiwa_dnn.solve_problem(qpsolvers.Problem(P - 2.0 * np.eye(10), problem.q))
-
-
-FORK = multiprocessing.get_context("fork")
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="fork")
-def test_a_forked_child_may_use_the_batch_solver_too() -> None:
-    P, q = np.eye(3), np.random.default_rng(0).standard_normal((1000, 3))
-
-    def solve() -> None:
-        assert iiwa_dnn.solve_batch(P, q).found.all()
-
-    solve()
-    child = FORK.Process(target=solve, daemon=True)
-    child.start()
-    child.join(60.0)
-    assert child.exitcode == 0

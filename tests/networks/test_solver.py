@@ -1,12 +1,9 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
 import copy
-import multiprocessing
 import pickle
-import sys
-import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +20,6 @@ from iiwa_dnn import (
     ExplicitEuler,
     ImplicitEuler,
     InvalidInputError,
-    ProjectionNetwork,
     Status,
 )
 from iiwa_dnn.networks.integrators.base import BUDGET, SUBSTEPS, TOLERANCE
@@ -167,48 +163,20 @@ def test_a_copy_has_a_warm_start_of_its_own(duplicate: Callable[[DNNSolver], DNN
     assert other.solve(qp).found
 
 
-class Slow(ProjectionNetwork):
-    """A network in whose start another thread comes in between."""
+def test_nobody_else_has_the_state_while_a_call_works_on_it() -> None:
+    seen = []
 
-    def initial_state(self, qp: QP) -> np.ndarray:
-        time.sleep(1e-4)
-        return super().initial_state(qp)
+    class Watched(ImplicitEuler):
+        def settle(self, *arguments: Any) -> Any:
+            seen.append(solver.state.size)
+            return super().settle(*arguments)
 
-
-def in_a_fork(work: Callable[[], None]) -> int | None:
-    """Run work in a process of its own, which a state of the wrong size would end."""
-    child = multiprocessing.get_context("fork").Process(target=work, daemon=True)
-    child.start()
-    child.join(60.0)
-    return child.exitcode
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="fork")
-def test_threads_may_share_a_solver() -> None:
-    rng = np.random.default_rng(0)
-    programs = [
-        QP(np.eye(n), rng.standard_normal(n), lb=-np.ones(n), ub=np.ones(n)) for n in (3, 200)
-    ]
-    solver = DNNSolver(Slow())
-
-    def solve(seed: int) -> None:
-        qp = programs[seed % 2]
-        for k in range(60):
-            if (k + seed) % 3:
-                answer = np.clip(-qp.q, -1.0, 1.0)
-                np.testing.assert_allclose(solver.solve(qp).x, answer, rtol=0, atol=1e-6)
-            else:
-                solver.advance(qp, 1e-4)
-            if k % 10 == 0:
-                solver.reset()
-                _ = solver.state, solver.warm_state(qp.sizes)
-
-    def work() -> None:
-        sys.setswitchinterval(1e-6)
-        with ThreadPoolExecutor(6) as pool:
-            list(pool.map(solve, range(6)))
-
-    assert in_a_fork(work) == 0
+    solver = DNNSolver(settler=Watched())
+    qp, _ = known_qp(np.random.default_rng(13), 4, 1, 1)
+    for _ in range(2):
+        assert solver.solve(qp).found
+        assert solver.state.size == 13
+    assert seen == [0, 0]
 
 
 def test_sharpened_answers_are_daqps_where_the_cost_is_nearly_flat() -> None:

@@ -41,25 +41,6 @@ def test_ten_thousand_random_programs() -> None:
         assert np.abs(solution.x - x).max() < 1e-5, seed
 
 
-@pytest.mark.parametrize("n", [2, 7, 30])
-def test_the_generator_keeps_its_word(n: int) -> None:
-    conditions, repeated, rows = [], 0, 0
-    for seed in range(200):
-        qp, x = programs.strictly_convex(np.random.default_rng([3, seed]), n)
-        size, m, p = qp.sizes
-        assert size == n
-        assert m <= 2 * n
-        assert p <= n // 2
-        conditions.append(np.linalg.cond(qp.P))
-        assert np.abs(qp.A @ x - qp.b).max(initial=0.0) < 1e-10
-        assert (qp.G @ x - qp.h).max(initial=-1.0) < 1e-10
-        stacked = np.vstack([qp.A, qp.G])
-        rows += m + p
-        repeated += m + p - len(np.unique(stacked.round(9), axis=0))
-    assert 1e5 < max(conditions) < 2e6
-    assert n == 2 or repeated > 0.03 * rows
-
-
 @settings(max_examples=60)
 @given(SEEDS)
 def test_answers_are_kkt_points(seed: int) -> None:

@@ -10,9 +10,8 @@ import pytest
 import qpsolvers
 
 import iiwa_dnn
-from helpers_kinematics import PAPER_Q0
 from helpers_qp import known_qp
-from helpers_simulation import heart, near_target, paper_start, run
+from helpers_simulation import heart, paper_start, run
 from iiwa_dnn import Record
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
@@ -68,29 +67,10 @@ def test_constraints_may_be_absent(check: CrossCheck, rows: dict) -> None:
     assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
 
 
-@pytest.mark.parametrize("check", EACH, ids=IDS)
-def test_dependent_rows_are_no_obstacle(check: CrossCheck) -> None:
-    qp, x = known_qp(np.random.default_rng(52), 7, 4, 1, dependent=True)
-    assert check.check(qp, x).solution_gap.max() <= 1e-7
-
-
-@pytest.mark.parametrize("check", EACH, ids=IDS)
 @pytest.mark.parametrize("orientation", ["so3", "block", "none"])
-def test_the_network_is_agreed_with_on_the_hearts_programs(
-    check: CrossCheck, orientation: str
-) -> None:
+def test_the_network_is_agreed_with_on_the_hearts_programs(orientation: str) -> None:
     qp = heart_qp(orientation=orientation)
-    assert check.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
-
-
-@pytest.mark.parametrize("size", [1e-5, 1e-2])
-@pytest.mark.parametrize("joint", range(7))
-def test_a_wrong_answer_is_seen_by_each(joint: int, size: float) -> None:
-    qp = heart_qp()
-    wrong = DNNSolver().solve(qp).x + size * np.eye(7)[joint]
-    agreement = BOTH.check(qp, wrong)
-    np.testing.assert_allclose(agreement.solution_gap, size, rtol=1e-2)
-    assert (agreement.solution_gap > BOTH.tolerance).all()
+    assert BOTH.check(qp, DNNSolver().solve(qp).x).solution_gap.max() <= 1e-7
 
 
 def test_gaps_are_those_to_the_known_solution() -> None:
@@ -102,6 +82,9 @@ def test_gaps_are_those_to_the_known_solution() -> None:
         np.testing.assert_allclose(agreement.solution_gap, np.abs(x - best).max(), atol=1e-7)
         expected = abs(value(qp, x) - value(qp, best))
         np.testing.assert_allclose(agreement.objective_gap, expected, rtol=0, atol=1e-6)
+        one = np.abs(BOTH.check(qp, best + 1e-5 * np.eye(7)[active]).solution_gap)
+        np.testing.assert_allclose(one, 1e-5, rtol=2e-2)
+        assert (one > BOTH.tolerance).all()
 
 
 def test_objective_gap_is_evaluated_without_cancellation() -> None:
@@ -111,17 +94,6 @@ def test_objective_gap_is_evaluated_without_cancellation() -> None:
     exact = 1e-10  # ||x - best||^2 / 2: the gradient is zero at the optimum
     gap = CrossCheck(reference_tolerance=1e-6).check(qp, x).objective_gap[0, 0]
     assert gap == pytest.approx(exact, rel=1e-2)
-
-
-def test_references_are_asked_in_order_and_none_may_be_asked() -> None:
-    qp = heart_qp()
-    x = DNNSolver().solve(qp).x
-    both = BOTH.check(qp, x)
-    for i, single in enumerate(EACH):
-        for together, alone in zip(both, single.check(qp, x), strict=True):
-            assert alone.shape == (1, 1)
-            np.testing.assert_allclose(together[0, i], alone[0, 0], rtol=0, atol=1e-12)
-    assert CrossCheck(()).check(qp, x).solution_gap.shape == (1, 0)
 
 
 def test_a_block_of_programs_is_judged_one_by_one() -> None:
@@ -154,21 +126,6 @@ def test_an_infeasible_program_has_no_reference(check: CrossCheck) -> None:
     assert np.isnan(agreement.solution_gap).all()
     assert np.isnan(agreement.objective_gap).all()
     np.testing.assert_array_equal(agreement.reference_residual, [[np.inf]])
-
-
-@pytest.mark.parametrize("check", EACH, ids=IDS)
-def test_references_that_give_up_are_not_believed(
-    check: CrossCheck, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Active bounds, so that no solver can be done after one iteration.
-    qp, x = known_qp(np.random.default_rng(54), 7, 3, 4)
-    quitting(monkeypatch, *SOLVERS)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        agreement = check.check(qp, x)
-    assert np.isnan(agreement.solution_gap).all()
-    assert not (agreement.reference_residual <= 1e-8).any()
-    np.testing.assert_array_equal(agreement.judge, [[-1]])
 
 
 @pytest.mark.parametrize(("first", "second"), [SOLVERS, SOLVERS[::-1], ("daqp", "proxqp")])
@@ -247,48 +204,22 @@ def test_a_solver_that_is_not_installed_is_refused_with_those_that_are() -> None
         CrossCheck(("iiwa_dnn",))
 
 
-def test_a_reference_that_raises_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*args: object, **options: object) -> None:
-        raise qpsolvers.exceptions.SolverError("out of order")
-
-    monkeypatch.setattr(crosscheck, "ask", fail)
-    agreement = BOTH.check(heart_qp(), np.zeros(7))
-    assert np.isnan(agreement.solution_gap).all()
-    np.testing.assert_array_equal(agreement.reference_residual, [[np.inf, np.inf]])
-
-
-@pytest.mark.parametrize("field", ["x", "y", "z_box"])
-def test_a_reference_that_is_not_a_number_is_not_believed(
-    field: str, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("spoilt", "residual"), [(0, np.inf), (1, np.nan), (3, np.nan), (None, 1.0)]
+)
+def test_a_reference_is_judged_by_its_own_residual(
+    spoilt: int | None, residual: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    solve = qpsolvers.solve_problem
-
-    def spoil(*args: object, **options: object) -> qpsolvers.Solution:
-        solution = solve(*args, **options)
-        getattr(solution, field)[0] = np.nan
-        return solution
-
-    quitting(monkeypatch, "proxqp")
-    monkeypatch.setattr(qpsolvers, "solve_problem", spoil)
-    agreement = EACH[1].check(heart_qp(), np.zeros(7))
-    assert not (agreement.reference_residual <= 1e-8).any()
+    # Zero is stationary and leaves no gap, and lies outside the bound by one.
+    qp = QP(np.eye(1), np.zeros(1), A=[[0.0]], b=[0.0], G=[[0.0]], h=[0.0], lb=[1.0])
+    point = np.zeros(4)
+    if spoilt is not None:
+        point[spoilt] = np.nan
+    monkeypatch.setattr(crosscheck, "ask", lambda name, qp: point)
+    agreement = BOTH.check(qp, np.zeros(1))
+    np.testing.assert_array_equal(agreement.reference_residual, [[residual, residual]])
     assert np.isnan(agreement.solution_gap).all()
-
-
-@pytest.mark.parametrize(("lb", "ub"), [(1.0, np.inf), (-np.inf, -1.0)])
-def test_a_reference_outside_its_bounds_is_not_believed(
-    lb: float, ub: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Zero is stationary and leaves no gap, and lies outside the bounds by one.
-    def answer(problem: qpsolvers.Problem, **options: object) -> qpsolvers.Solution:
-        return qpsolvers.Solution(problem, found=True, x=np.zeros(2), z_box=np.zeros(2))
-
-    quitting(monkeypatch, "proxqp")
-    monkeypatch.setattr(qpsolvers, "solve_problem", answer)
-    qp = QP(np.eye(2), np.zeros(2), lb=[lb] * 2, ub=[ub] * 2)
-    agreement = EACH[1].check(qp, np.zeros(2))
-    np.testing.assert_array_equal(agreement.reference_residual, [[1.0]])
-    assert np.isnan(agreement.solution_gap).all()
+    np.testing.assert_array_equal(agreement.judge, [[-1, -1]])
 
 
 def test_a_program_that_is_not_finite_is_not_put_to_anyone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -323,14 +254,6 @@ def test_osqp_is_accurate_enough_with_our_options_and_not_with_its_own(
         agreement = EACH[1].check(qp, x)
         assert agreement.reference_residual.min() > 1e-8
         assert np.isnan(agreement.solution_gap).all()
-
-
-def test_no_warnings() -> None:
-    qp, x = known_qp(np.random.default_rng(56), 7, 3, 3, inequalities=4)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        for program, answer in ((qp, x), (heart_qp(), np.zeros(7)), (infeasible_qp(), np.ones(3))):
-            BOTH.check(program, answer)
 
 
 def test_the_worst_of_the_stages_of_each_step() -> None:
@@ -403,12 +326,6 @@ def test_a_run_with_one_wrong_stage_of_rk4() -> None:
     assert np.flatnonzero(record.crosscheck_gap > 1e-6).tolist() == [10]
 
 
-def test_a_wrong_answer_below_the_tolerance_is_let_pass_and_recorded() -> None:
-    record = run(solver=Liar(wrong_at=3, size=5e-7), check=EACH[0], duration=0.01)
-    assert failures(record) == []
-    assert record.crosscheck_gap[3] == pytest.approx(5e-7, rel=1e-1)
-
-
 def test_a_run_whose_reference_fails_is_counted_and_never_averaged(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -428,15 +345,6 @@ def test_the_check_does_not_touch_the_run() -> None:
     unchecked, checked = run(duration=0.02), run(duration=0.02, check=BOTH)
     np.testing.assert_array_equal(unchecked.q, checked.q)
     np.testing.assert_array_equal(unchecked.dq_solver, checked.dq_solver)
-
-
-def test_near_target_programs_are_really_different() -> None:
-    # The programs above do not all have one answer, which a constant would pass.
-    first = heart_qp(0.5)
-    other = DoubleIndicator(home=PAPER_Q0).build_qp(
-        paper_start(), near_target(PAPER_Q0, seed=1, size=2e-3)
-    )
-    assert BOTH.check(first, DNNSolver().solve(other).x).solution_gap.min() > 1e-3
 
 
 def test_verdicts_keep_their_step_over_the_blocks_of_a_long_run() -> None:

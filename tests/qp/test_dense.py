@@ -1,10 +1,8 @@
 """Compiled linear algebra and residuals, against numpy's and qpsolvers'."""
 
 import numpy as np
-import pytest
 
 from iiwa_dnn.qp import dense
-from iiwa_dnn.qp.layout import larger
 
 
 def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
@@ -18,31 +16,6 @@ def test_cholesky_is_numpys_and_refuses_what_is_not_definite() -> None:
         np.testing.assert_allclose(out, np.linalg.solve(matrix, rhs), rtol=1e-8, atol=1e-11)
         matrix[-1, -1] = -1.0
         assert not dense.cholesky_factor(matrix.copy())
-
-
-def test_the_larger_of_two_keeps_a_nan() -> None:
-    assert larger(1.0, 2.0) == 2.0
-    assert larger(2.0, 1.0) == 2.0
-    assert np.isnan(larger(np.nan, 1.0))
-    assert np.isnan(larger(1.0, np.nan))
-
-
-def test_products_are_numpys() -> None:
-    rng = np.random.default_rng(2)
-    for n in (1, 2, 3, 4, 5, 7, 8, 16, 30, 51):
-        matrix, vector = rng.standard_normal((n, n)), rng.standard_normal(n)
-        assert dense.row_dot(matrix, n - 1, vector) == pytest.approx(matrix[-1] @ vector)
-        out = np.full(n + 3, 9.0)
-        dense.rows_dot(matrix, vector, out, 2)
-        np.testing.assert_allclose(out[2 : n + 2], matrix @ vector, rtol=1e-12, atol=1e-13)
-        assert out[0] == out[1] == out[-1] == 9.0
-        total = vector.copy()
-        dense.add_row(total, -2.0, matrix, n - 1)
-        np.testing.assert_allclose(total, vector - 2.0 * matrix[-1], rtol=1e-12, atol=1e-13)
-        result = matrix.copy()
-        dense.add_outer(result, -2.0, np.stack([np.ones(n), vector]), 1)
-        expected = np.tril(matrix - 2.0 * np.outer(vector, vector)) + np.triu(matrix, 1)
-        np.testing.assert_allclose(result, expected, rtol=1e-12, atol=1e-13)
 
 
 def test_extreme_eigenvalues_are_numpys() -> None:

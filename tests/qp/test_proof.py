@@ -11,6 +11,7 @@ import qpsolvers
 
 import iiwa_dnn
 from benchmarks import exact, programs
+from benchmarks.proofs import whole_numbers
 from helpers_qp import known_qp
 from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
 from iiwa_dnn.qp.proof import CROSSED, DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof
@@ -19,22 +20,6 @@ from iiwa_dnn.qp.proof import CROSSED, DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof
 def answer(x: list[float], z_box: list[float] | None = None, **more: list[float]) -> object:
     """An answer of no solver in particular."""
     return SimpleNamespace(x=np.array(x), z_box=np.array(z_box or 0.0 * np.array(x)), **more)
-
-
-def whole_numbers(rng: np.random.Generator) -> QP:
-    """A program of small whole numbers around a point: rows repeat, multipliers vanish."""
-    n = int(rng.integers(1, 4))
-    m = int(rng.integers(0, 4))
-    p = int(rng.integers(0, 2))
-    root = rng.integers(-2, 3, (n, n)).astype(float)
-    x = rng.integers(-2, 3, n).astype(float)
-    G = rng.integers(-2, 3, (m, n)).astype(float)
-    A = rng.integers(-2, 3, (p, n)).astype(float)
-    P = root @ root.T + np.eye(n) * rng.integers(0, 2)
-    h = G @ x + rng.integers(0, 2, m)
-    lb = x - rng.integers(0, 2, n)
-    ub = x + rng.integers(0, 2, n)
-    return QP(P, rng.integers(-3, 4, n), G, h, A, A @ x, lb, ub)
 
 
 def judged(qp: QP, solution: Solution) -> tuple[Proof, float]:
