@@ -11,9 +11,10 @@ import iiwa_dnn
 from benchmarks.collisions import BALLS, DISTANCE, RADII
 from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task
 from iiwa_dnn.checks import Array
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import ExplicitEuler
-from iiwa_dnn.qp.layout import QPViews, compiled
+from iiwa_dnn.qp.layout import QPViews
 from iiwa_dnn.studies.runs import paper_robot
 
 Made = tuple[Controller, Array]

@@ -110,8 +110,7 @@ def markdown(results: Mapping[str, Any]) -> str:
         tabulate(
             {
                 "`import iiwa_dnn` s": "{import_s:.2f}",
-                "process start to first step, compiled code found s": "{first_step_warm_s:.2f}",
-                "everything compiled s": "{first_step_cold_s:.1f}",
+                "process start to first step s": "{first_step_s:.2f}",
             },
             [results["startup"]],
         ),

@@ -1,10 +1,8 @@
 """Time of a new process until its first step, and the memory of a short and a long run."""
 
 import json
-import os
 import subprocess
 import sys
-import tempfile
 import time
 from typing import Any
 
@@ -53,19 +51,15 @@ print(json.dumps([peak, size]))
 
 
 def measure_startup(rounds: int = 5) -> dict[str, float]:
-    """Seconds to import the package and from process start to the first step, cold and warm.
+    """Seconds to import the package, and from process start to the first step.
 
-    Cold is a process that finds no compiled code, warm one that finds what another has left; the
-    operating system has the files in its memory in both cases.
+    The operating system has the files in its memory.
     """
-    with tempfile.TemporaryDirectory() as cache:
-        cold = _first_step(cache)
-        warm = [_first_step(cache) for _ in range(rounds)]
-        imports = [float(_python(_IMPORT, cache)) for _ in range(rounds)]
+    first = [_first_step() for _ in range(1 + rounds)]
+    imports = [float(_python(_IMPORT)) for _ in range(rounds)]
     return {
         "import_s": float(np.median(imports)),
-        "first_step_cold_s": cold,
-        "first_step_warm_s": float(np.median(warm)),
+        "first_step_s": float(np.median(first[1:])),
     }
 
 
@@ -75,7 +69,7 @@ def measure_memory(duration: float = 2.0) -> dict[str, Any]:
     As Linux counts it: resident, of the whole process.
     """
     (short, short_record), (long, long_record) = (
-        json.loads(_python(_RUN, None, str(length))) for length in (duration, 10 * duration)
+        json.loads(_python(_RUN, str(length))) for length in (duration, 10 * duration)
     )
     return {
         "peak_bytes": [short, long],
@@ -84,18 +78,16 @@ def measure_memory(duration: float = 2.0) -> dict[str, Any]:
     }
 
 
-def _first_step(cache: str) -> float:
+def _first_step() -> float:
     began = time.perf_counter()
-    _python(_FIRST_STEP, cache)
+    _python(_FIRST_STEP)
     return time.perf_counter() - began
 
 
-def _python(code: str, cache: str | None, *arguments: str) -> str:
-    """Standard output of a script, its compiled code in `cache` or where numba puts it."""
-    environment = {**os.environ, **({} if cache is None else {"NUMBA_CACHE_DIR": cache})}
+def _python(code: str, *arguments: str) -> str:
+    """Standard output of a script."""
     return subprocess.run(
         [sys.executable, "-c", code, *arguments],
-        env=environment,
         capture_output=True,
         text=True,
         check=True,

@@ -29,7 +29,6 @@ PACKAGES = (
     "proxsuite",
     "quadprog",
     "qpsolvers",
-    "numba",
     "numpy",
 )
 

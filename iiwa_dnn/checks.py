@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from iiwa_dnn.errors import InvalidInputError
 
 Array = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 Vector3 = tuple[float, float, float]
 T = TypeVar("T")
 

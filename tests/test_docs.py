@@ -23,6 +23,7 @@ import tyro
 import iiwa_dnn
 from helpers_export import compile_quickly
 from iiwa_dnn.app.main import COMMANDS, CONFIG
+from iiwa_dnn.compiling.library import source_of
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
@@ -142,7 +143,7 @@ def test_the_table_of_equations_names_what_exists() -> None:
         module = importlib.import_module(f"iiwa_dnn.{file.removesuffix('.py').replace('/', '.')}")
         for name in re.findall(r"`([\w.]+)`", names):
             found = operator.attrgetter(name)(module)
-            found = getattr(found, "py_func", found)  # numba's dispatchers wrap the function
+            found = source_of(found)
             assert found.__module__ == module.__name__, f"{name} comes from {found.__module__}"
 
 

@@ -6,12 +6,11 @@ This is the only file that knows where a number lies in a row.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import types
 
+from iiwa_dnn.compiling.library import inlined
 from iiwa_dnn.control.policies import Action, ProgramKind, Resolution
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
-from iiwa_dnn.qp.compiling import MATRIX, VECTOR
-from iiwa_dnn.qp.layout import Sizes, inlined, offsets
+from iiwa_dnn.qp.layout import Sizes, offsets
 from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
@@ -61,13 +60,6 @@ class RowViews(NamedTuple):
     bounds: Matrix
     blocking: Vector
     targets: Matrix
-
-
-_V = VECTOR
-ROW_VIEWS = types.BaseTuple.from_types(
-    (_V, _V, _V, _V, MATRIX, _V, _V, MATRIX, _V, MATRIX), RowViews
-)
-"""numba's type of `RowViews`, for a `Signature`."""
 
 
 @inlined

@@ -38,15 +38,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numpy.typing import NDArray
 
-from iiwa_dnn.networks.integrators.base import ANSWER, TOLERANCE, enter_answer
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.networks.integrators.base import TOLERANCE, enter_answer
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import VECTOR, outlived
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import QPViews, Sizes, compiled, qp_views
+from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.program import StepProgram
@@ -93,24 +91,17 @@ class Yielding(NamedTuple):
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
             braking keeps away from, (scenes, 2).
         dt: Control period [s].
-        answer: Address of the function that settles the network, `ANSWER`.
+        answer: Address of the function that settles the network, `enter_answer`.
         stop: Address of `stopping.stopping_time`; 0 without scenes.
     """
 
     weights: Vector
     limits: Vector
     settings: Vector
-    scenes: NDArray[np.int64]
+    scenes: IntMatrix
     dt: float
     answer: int
     stop: int = 0
-
-
-_PAIRS = types.Array(types.int64, 2, "C")
-YIELDING = types.BaseTuple.from_types(
-    (VECTOR, VECTOR, VECTOR, _PAIRS, types.float64, types.int64, types.int64), Yielding
-)
-"""numba's type of `Yielding`, for a `Signature`."""
 
 
 def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
@@ -125,7 +116,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
         np.array([tol, float(BUDGET)]),
         np.array(scenes, dtype=np.int64).reshape(-1, 2),
         dt,
-        ANSWER.address(settle),
+        enter_answer.address(settle),
     )
 
 
@@ -223,7 +214,6 @@ def scaling_factor(
             for i in range(qp.q.size):
                 wider.A[j, i] = qp.A[j, i]
     factor: float = _search(wider, yielding, state, point, figures)
-    outlived(data)
     return factor
 
 
@@ -248,16 +238,12 @@ def retreat_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vect
             wider.h[j] = 0.0
     state = np.zeros(3 * wider.q.size + wider.h.size + wider.b.size)
     factor: float = _search(wider, yielding, state, point, figures)
-    outlived(data)
     return factor
 
 
 @compiled
 def data_size(n: int, m: int, p: int) -> int:
-    """Count the numbers of a program, `QP.data`.
-
-    Views do not keep such an array: the function that makes it says when they are `outlived`.
-    """
+    """Count the numbers of a program, `QP.data`."""
     return (n + m + p) * (n + 1) + 2 * n
 
 
@@ -407,7 +393,6 @@ def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) 
     state = np.zeros(3 * n + m)
     point = np.empty(2 * n + m)
     found = settled(nearest, yielding, state, point, figures, 1.0)
-    outlived(data)
     for i in range(n):
         x[i] = min(max(point[i] if found else x[i], qp.lb[i]), qp.ub[i])
     return found

@@ -8,9 +8,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numba import typeof, types
-from numba.core.dispatcher import Dispatcher
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import (
     ADVANCED,
     NOT_FINITE,
@@ -28,21 +27,14 @@ from iiwa_dnn.control.yielding import with_limits
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
-from iiwa_dnn.qp.layout import compiled, qp_views
+from iiwa_dnn.qp.layout import qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
-from iiwa_dnn.references.base import Ahead
+from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.schemes.motion_limits import check_ranges
-from iiwa_dnn.schemes.program import (
-    ProgramArrays,
-    StepProgram,
-    assemble,
-    borrowed_arrays,
-    step_views,
-)
+from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
@@ -60,7 +52,7 @@ class ControlStep:
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
             part is refreshed by the targets of a step.
-        run: `control_step`, entered without looking at the types of its arguments again.
+        run: `control_step`.
         yielding: What relaxed programs need beside a step's own.
         relaxed_size: Numbers of the states of their networks.
     """
@@ -92,7 +84,7 @@ class ControlStep:
         self.arrays = program.arrays(dt)
         if program.rate_limits is not None:
             check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
-        self.run = self._entry()
+        self.run: Any = control_step
         self.yielding = with_limits(make_yielding(program, solver.tol, dt))
         self.relaxed_size = relaxed_size(program.sizes)
 
@@ -146,22 +138,10 @@ class ControlStep:
             return False
         for path, other in zip(paths, seen, strict=True):
             constants = np.concatenate([path.base, path.constants])
-            self.program.append(PATH.address(path.compiled), constants, int(path is not other))
+            self.program.append(
+                enter_path.address(path.compiled), constants, int(path is not other)
+            )
         return True
-
-    def _entry(self) -> Any:
-        """Compile the control step for the types of its arguments."""
-        if not isinstance(control_step, Dispatcher):
-            return control_step
-        vector = types.float64[::1]
-        matrix = types.float64[:, ::1]
-        clock = types.UniTuple(types.float64, 2)
-        arguments = (vector, typeof(self.arrays), matrix, matrix, vector, clock)
-        return control_step.compile((*arguments, types.boolean, types.boolean))
-
-
-PATH = Signature(types.void, types.float64, VECTOR, VECTOR)
-_enter_path = PATH.enter
 
 
 @compiled
@@ -190,9 +170,6 @@ def control_step(
     Returns:
         False if the network was not asked, did not settle or diverged; `state` is then as it was.
     """
-    row = borrowed(row)
-    past = borrowed(past)
-    arrays = borrowed_arrays(arrays)
     table = arrays.table
     constants = arrays.constants
     n = table[0, 0]
@@ -281,10 +258,10 @@ def sample_targets(arrays: ProgramArrays, t: float, targets: Matrix) -> None:
         move = own[target.size :]
         for i in range(target.size):
             target[i] = own[i]
-        _enter_path(table[k, 1], t, move, target)
+        enter_path(table[k, 1], t, move, target)
         if table[k, 2] != 0:
             then = np.empty(target.size)
             for i in range(target.size):
                 then[i] = own[i]
-            _enter_path(table[k, 1], t + period, move, then)
+            enter_path(table[k, 1], t + period, move, then)
             set_mean_twist(target, then, period)

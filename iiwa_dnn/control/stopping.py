@@ -31,12 +31,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
 
-from iiwa_dnn.control.relaxed import YIELDING, Yielding
+from iiwa_dnn.compiling.library import compiled, entry
+from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import MATRIX, VECTOR, Signature
-from iiwa_dnn.qp.layout import Triple, compiled
+from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.schemes.distances import difference, dot
 from iiwa_dnn.schemes.motion_bounds import swept
 from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
@@ -81,15 +80,10 @@ class Instant(NamedTuple):
     constants: Vector
 
 
-_V = VECTOR
-_M = MATRIX
-INSTANT = types.BaseTuple.from_types((_V, _V, _V, _V, types.float64, _M, _M, _M, _V), Instant)
-"""numba's type of `Instant`, for a `Signature`."""
-
-STOP_TIME = Signature(types.float64, INSTANT, YIELDING, VECTOR)
-"""Types of `stopping_time`."""
-
-enter_stopping_time = STOP_TIME.enter
+@entry
+def enter_stopping_time(address: int, instant: Instant, yielding: Yielding, x: Vector) -> float:
+    """Enter `stopping_time` at an address, with velocities x (n,) [rad/s]."""
+    raise NotImplementedError
 
 
 class Motion(NamedTuple):
@@ -208,6 +202,8 @@ def within_rates(x: float, before: float, periods: float, accel: float, jerk: fl
 def sums(motion: Motion, count: float) -> tuple[float, float]:
     """Sum the factors of the first velocities and of b over the first `count` periods."""
     M = motion.periods
+    if M == 0.0:
+        return 0.0, 0.0
     first = 0.5 * count * (count - 1.0)
     if not motion.cubic:
         return count - first / M, 0.0

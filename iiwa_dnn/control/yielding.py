@@ -16,6 +16,7 @@ import math
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, row_views
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
@@ -32,7 +33,6 @@ from iiwa_dnn.control.relaxed import (
 )
 from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
 from iiwa_dnn.control.stopping import (
-    STOP_TIME,
     Instant,
     enter_stopping_time,
     has_jerk,
@@ -42,9 +42,8 @@ from iiwa_dnn.control.stopping import (
 )
 from iiwa_dnn.networks.integrators.base import BUDGET, TOLERANCE, enter_answer
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import outlived
 from iiwa_dnn.qp.dense import row_dot
-from iiwa_dnn.qp.layout import QPViews, compiled, qp_views
+from iiwa_dnn.qp.layout import QPViews, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.motion_limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
@@ -95,7 +94,7 @@ TOWARDS = (1.0, 0.5, 0.25, 0.125)
 def with_limits(yielding: Yielding) -> Yielding:
     """Return `yielding` with what the limits of braking need, compiled if it has any."""
     if len(yielding.scenes):
-        yielding = yielding._replace(stop=STOP_TIME.address(stopping_time))
+        yielding = yielding._replace(stop=enter_stopping_time.address(stopping_time))
     return yielding
 
 
@@ -156,7 +155,6 @@ def yield_step(
     _note_crossed(views, own)
     _note_decision(views, own, yielding.weights, x, kind, factor, action)
     _note_command(views, qp, instant, x, rest)
-    outlived(data)
     return int(views.decision[0])
 
 

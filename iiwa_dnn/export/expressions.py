@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import Entry, source_of
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.lines import Lines
 from iiwa_dnn.export.values import (
@@ -34,7 +35,6 @@ from iiwa_dnn.export.values import (
     length,
     number,
 )
-from iiwa_dnn.qp.compiling import Signature, borrowed, outlived
 
 if TYPE_CHECKING:
     from iiwa_dnn.export.translator import Translator
@@ -337,10 +337,9 @@ class Expressions:
 
     def _called(self, node: ast.Call, function: Any, arguments: list[Value]) -> Value:
         """Call a compiled function, by its name or its address."""
-        signature = Signature.entered_by(function)
-        if signature is not None:
-            function = signature.function_at(arguments.pop(0).known)
-        plain = getattr(function, "py_func", function)
+        if isinstance(function, Entry):
+            function = Entry.functions[arguments.pop(0).known]
+        plain = source_of(function)
         self.require(inspect.isfunction(plain), node)
         constants = [_constant_of(argument) for argument in arguments]
         if all(constant is not None for constant in constants):
@@ -428,8 +427,5 @@ _CALLS: dict[Any, Callable[..., Value]] = {
     int: _to_integer,
     float: lambda body, value: Value(DOUBLE, f"(double){value.at(UNARY)}", UNARY),
     len: lambda body, array: length(array.kind.shape[0]),
-    np.uint64: lambda body, value: value,
-    borrowed: lambda body, value: value,
-    outlived: lambda body, array: Value(array.kind),
 }
 """Functions with a translation of their own."""

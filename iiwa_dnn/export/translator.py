@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import source_of
 from iiwa_dnn.export.expressions import WideError
 from iiwa_dnn.export.lines import identifier, wrapped
 from iiwa_dnn.export.statements import Body
@@ -131,7 +132,7 @@ class Translator:
 
     def function(self, function: Any, arguments: list[Value]) -> Made | None:
         """Return a function for arguments of certain types; None while it is being translated."""
-        plain = getattr(function, "py_func", function)
+        plain = source_of(function)
         kinds = [(own.kind, own.known if own.kind is INT else None) for own in arguments]
         key = (plain, *kinds)
         if key not in self._made:

@@ -7,31 +7,20 @@ from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
-from numba import types
 
 from iiwa_dnn import checks
-from iiwa_dnn.qp.compiling import VECTOR, Signature
-from iiwa_dnn.qp.layout import (
-    QP_VIEWS,
-    Matrix,
-    QPViews,
-    Sizes,
-    Triple,
-    Vector,
-    check_size,
-    compiled,
-    qp_views,
-)
+from iiwa_dnn.compiling.library import compiled, entry
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
 
 Rates = Callable[[QPViews, Vector, Vector, Vector], None]
 """Compiled function ``(qp, constants, state, rates)`` that writes rho ds/dt into `rates`."""
 
-RATES = Signature(types.void, QP_VIEWS, VECTOR, VECTOR, VECTOR)
-"""Types of a network's compiled function."""
 
-enter_rates = RATES.enter
+@entry
+def enter_rates(address: int, qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
+    """Enter a network's function, `Rates`, of states (size,) and constants (k,), at an address."""
 
 
 class Flow(NamedTuple):
@@ -113,7 +102,7 @@ class CompiledRates:
 
     def __init__(self, qp: QP, function: Rates, constants: Vector, size: int) -> None:
         """Take a function for states (size,) with its constants (k,)."""
-        self.address = RATES.address(function)
+        self.address = enter_rates.address(function)
         self.constants = constants
         self._qp = qp
         self._size = size

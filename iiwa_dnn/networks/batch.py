@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import released
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
 from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, field_shapes, qp_views, released
+from iiwa_dnn.qp.layout import IntVector, Matrix, Sizes, Vector, field_shapes, qp_views
 from iiwa_dnn.qp.program import FIELDS, absent_fields, real_array, require_pairs
 
 CHUNK = 128
@@ -124,7 +125,7 @@ def _settle_rows(
     constants: Vector,
     points: Matrix,
     residuals: Matrix,
-    systems: NDArray[np.int64],
+    systems: IntVector,
 ) -> None:
     """Settle programs, one `QP.data` a row, each from a cold start, those whose cost is convex.
 

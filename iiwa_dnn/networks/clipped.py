@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import CompiledRates, Flow
 from iiwa_dnn.qp.dense import dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, compiled
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector
 from iiwa_dnn.qp.program import QP
 
 

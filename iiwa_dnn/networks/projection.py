@@ -24,17 +24,10 @@ from typing import TypeGuard
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import CompiledRates, Flow, Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
-from iiwa_dnn.qp.layout import (
-    Matrix,
-    QPViews,
-    Sizes,
-    Vector,
-    compiled,
-    larger,
-    qp_views,
-)
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger, qp_views
 from iiwa_dnn.qp.program import QP
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import RATES, Network
+from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.base import ANSWER, CompiledAnswer, Settled, answer_program
+from iiwa_dnn.networks.integrators.base import CompiledAnswer, Settled, answer_program, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
 from iiwa_dnn.networks.integrators.implicit import settle_address, settle_program
 from iiwa_dnn.networks.integrators.scaling import equilibrate
@@ -118,13 +118,13 @@ class DNNSolver:
             substeps = self.follower.substeps or 0
             if not (substeps or builtin):
                 return None
-            address = ANSWER.address(follow)
+            address = enter_answer.address(follow)
         else:
             return None
         budget = self.settler.max_steps
         ahead = duration / network.rho
         constants = [self.tol, budget, ahead, substeps, *network.constants(sizes)]
-        return CompiledAnswer(address, RATES.address(function), np.array(constants))
+        return CompiledAnswer(address, enter_rates.address(function), np.array(constants))
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.

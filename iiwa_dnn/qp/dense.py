@@ -1,43 +1,34 @@
 """Compiled linear algebra on small dense matrices.
 
-Of a symmetric matrix the lower half is read and written. A row is taken by its index, since numba
-counts the references of a view. Indices are unsigned because numba compares signed ones with zero,
-which keeps the compiler from using vector instructions.
+Of a symmetric matrix the lower half is read and written.
 """
 
 import numpy as np
-from numba import njit
 
-from iiwa_dnn.qp.layout import ONE, Matrix, Vector, compiled, larger
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.qp.layout import Matrix, Vector, larger
 
 ROUNDING = 1e-5
 """Asymmetry and negative eigenvalues of P that pass as rounding, relative to its largest entry: a
 matrix that was computed in single precision has them. The answer is a KKT point of P as it is."""
 
-TWO = np.uint64(2)
-THREE = np.uint64(3)
-FOUR = np.uint64(4)
 
-# reassoc lets a sum run in several lanes. Comparisons are left alone, so a NaN stays a NaN.
-SUMS = {"contract", "reassoc"}
-
-
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def dot(a: Vector, at_a: int, b: Vector, n: int) -> float:
     """Sum a[at_a + i] b[i] over i < n, the arrays being of any size."""
-    start = np.uint64(at_a)
+    start = at_a
     value = 0.0
-    for i in range(np.uint64(n)):
+    for i in range(n):
         value += a[start + i] * b[i]
     return value
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     """Compute the product of row j of a matrix (k, n) and the first n entries of x."""
-    row = np.uint64(j)
+    row = j
     value = 0.0
-    for k in range(np.uint64(rows.shape[1])):
+    for k in range(rows.shape[1]):
         value += rows[row, k] * x[k]
     return value
 
@@ -45,18 +36,18 @@ def row_dot(rows: Matrix, j: int, x: Vector) -> float:
 @compiled
 def add_row(out: Vector, factor: float, rows: Matrix, j: int) -> None:
     """Add a multiple of row j of a matrix (k, n) to the first n entries of `out`."""
-    row = np.uint64(j)
-    for k in range(np.uint64(rows.shape[1])):
+    row = j
+    for k in range(rows.shape[1]):
         out[k] += factor * rows[row, k]
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def rows_dot(rows: Matrix, x: Vector, out: Vector, start: int) -> None:
     """Write the product of a matrix (k, n) and the first n entries of x into `out` from `start`."""
-    first = np.uint64(start)
-    for j in range(np.uint64(rows.shape[0])):
+    first = start
+    for j in range(rows.shape[0]):
         value = 0.0
-        for k in range(np.uint64(rows.shape[1])):
+        for k in range(rows.shape[1]):
             value += rows[j, k] * x[k]
         out[first + j] = value
 
@@ -64,21 +55,21 @@ def rows_dot(rows: Matrix, x: Vector, out: Vector, start: int) -> None:
 @compiled
 def add_outer(out: Matrix, factor: float, rows: Matrix, j: int) -> None:
     """Add factor v v^T to the lower half of `out` (n, n), v being row j of a matrix (k, n)."""
-    row = np.uint64(j)
-    for i in range(np.uint64(rows.shape[1])):
+    row = j
+    for i in range(rows.shape[1]):
         scaled = factor * rows[row, i]
-        for k in range(i + ONE):
+        for k in range(i + 1):
             out[i, k] += scaled * rows[row, k]
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def cholesky_factor(K: Matrix) -> bool:
     """Overwrite the lower half of K (n, n) by its Cholesky factor, with inverted diagonal.
 
     Returns:
         False if K is not positive definite to working precision; its content is then meaningless.
     """
-    size = np.uint64(K.shape[0])
+    size = K.shape[0]
     for j in range(size):
         value = 0.0
         for k in range(j):
@@ -88,8 +79,8 @@ def cholesky_factor(K: Matrix) -> bool:
             return False
         inverse = 1.0 / np.sqrt(pivot)  # a division costs many products
         K[j, j] = inverse
-        i = j + ONE
-        while i + THREE < size:  # four rows at once: fewer loads for each product
+        i = j + 1
+        while i + 3 < size:  # four rows at once: fewer loads for each product
             value = 0.0
             second = 0.0
             third = 0.0
@@ -97,34 +88,34 @@ def cholesky_factor(K: Matrix) -> bool:
             for k in range(j):
                 factor = K[j, k]
                 value += K[i, k] * factor
-                second += K[i + ONE, k] * factor
-                third += K[i + TWO, k] * factor
-                fourth += K[i + THREE, k] * factor
+                second += K[i + 1, k] * factor
+                third += K[i + 2, k] * factor
+                fourth += K[i + 3, k] * factor
             K[i, j] = (K[i, j] - value) * inverse
-            K[i + ONE, j] = (K[i + ONE, j] - second) * inverse
-            K[i + TWO, j] = (K[i + TWO, j] - third) * inverse
-            K[i + THREE, j] = (K[i + THREE, j] - fourth) * inverse
-            i += FOUR
+            K[i + 1, j] = (K[i + 1, j] - second) * inverse
+            K[i + 2, j] = (K[i + 2, j] - third) * inverse
+            K[i + 3, j] = (K[i + 3, j] - fourth) * inverse
+            i += 4
         while i < size:
             value = 0.0
             for k in range(j):
                 value += K[i, k] * K[j, k]
             K[i, j] = (K[i, j] - value) * inverse
-            i += ONE
+            i += 1
     return True
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def factor_solve(K: Matrix, rhs: Vector, out: Vector) -> None:
     """Solve with the factor that `cholesky_factor` left in K (n, n), into the first n of `out`."""
-    size = np.uint64(K.shape[0])
+    size = K.shape[0]
     for i in range(size):
         value = 0.0
         for k in range(i):
             value += K[i, k] * out[k]
         out[i] = (rhs[i] - value) * K[i, i]
     for back in range(size):
-        row = size - ONE - back
+        row = size - 1 - back
         value = out[row] * K[row, row]
         out[row] = value
         for k in range(row):
@@ -191,7 +182,7 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
 
     K (n, n) is scratch.
     """
-    size = np.uint64(P.shape[0])
+    size = P.shape[0]
     scale = 0.0
     asymmetry = 0.0
     for i in range(size):  # of a matrix that is positive semidefinite, the largest are here
@@ -209,10 +200,10 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
     return asymmetry <= ROUNDING * scale and cholesky_factor(K)
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def all_finite(data: Vector, start: int, end: int) -> bool:
     """Check that data[start:end] of (k,) is finite: NaN and infinity times zero are NaN."""
     total = 0.0
-    for k in range(np.uint64(start), np.uint64(end)):
+    for k in range(start, end):
         total += data[k] * 0.0
     return total == 0.0

@@ -22,9 +22,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.dense import ROUNDING, all_finite, is_convex
-from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, compiled, field_shapes, qp_views
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector, check_size, field_shapes, qp_views
 from iiwa_dnn.qp.residuals import residuals_of
 from iiwa_dnn.qp.solution import Residuals
 

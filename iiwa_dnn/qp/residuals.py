@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.dense import add_row, row_dot
-from iiwa_dnn.qp.layout import QPViews, Triple, Vector, compiled, larger, qp_views
+from iiwa_dnn.qp.layout import QPViews, Triple, Vector, larger, qp_views
 
 LONG = 64
 """Variables from which on the rounding of the gap's sum is added to it: in another order, as

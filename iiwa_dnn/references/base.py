@@ -11,11 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
+from iiwa_dnn.compiling.library import entry
 from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import Target
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
+
+
+@entry
+def enter_path(address: int, t: float, constants: Array, target: Array) -> None:
+    """Enter a path's function at an address; it moves the target (18,) at time t [s]."""
+
 
 AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]))
 """Target at position 0 with orientation identity, at rest, `Target.data` (18,)."""
@@ -43,7 +50,7 @@ class Reference(ABC):
 
     Attributes:
         name: Name of the path in settings and on the command line.
-        path: Function ``path(t, constants, target)``, compiled by numba, on `Target.data` (18,).
+        path: Kernel or other function ``path(t, constants, target)``, on `Target.data` (18,).
         constants: Constants of `path`, shape (c,).
         base: Target at the origin, at rest, `Target.data` (18,), read-only.
     """
@@ -96,7 +103,7 @@ class Reference(ABC):
             t: Time [s].
             target: The target, `Target.data` (18,); a copy of :attr:`base`, for example.
         """
-        self.path(t, self.constants, target)
+        enter_path(enter_path.address(self.path), t, self.constants, target)
 
     def at(self, t: float) -> Target:
         """Compute the target at time t [s].

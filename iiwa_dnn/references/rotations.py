@@ -14,13 +14,13 @@ Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Pre
 """
 
 import numpy as np
-from numba import njit
 
-from iiwa_dnn.checks import Array, Vector3
+from iiwa_dnn.checks import Array, Matrix, Vector3
+from iiwa_dnn.compiling.library import compiled
 
 
 # Task rows call it too: without `fastmath` a function takes that of whichever calls it first.
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def coefficients(square: float) -> tuple[float, float]:
     """Compute a and b at a squared angle."""
     if square > 1.0:
@@ -41,37 +41,37 @@ def coefficients(square: float) -> tuple[float, float]:
     return a, b
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def dot(u: Vector3, v: Vector3) -> float:
     """Compute the scalar product u . v."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def cross(u: Vector3, v: Vector3) -> Vector3:
     """Compute the cross product u x v."""
     return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def scaled(a: float, u: Vector3) -> Vector3:
     """Compute a u."""
     return a * u[0], a * u[1], a * u[2]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def combined(a: float, u: Vector3, b: float, v: Vector3) -> Vector3:
     """Compute a u + b v."""
     return a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def added(u: Vector3, v: Vector3) -> Vector3:
     """Compute u + v."""
     return u[0] + v[0], u[1] + v[1], u[2] + v[2]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def rotated(vector: Vector3, v: Vector3) -> Vector3:
     """Compute exp[vector] v."""
     square = dot(vector, vector)
@@ -80,7 +80,7 @@ def rotated(vector: Vector3, v: Vector3) -> Vector3:
     return added(v, combined(1.0 - b * square, once, a, cross(vector, once)))
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
     """Compute J(vector) v: the angular velocity of a rotation vector with the rate v."""
     a, b = coefficients(dot(vector, vector))
@@ -88,19 +88,19 @@ def left_jacobian(vector: Vector3, v: Vector3) -> Vector3:
     return added(v, combined(a, once, b, cross(vector, once)))
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def column_of(target: Array, j: int) -> Vector3:
     """Return the j-th axis of a target's frame, of `Target.data` (18,)."""
     return target[3 + j], target[6 + j], target[9 + j]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def row_of(target: Array, i: int) -> Vector3:
     """Return the i-th row of the rotation of `Target.data` (18,)."""
     return target[3 + 3 * i], target[4 + 3 * i], target[5 + 3 * i]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@compiled
 def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
     """Turn a target, `Target.data` (18,), by a rotation vector with a rate; its position stays."""
     for j in range(3):
@@ -113,8 +113,8 @@ def turn_target(target: Array, vector: Vector3, rate: Vector3) -> None:
         target[15 + i] = after[i]
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def rotation_log(R: Array, out: Array) -> None:
+@compiled
+def rotation_log(R: Matrix, out: Array) -> None:
     """Write the rotation vector of R (3, 3), of length at most pi [rad], into `out` (3,).
 
     Through the unit quaternion's largest component, so that it is accurate near 0 and near pi.
@@ -147,7 +147,7 @@ def rotation_log(R: Array, out: Array) -> None:
         out[i] *= scale
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def set_mean_twist(now: Array, then: Array, dt: float) -> None:
     """Set the twist of a target (18,) to the mean one towards another, a period dt [s] later."""
     relative = np.empty((3, 3))

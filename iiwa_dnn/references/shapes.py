@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def heart_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Heart`; constants: scale [m], rate [rad/s]."""
     scale = constants[0]
@@ -63,7 +63,7 @@ class Heart(Reference):
         self._set(constants=np.array([self.scale, 2.0 * np.pi / self.period]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def circle_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Circle`; constants: radius [m], rate [rad/s], two axes (3,)."""
     radius = constants[0]
@@ -117,7 +117,7 @@ class Circle(Reference):
         self._set(constants=np.concatenate([head, u, np.cross(normal, u)]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def line_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Line`; constants: rate [rad/s], offset (3,) [m]."""
     rate = constants[0]
@@ -159,7 +159,7 @@ class Line(Reference):
         self._set(constants=np.array([2.0 * np.pi / self.period, *self.offset]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def lissajous_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Lissajous`; constants: amplitudes, rates and phases, (3,) each."""
     for i in range(3):
@@ -211,7 +211,7 @@ class Lissajous(Reference):
         self._set(constants=np.concatenate([self.amplitudes, rates, self.phases]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def still_path(t: float, constants: Array, target: Array) -> None:
     """Leave the target as it is."""
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Array, Vector3, direction, positive, vector3
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.references.base import Reference
 from iiwa_dnn.references.rotations import column_of, combined, scaled, turn_target
@@ -28,7 +28,7 @@ from iiwa_dnn.references.waypoints import Waypoints, waypoints_path
 TILT = math.radians(20.0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def cone_path(t: float, constants: Array, target: Array) -> None:
     """Turn a target along `Cone`; constants: angle [rad], rate [rad/s]."""
     angle = constants[0]
@@ -71,7 +71,7 @@ class Cone(Reference):
         self._set(constants=np.array([self.angle, 2.0 * np.pi / self.period]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def tilting_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Tilting`; constants: number of the path, angle, rate, axis (3,)."""
     kind = int(constants[0])

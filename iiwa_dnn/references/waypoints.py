@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numba import njit
 
 from iiwa_dnn.checks import Array, Vector3, finite_array, one_of, positive, read_only
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.references.base import Reference
@@ -44,7 +44,7 @@ _ROUNDS = 6
 # displacement's coefficients of x^3, x^2, x and 1, and those of `_fit_turns`, (p, 8, 3).
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _piece(t: float, constants: Array) -> tuple[int, float, float]:
     """Find the piece at a time, the time since it began, and 0.0 if the path is at rest, or 1.0."""
     closed = constants[0] != 0.0
@@ -63,26 +63,26 @@ def _piece(t: float, constants: Array) -> tuple[int, float, float]:
     return low, inside - constants[2 + low], moves
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _triple(constants: Array, at: int) -> Vector3:
     return constants[at], constants[at + 1], constants[at + 2]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _cubic(constants: Array, at: int, x: float) -> Vector3:
     """Compute a x^3 + b x^2 + c x of coefficients (3, 3)."""
     first = combined(x, _triple(constants, at), 1.0, _triple(constants, at + 3))
     return scaled(x, combined(x, first, 1.0, _triple(constants, at + 6)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _slope(constants: Array, at: int, x: float) -> Vector3:
     """Compute the derivative of `_cubic` by x."""
     first = combined(3.0 * x, _triple(constants, at), 2.0, _triple(constants, at + 3))
     return combined(x, first, 1.0, _triple(constants, at + 6))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def waypoints_path(t: float, constants: Array, target: Array) -> None:
     """Move a target along `Waypoints`, see the comment above for the constants (c,)."""
     piece, x, moves = _piece(t, constants)

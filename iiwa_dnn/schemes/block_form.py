@@ -22,8 +22,8 @@ import math
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.references.rotations import column_of, combined, cross, dot
 from iiwa_dnn.schemes.step import FRAME, GAIN, StepViews, vector_at, write_spin
 

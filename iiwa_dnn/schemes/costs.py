@@ -11,9 +11,9 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.parts import Checks, Cost
 from iiwa_dnn.schemes.step import Step, StepViews

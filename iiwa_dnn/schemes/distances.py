@@ -5,7 +5,8 @@ in [0, 1]; the box has half-extents h about the origin, along the axes. It may b
 extents it is a point, with one a segment.
 """
 
-from iiwa_dnn.qp.layout import Triple, compiled
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.qp.layout import Triple
 
 ROUNDS = 60
 """Most steps of the search along the segment; it needs about six."""

@@ -9,9 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Checks
 from iiwa_dnn.schemes.step import StepViews

@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 
 

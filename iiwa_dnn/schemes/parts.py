@@ -21,12 +21,10 @@ from dataclasses import fields
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
-from numba import types
 
+from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import Signature
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.step import Step, StepViews
 
@@ -35,13 +33,31 @@ PartT = TypeVar("PartT", bound="Part")
 Checks = Mapping[str, Callable[[str, Any], Any]]
 """Checks of a part's parameters by their names, `iiwa_dnn.checks`."""
 
-V = types.float64[::1]
-M = types.float64[:, ::1]
-STEP_TYPE = types.NamedTuple((types.float64, types.float64, V, V, V, M, M, M, M, M), StepViews)
 
-COST = Signature(types.void, STEP_TYPE, V, M, V)
-TASK = Signature(types.void, STEP_TYPE, V, V, M, V)
-LIMIT = Signature(types.void, STEP_TYPE, V, M, V, V, V)
+@entry
+def enter_cost(address: int, step: StepViews, constants: Vector, P: Matrix, q: Vector) -> None:
+    """Enter a cost's kernel, with constants (k,), P (n, n) and the cost vector q (n,)."""
+
+
+@entry
+def enter_task(
+    address: int, step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+) -> None:
+    """Enter a task's kernel, with constants (k,), target (18,), A (rows, n), b (rows,)."""
+
+
+@entry
+def enter_limit(
+    address: int,
+    step: StepViews,
+    constants: Vector,
+    G: Matrix,
+    h: Vector,
+    lb: Vector,
+    ub: Vector,
+) -> None:
+    """Enter a limit's kernel, with constants (k,), G (rows, n), h (rows,), lb and ub (n,)."""
+
 
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
 """Infinite values that an answer may hold, by its name."""
@@ -62,12 +78,12 @@ class Part:
         kernel: Compiled function that writes the rows; in a class with methods in numpy it copies
             their answers.
         rows: Number of rows; none for a cost.
-        signature: Types of the kernels of this kind.
+        entry: Entry of the kernels of this kind.
     """
 
     kernel: Any = None
     rows: int = 0
-    signature: Signature
+    entry: ClassVar[Any]
     _copy: Any
     _methods: ClassVar[dict[str, tuple[str, str]]] = {}
     _checks: ClassVar[Checks] = {}
@@ -235,7 +251,7 @@ def copy_limit(
 class Cost(Part):
     """A term of the cost, 1/2 x^T P x + q^T x."""
 
-    signature = COST
+    entry = enter_cost
     _copy = staticmethod(copy_cost)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {"quadratic": ("P", "q")}
 
@@ -267,7 +283,7 @@ class Task(Part):
         weight: None for hard rows, else the weight of the soft task.
     """
 
-    signature = TASK
+    entry = enter_task
     _copy = staticmethod(copy_task)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {"equations": ("A", "b")}
     tracks: bool = True
@@ -285,7 +301,7 @@ class Limit(Part):
     The number of inequality rows, `rows`, is the same at every step: an idle row has h = inf.
     """
 
-    signature = LIMIT
+    entry = enter_limit
     _copy = staticmethod(copy_limit)
     _methods: ClassVar[dict[str, tuple[str, str]]] = {
         "inequalities": ("G", "h"),

@@ -11,33 +11,29 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from iiwa_dnn.compiling.library import compiled, inlined
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.compiling import borrowed
-from iiwa_dnn.qp.layout import QPViews, compiled, inlined, qp_views
+from iiwa_dnn.qp.layout import IntMatrix, QPViews, qp_views
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import (
-    COST,
-    LIMIT,
-    TASK,
     Limit,
     Part,
     Task,
     answer_of,
     answer_size,
+    enter_cost,
+    enter_limit,
+    enter_task,
 )
 from iiwa_dnn.schemes.step import Step, StepViews
 
 if TYPE_CHECKING:
     from iiwa_dnn.schemes.base import Scheme
-
-Table = NDArray[np.int64]
-"""What compiled code reads of a step program: the sizes, then the numbers of each `Block`."""
 
 
 class ProgramArrays(NamedTuple):
@@ -53,7 +49,7 @@ class ProgramArrays(NamedTuple):
         rate: Inverse of the control period [1/s]; inf outside of a loop.
     """
 
-    table: Table
+    table: IntMatrix
     constants: Vector
     jacobian: Matrix
     placements: Matrix
@@ -133,7 +129,9 @@ class StepProgram:
         self.sizes = (n, rows[LIMITS], rows[TASKS])
         tip = robot.frame_id(self.target_frames[0])
         head = (*self.sizes, robot.dof, len(self.blocks), tip, 0)
-        self.table: Table = np.array([head, *(block[1:] for block in self.blocks)], dtype=np.int64)
+        self.table: IntMatrix = np.array(
+            [head, *(block[1:] for block in self.blocks)], dtype=np.int64
+        )
         self.refreshed = [block for block in self.blocks if block.part.refreshes]
         self.kinematics = Kinematics(robot, self._frames(), self.needs_inertia)
 
@@ -150,7 +148,7 @@ class StepProgram:
             target = self.target_frames.index(name) if name in self.target_frames else 0
             start = self.constants.size
             stop = start + own.size
-            address = part.signature.address(part.kernel)
+            address = part.entry.address(part.kernel)
             self.blocks.append(Block(part, kind, address, first, rows, start, stop, target))
             weight = [part.weight] if kind == SOFT_TASKS and isinstance(part, Task) else []
             self.constants = np.concatenate([self.constants, own, np.array(weight)])
@@ -317,25 +315,6 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
     return tuple(sorted(names, key=lambda name: name != robot.tip)) or (robot.tip,)
 
 
-_enter_cost = COST.enter
-_enter_task = TASK.enter
-_enter_limit = LIMIT.enter
-
-
-@inlined
-def borrowed_arrays(arrays: ProgramArrays) -> ProgramArrays:
-    """Return the arrays of a program without counting who uses them."""
-    return ProgramArrays(
-        borrowed(arrays.table),
-        borrowed(arrays.constants),
-        borrowed(arrays.jacobian),
-        borrowed(arrays.placements),
-        borrowed(arrays.moves),
-        borrowed(arrays.inertia),
-        arrays.rate,
-    )
-
-
 @inlined
 def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
     """Make the views of one instant, from past (3, dof) and targets (k, 18) of `write_program`."""
@@ -385,18 +364,18 @@ def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
         own = constants[table[k, 4] : table[k, 5]]
         target = step.targets[table[k, 6]]
         if kind == COSTS:
-            _enter_cost(address, step, own, qp.P, qp.q)
+            enter_cost(address, step, own, qp.P, qp.q)
         elif kind == TASKS:
             A = qp.A[first : first + rows]
-            _enter_task(address, step, own, target, A, qp.b[first : first + rows])
+            enter_task(address, step, own, target, A, qp.b[first : first + rows])
         elif kind == SOFT_TASKS:
             A = np.zeros((rows, qp.q.size))
             b = np.zeros(rows)
-            _enter_task(address, step, own, target, A, b)
+            enter_task(address, step, own, target, A, b)
             _add_soft(qp, A, b, constants[table[k, 5]])
         else:
             G = qp.G[first : first + rows]
-            _enter_limit(address, step, own, G, qp.h[first : first + rows], qp.lb, qp.ub)
+            enter_limit(address, step, own, G, qp.h[first : first + rows], qp.lb, qp.ub)
 
 
 @compiled

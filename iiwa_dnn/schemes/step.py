@@ -11,9 +11,9 @@ from pinocchio import rnea
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3, read_only
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.references import Target
 from iiwa_dnn.references.rotations import added, combined, cross, dot, scaled
 from iiwa_dnn.robot import Configuration, Robot

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.references.rotations import added, combined, cross, dot, rotation_log, row_of
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.block_form import block_rows

@@ -26,8 +26,8 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import compiled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.step import StepViews, rate_along, vector_at

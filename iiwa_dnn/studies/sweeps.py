@@ -28,7 +28,7 @@ from iiwa_dnn.robot.loading import robots_folder
 
 Task = Callable[[Any], Any]
 
-PACKAGES = ("iiwa-dnn", "numpy", "scipy", "numba", "pin")
+PACKAGES = ("iiwa-dnn", "numpy", "scipy", "pin")
 """Packages whose versions a result depends on."""
 
 _PATIENCE = 10.0  # time to look for a scheduler [s]

@@ -13,7 +13,6 @@ import time
 from pathlib import Path
 
 import pytest
-from numba.core import event
 
 import iiwa_dnn
 from helpers_commands import QUICK, call
@@ -165,25 +164,3 @@ def test_what_was_written_before_a_signal_is_whole(tmp_path: Path) -> None:
     assert not list((tmp_path / "run").glob(".*"))
     for path in (tmp_path / "run").glob("*.png"):
         assert path.read_bytes().endswith(b"IEND\xaeB`\x82")
-
-
-def test_after_a_set_up_runs_compile_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    runpy.run_path(str(ROOT / "scripts" / "warm_up.py"))["main"]()
-    runs = (
-        ((), 0),
-        (("--noise", "0.01", "--filter-window", "10", "--orientation", "none"), 0),
-        (("--mode", "continuous", "--orientation", "block"), 0),
-        (("circle", "--motion", "rk4", "--set", "scheme.kinetic=inertia"), 0),
-        (("cone", "--check", "proof"), 0),
-        (("--scale", "0.1", "--speed", "0.01"), 1),  # steps without a solution
-        (("--acceleration-limit", "10", "--obstacles", tmp_path / "ball.toml"), 0),
-    )
-    ball = '[[obstacle]]\nshape = "sphere"\ncenter = [9.0, 9.0, 9.0]\nradius = 0.1\n'
-    (tmp_path / "ball.toml").write_text(ball)
-    with event.install_recorder("numba:compile") as compiled:
-        for words, code in runs:
-            short = ("--dt", "1e-3", "--duration", "0.02", "-q", "--no-plots", "--overwrite")
-            assert call("track", *words, *short, "--out", tmp_path / "run") == code
-    assert [entry.data["dispatcher"] for _, entry in compiled.buffer] == []

@@ -76,7 +76,7 @@ def test_the_script_writes_its_report(
 ) -> None:
     monkeypatch.setattr(control, "measure_steps", lambda *arguments, **options: measured)
     # Compiling everything anew takes a minute, and is nothing that a test could judge.
-    times = {"import_s": 0.5, "first_step_cold_s": 30.0, "first_step_warm_s": 1.5}
+    times = {"import_s": 0.5, "first_step_s": 0.5}
     monkeypatch.setattr(process, "measure_startup", lambda rounds: times)
     memory = {"peak_bytes": [2e8, 3e8], "record_bytes": [1e7, 1e8], "growth_over_record": 1.1}
     monkeypatch.setattr(process, "measure_memory", lambda duration: memory)

@@ -253,9 +253,3 @@ def test_a_bad_argument_is_named(call: Any, arguments: dict[str, Any], named: st
     with pytest.raises(d.InvalidInputError) as caught:
         call(**arguments)
     assert caught.value.argument == named
-
-
-def test_kernels_that_task_rows_call_too_state_their_arithmetic() -> None:
-    for function in (rotations.coefficients, rotations.cross, rotations.rotated):
-        # Unstated, it would be the first caller's, and bytes a matter of what was compiled first.
-        assert function.targetoptions["fastmath"] == {"contract"}

@@ -22,7 +22,7 @@ from iiwa_dnn import (
     Target,
     load_robot,
 )
-from iiwa_dnn.qp.layout import compiled
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.motion_limits import (
     MARGIN,
     approach,
@@ -353,19 +353,17 @@ def test_limits_of_robots_and_of_ones_own() -> None:
     assert changed.with_limits(velocity=1.0).ddq_max.tolist() == [5.0] * 7
 
 
-@pytest.mark.parametrize("limit", [0.0, -1.0, math.nan, "fast", [1.0, -2.0], [1.0] * 6 + [-2.0]])
+@pytest.mark.parametrize("limit", [0.0, -1.0, math.nan, "fast", [[1.0]], [1.0, -2.0]])
 def test_bad_limits_are_refused_by_name(limit: Any) -> None:
-    with pytest.raises(InvalidInputError, match=r"^acceleration: "):
-        AccelerationLimits(limit).of(paper_robot())
+    with pytest.raises(InvalidInputError, match="acceleration_limit"):
+        AccelerationLimits(limit)
 
 
 def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
     robot = paper_robot()
-    with pytest.raises(InvalidInputError, match="acceleration: must be one number or 7"):
+    with pytest.raises(InvalidInputError, match="3 numbers for 7 joints"):
         Scheme(limits=[AccelerationLimits([1.0, 2.0, 3.0])]).program(robot)
-    with pytest.raises(
-        InvalidInputError, match="jerk: is needed: robot iiwa7"
-    ):
+    with pytest.raises(InvalidInputError, match="no dddq_max of its own"):
         Scheme(limits=[JerkLimits()]).program(robot)
     with pytest.raises(InvalidInputError, match="too little to stop"):
         Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).program(robot)

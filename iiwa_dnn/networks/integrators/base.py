@@ -2,11 +2,9 @@
 
 from typing import Any, ClassVar, NamedTuple, Protocol
 
-from numba import types
-
+from iiwa_dnn.compiling.library import entry, released
 from iiwa_dnn.networks.base import Network, settings_of
-from iiwa_dnn.qp.compiling import VECTOR, Signature, borrowed
-from iiwa_dnn.qp.layout import QP_VIEWS, Sizes, Vector, qp_views, released
+from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, qp_views
 from iiwa_dnn.qp.program import QP
 
 Settled = tuple[int, float, float, float, float]
@@ -28,23 +26,25 @@ SUBSTEPS = 3
 NETWORK = 4
 """and of the first of the network's own constants."""
 
-ANSWER = Signature(
-    types.Tuple([types.int64, *4 * [types.float64]]), QP_VIEWS, types.int64, VECTOR, VECTOR, VECTOR
-)
-"""Types of a compiled answer: ``(qp, address of the rates, constants, state, point)``.
 
-It advances the state, by a time or until it has settled, writes the point that it stands for, and
-returns what `Settled` holds.
-"""
+@entry
+def enter_answer(
+    address: int, qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector
+) -> Settled:
+    """Enter a compiled answer at an address.
 
-enter_answer = ANSWER.enter
+    It advances the state (size,), by a time or until it has settled, writes the point
+    (2n + m + p,) that it stands for, and returns what `Settled` holds. `rates` is the address of
+    the network's function, and the constants are (k,).
+    """
+    raise NotImplementedError
 
 
 class CompiledAnswer(NamedTuple):
     """A compiled function that answers programs of one shape, and its arguments.
 
     Attributes:
-        address: Address of a function of the type `ANSWER`.
+        address: Address of a function of the type `enter_answer`.
         rates: Address of the network's compiled function.
         constants: ``[tolerance, budget, duration, sub-steps, network's own ...]``, (k,).
     """
@@ -67,14 +67,11 @@ def answer_program(
     """Enter the compiled answer at an address.
 
     The program is `QP.data` with its sizes (n, m, p); constants (k,), state (size,) and point
-    (2n + m + p,) are those of `ANSWER`, and so is the address `rates`, which is 0 for an answer
-    that does not use the network's function.
+    (2n + m + p,) are those of `enter_answer`, and so is the address `rates`, which is 0 for an
+    answer that does not use the network's function.
     """
     n, m, p = sizes
     qp = qp_views(data, n, m, p)
-    constants = borrowed(constants)
-    state = borrowed(state)
-    point = borrowed(point)
     settled: Settled = enter_answer(address, qp, rates, constants, state, point)
     return settled
 

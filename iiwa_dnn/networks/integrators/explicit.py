@@ -7,12 +7,12 @@ from typing import ClassVar
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import CompiledRates, Network, enter_rates
 from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
 from iiwa_dnn.networks.projection import mark_active, stable_step
-from iiwa_dnn.qp.compiling import borrowed
-from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, compiled, qp_views
+from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -85,7 +85,7 @@ def explicit_program(
     """
     n, m, p = sizes
     qp = qp_views(data, n, m, p)
-    explicit_euler(qp, rates, borrowed(constants), borrowed(state), step, count)
+    explicit_euler(qp, rates, constants, state, step, count)
 
 
 @compiled
@@ -106,7 +106,7 @@ def explicit_euler(
 
 @compiled
 def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vector) -> Settled:
-    """Advance the network by its time with explicit steps; a compiled answer (`ANSWER`).
+    """Advance the network by its time with explicit steps; a compiled answer (`enter_answer`).
 
     It reads constants (k,), advances the state (size,) and writes the point (2n + m + p,).
 

@@ -25,16 +25,17 @@ from typing import ClassVar
 import numpy as np
 
 from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators import pseudo_transient
 from iiwa_dnn.networks.integrators.base import (
-    ANSWER,
     BUDGET,
     TOLERANCE,
     Integrator,
     Settled,
     answer_program,
+    enter_answer,
 )
 from iiwa_dnn.networks.integrators.implicit_steps import (
     backward_euler,
@@ -44,8 +45,7 @@ from iiwa_dnn.networks.integrators.implicit_steps import (
     linear_step,
 )
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
-from iiwa_dnn.qp.compiling import borrowed, outlived
-from iiwa_dnn.qp.layout import QPViews, Vector, borrowed_views, check_size, compiled, qp_views
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size, qp_views
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point, within
 
@@ -139,7 +139,7 @@ def advance_implicit(
 def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector) -> Settled:
     """Advance `s` (size,) in place until the residuals of `point` (size,) are small enough.
 
-    A compiled answer (`ANSWER`), of the projection network alone: `rates` is not used.
+    A compiled answer (`enter_answer`), of the projection network alone: `rates` is not used.
 
     Returns:
         ``(systems, time, primal, dual, gap)``: linear systems solved, network time that passed
@@ -147,10 +147,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     """
     tol = constants[TOLERANCE]
     budget = int(constants[BUDGET])
-    qp = borrowed_views(qp)
-    s = borrowed(s)
-    owner = np.empty(3 * s.size + condensed_size(qp))  # several take as long as some rows
-    work = borrowed(owner)
+    work = np.empty(3 * s.size + condensed_size(qp))  # several take as long as some rows
     now = work[: s.size]
     then = work[s.size : 2 * s.size]
     new = work[2 * s.size : 3 * s.size]
@@ -195,14 +192,13 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         if step < LONGEST:
             step *= GROWTH
     primal, dual, gap = kkt_point(qp, s, point)
-    outlived(owner)
     return systems, time, primal, dual, gap
 
 
 @cache
 def settle_address() -> int:
     """Return the address of `settle`, compiled at the first call."""
-    return ANSWER.address(settle)
+    return enter_answer.address(settle)
 
 
 def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:

@@ -32,10 +32,9 @@ which is his method of multipliers.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from iiwa_dnn.compiling.library import compiled, inlined
 from iiwa_dnn.qp.dense import (
-    SUMS,
     add_outer,
     add_row,
     cholesky_factor,
@@ -43,7 +42,7 @@ from iiwa_dnn.qp.dense import (
     row_dot,
     rows_dot,
 )
-from iiwa_dnn.qp.layout import ONE, Matrix, QPViews, Vector, compiled, inlined, larger
+from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
 
 SLOPE = 0.3
 """Slope at which a line search may end, relative to that at its start."""
@@ -112,8 +111,8 @@ def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
         if matrix.active[j] != matrix.counted[j]:
             add_outer(matrix.gram, matrix.active[j] - matrix.counted[j], qp.G, j)
             matrix.counted[j] = matrix.active[j]
-    for i in range(np.uint64(n)):
-        for k in range(i + ONE):
+    for i in range(n):
+        for k in range(i + 1):
             matrix.K[i, k] = qp.P[i, k] + step * matrix.gram[i, k]
     for i in range(n):
         bounds = matrix.active[m + i] + matrix.active[m + n + i]
@@ -191,7 +190,7 @@ def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
 @compiled
 def copy_into(out: Vector, values: Vector) -> None:
     """Copy all values (k,) into the first entries of `out`."""
-    for k in range(np.uint64(values.size)):
+    for k in range(values.size):
         out[k] = values[k]
 
 
@@ -276,9 +275,9 @@ def _multipliers(
     keep = 1.0 / (1.0 + step)
     for j in range(p):
         new[n + j] = s[n + j] + step * slacks[j]
-    shift = np.uint64(n + p)
-    rows = np.uint64(p)
-    for k in range(np.uint64(active.size)):  # no branch: several at once
+    shift = n + p
+    rows = p
+    for k in range(active.size):  # no branch: several at once
         old = s[shift + k]
         moving = old + step * slacks[rows + k]
         kept = old * keep
@@ -345,7 +344,7 @@ def _line_search(
     return length
 
 
-@njit(cache=True, error_model="numpy", fastmath=SUMS)
+@compiled
 def _slope(
     n: int, p: int, s: Vector, step: float, slacks: Vector, change: Vector, length: float
 ) -> tuple[float, float]:
@@ -353,8 +352,8 @@ def _slope(
     keep = 1.0 / (1.0 + step)
     slope = 0.0
     second = 0.0
-    shift = np.uint64(n)
-    for k in range(np.uint64(p), np.uint64(slacks.size)):
+    shift = n
+    for k in range(p, slacks.size):
         old = s[shift + k]
         rate = change[k]
         moving = old + step * (slacks[k] + length * rate)

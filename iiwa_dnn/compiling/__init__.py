@@ -1,0 +1,5 @@
+"""Kernels: the subset of Python that is translated to C, ahead of time, and the library of it.
+
+`translator` and what it imports read source text alone, so that a build needs none of the package's
+own requirements. `library` hands the compiled kernels out. CONTRIBUTING.md describes the subset.
+"""

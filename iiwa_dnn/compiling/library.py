@@ -1,0 +1,187 @@
+"""Kernels of the library, and the entry of kernels and of a user's functions by address."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any, ClassVar, Generic, ParamSpec, TypeVar, cast, get_type_hints
+
+import numpy as np
+
+from iiwa_dnn.compiling.build import build, is_current
+from iiwa_dnn.compiling.translator import c_name
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+P = ParamSpec("P")
+R = TypeVar("R")
+
+INTERPRETED = os.environ.get("IIWA_DNN_INTERPRETED") == "1"
+"""Whether kernels run as the Python that they are written in."""
+
+_ROOT = Path(__file__).parents[1]
+
+
+def _loaded() -> Any:
+    """Load the library; in a checkout it is built anew if a file of the package has changed."""
+    if (_ROOT.parent / "pyproject.toml").is_file() and not is_current(_ROOT):
+        build(_ROOT)
+    return import_module("iiwa_dnn._kernels")
+
+
+_LIBRARY = _loaded()
+_SOURCES: dict[int, Callable[..., Any]] = {}
+_FAILED = ctypes.c_int64.from_address(_LIBRARY.addresses["failed"])
+_CFunction: Any = type(ctypes.pythonapi.Py_IncRef).__mro__[1]
+_ERRORS: dict[int, BaseException] = {}
+_INTERPRETED: dict[int, Callable[..., Any]] = {}
+
+
+def compiled(function: Function) -> Function:
+    """Return the library's translation of a kernel; outside of the package, the function itself."""
+    if not function.__module__.startswith("iiwa_dnn.") or INTERPRETED:
+        return function
+    found = getattr(_LIBRARY, c_name(function.__module__, function.__name__), function)
+    if found is not function:
+        _SOURCES[id(found)] = function
+    return cast(Function, found)
+
+
+inlined = compiled
+"""As `compiled`, for a kernel that C copies into its callers."""
+
+released = compiled
+"""As `compiled`, for a kernel during which Python's other threads go on."""
+
+
+def source_of(kernel: Any) -> Any:
+    """Return the function in Python that a kernel was translated from."""
+    return _SOURCES.get(id(kernel), kernel)
+
+
+def raise_failure() -> None:
+    """Raise the error of a user's function that a kernel of this thread has entered, if any."""
+    error = _ERRORS.pop(threading.get_ident(), None)
+    _FAILED.value = len(_ERRORS)
+    if error is not None:
+        raise error
+
+
+class Entry(Generic[P, R]):
+    """A call of one of several functions of the same types by its address.
+
+    The function is a kernel of the package; a function of C with the flat arguments that
+    CONTRIBUTING.md describes (its address, what `numba.cfunc` returns, or a function of ctypes); or
+    any function in Python, which is called back. The address of a function of C is negative.
+
+    Attributes:
+        functions: The function of each address that was asked for.
+    """
+
+    functions: ClassVar[dict[int, Any]] = {}
+    _kept: ClassVar[list[Any]] = []
+
+    def __init__(self, prototype: Callable[P, R]) -> None:
+        """Take the function that states the types."""
+        self.prototype = prototype
+        self._name = c_name(prototype.__module__, prototype.__name__)
+        self._types = _LIBRARY.codes[self._name][1:]
+        self._addresses: dict[int, int] = {}
+
+    def __call__(self, *arguments: P.args, **keywords: P.kwargs) -> R:
+        """Enter the function at an address."""
+        address, *own = arguments
+        if INTERPRETED and address in _INTERPRETED:
+            return cast(R, _INTERPRETED[address](*own))
+        return cast(R, getattr(_LIBRARY, self._name)(*arguments))
+
+    def address(self, function: Any) -> int:
+        """Return the address with which a function is entered.
+
+        Raises:
+            TypeError: It is a kernel of other types, or no function.
+        """
+        if id(function) not in self._addresses:
+            address = self._address(function)
+            self._addresses[id(function)] = address
+            self._kept.append(function)
+            Entry.functions[address] = source_of(function)
+        return self._addresses[id(function)]
+
+    def _address(self, function: Any) -> int:
+        source = source_of(function)
+        if source is not function:
+            name = c_name(source.__module__, source.__name__)
+            if _LIBRARY.codes[name] != self._types:
+                problem = f"is a kernel of the types {_LIBRARY.codes[name]}, not {self._types}"
+                raise TypeError(f"{name} {problem}")
+            return int(_LIBRARY.addresses[name])
+        found = getattr(function, "address", function)
+        if isinstance(found, int):
+            return -found
+        if not callable(function):
+            raise TypeError(f"{function!r} is no function")
+        if INTERPRETED and not isinstance(function, _CFunction):
+            _INTERPRETED[id(function)] = function
+            return id(function)
+        called = function if isinstance(function, _CFunction) else self._callback(function)
+        self._kept.append(called)
+        return -cast(int, ctypes.cast(called, ctypes.c_void_p).value)
+
+    def _callback(self, function: Callable[..., Any]) -> Any:
+        """Make a function of C that calls one in Python; its error is raised by `raise_failure`."""
+        letters, _, result = self._types.partition(":")
+        kinds = [kind for letter in letters for kind in _FLAT.get(letter, [])]
+        is_tuple = result[0] == "("
+        kinds += [ctypes.POINTER(ctypes.c_double)] * is_tuple
+        hints = [*get_type_hints(self.prototype).values()][1:-1]
+
+        def enter(*flat: Any) -> float:
+            try:
+                values = iter(flat)
+                codes = iter(letters)
+                answer = function(*[_rebuilt(hint, codes, values) for hint in hints])
+                for i, number in enumerate(answer if is_tuple else ()):
+                    flat[-1][i] = number
+                return float(answer) if result == "d" else 0.0
+            except BaseException as error:
+                _ERRORS[threading.get_ident()] = error
+                _FAILED.value = len(_ERRORS)
+                return 0.0
+
+        return ctypes.CFUNCTYPE(ctypes.c_double if result == "d" else None, *kinds)(enter)
+
+
+def entry(prototype: Callable[P, R]) -> Entry[P, R]:
+    """Make the entry of functions of the types that a function without a body states."""
+    return Entry(prototype)
+
+
+_FLAT: dict[str, list[Any]] = {
+    "i": [ctypes.c_int64],
+    "d": [ctypes.c_double],
+    "b": [ctypes.c_bool],
+    **{letter: [ctypes.c_void_p, ctypes.c_int64] for letter in "vV"},
+    **{letter: [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64] for letter in "mM"},
+    "c": [ctypes.c_void_p, *3 * [ctypes.c_int64]],
+}
+
+
+def _rebuilt(hint: Any, codes: Iterator[str], values: Iterator[Any]) -> Any:
+    """Make an argument of Python from flat ones of C."""
+    if hasattr(hint, "_fields"):
+        kinds = get_type_hints(hint)
+        return hint(*[_rebuilt(kinds[name], codes, values) for name in hint._fields])
+    code = next(code for code in codes if code in _FLAT)
+    first = next(values)
+    if code in "idb":
+        return first
+    shape = [next(values) for _ in _FLAT[code][1:]]
+    kind = ctypes.c_double if code in "vmc" else ctypes.c_int64
+    if not first or not np.prod(shape):
+        return np.zeros(shape, dtype=kind)
+    memory: Any = (kind * int(np.prod(shape))).from_address(first)
+    return np.frombuffer(memory, kind).reshape(shape)

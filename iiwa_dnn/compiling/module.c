@@ -1,0 +1,29 @@
+static int note(PyObject *module, const char *name, const struct kernel *kernel)
+{
+    PyObject *dict = PyObject_GetAttrString(module, name);
+    PyObject *value = name[0] == 'c' ? PyUnicode_FromString(kernel->code)
+                                     : PyLong_FromVoidPtr(kernel->address);
+    const int done = dict && value ? PyDict_SetItemString(dict, kernel->name, value) : -1;
+    Py_XDECREF(dict);
+    Py_XDECREF(value);
+    return done;
+}
+
+static struct PyModuleDef definition = {
+    PyModuleDef_HEAD_INIT, "iiwa_dnn._kernels", "The package's kernels.", -1, methods,
+};
+
+PyMODINIT_FUNC PyInit__kernels(void)
+{
+    import_array();
+    PyObject *module = PyModule_Create(&definition);
+    if (!module) return NULL;
+    const struct kernel flag = {"failed", &failed, ""};
+    if (PyModule_AddObject(module, "addresses", PyDict_New()) < 0
+        || PyModule_AddObject(module, "codes", PyDict_New()) < 0
+        || note(module, "addresses", &flag) < 0) return NULL;
+    for (const struct kernel *kernel = kernels; kernel->name; kernel++) {
+        if (note(module, "codes", kernel) < 0 || note(module, "addresses", kernel) < 0) return NULL;
+    }
+    return module;
+}

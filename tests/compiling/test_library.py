@@ -1,0 +1,189 @@
+"""The package's library: functions entered by address, and the bits of whole steps."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+import threading
+import traceback
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+
+import iiwa_dnn
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import paper_robot
+from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.qp.residuals import residuals_of
+from iiwa_dnn.references.base import enter_path
+from iiwa_dnn.references.shapes import heart_path
+from iiwa_dnn.schemes.parts import enter_limit
+
+
+def _limit(step: Any, constants: Any, G: Any, h: Any, lb: Any, ub: Any) -> None:
+    """Keep the first joint's velocity below a number by a row, and the second's by a bound."""
+    G[0, 0] = 1.0
+    h[0] = constants[0] - step.q[0]
+    ub[1] = min(ub[1], constants[1] * step.jacobian[1, 5])
+
+
+_P = numba.types.CPointer(numba.types.float64)
+_I = numba.types.int64
+_D = numba.types.float64
+
+
+@numba.cfunc(
+    numba.void(_D, _D, *3 * (_P, _I), *5 * (_P, _I, _I), _P, _I, _P, _I, _I, *3 * (_P, _I))
+)
+def _flat(
+    t, rate, q, n, last, n1, before, n2, jacobian, n3, six, placements, frames, twelve,
+    moves, m1, m2, inertia, i1, i2, targets, k, eighteen, constants, count, G, rows, width,
+    h, h1, lb, l1, ub, u1,
+):  # fmt: skip
+    G[0] = 1.0
+    h[0] = constants[0] - q[0]
+    ub[1] = min(ub[1], constants[1] * jacobian[6 + 5])
+
+
+class Own(iiwa_dnn.Limit):
+    """The limit by a function."""
+
+    rows = 1
+
+    def __init__(self, kernel: Any) -> None:
+        self.kernel = kernel
+
+    def constants(self, robot: iiwa_dnn.Robot) -> np.ndarray:
+        return np.array([0.7, 0.3])
+
+
+def _commands(limit: iiwa_dnn.Limit, steps: int = 20) -> np.ndarray:
+    robot = paper_robot()
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=[limit])
+    conf = iiwa_dnn.Configuration(robot, PAPER_Q0)
+    controller = iiwa_dnn.Controller(robot, scheme, iiwa_dnn.Heart().anchored(conf), dt=1e-3)
+    q = np.array(PAPER_Q0)
+    found = []
+    for k in range(steps):
+        found.append(controller.step(q, 1e-3 * k).dq)
+        q = q + 1e-3 * found[-1]
+    return np.array(found)
+
+
+class Numpy(iiwa_dnn.Limit):
+    """The limit by methods in numpy."""
+
+    rows = 1
+
+    def inequalities(self, step: iiwa_dnn.Step) -> tuple[np.ndarray, np.ndarray]:
+        return np.eye(1, 7), np.array([0.7 - step.q[0]])
+
+    def bounds(self, step: iiwa_dnn.Step) -> tuple[np.ndarray, np.ndarray]:
+        upper = np.full(7, np.inf)
+        upper[1] = 0.3 * step.frame().jacobian[5, 1]
+        return np.full(7, -np.inf), upper
+
+
+def test_a_function_of_ones_own_enters_in_any_form() -> None:
+    expected = _commands(Numpy())
+    pointer = ctypes.cast(_flat.address, ctypes.CFUNCTYPE(None))
+    for kernel in (_limit, _flat, _flat.address, pointer):
+        np.testing.assert_array_equal(_commands(Own(kernel)), expected)
+
+
+def test_an_error_in_ones_own_function_comes_with_its_traceback() -> None:
+    def fails(step: Any, constants: Any, G: Any, h: Any, lb: Any, ub: Any) -> None:
+        raise ValueError("out of reach")
+
+    with pytest.raises(ValueError, match="out of reach") as caught:
+        _commands(Own(fails))
+    names = [frame.name for frame in traceback.extract_tb(caught.value.__traceback__)]
+    assert names[-1] == "fails"
+    assert "step" in names
+    assert len(_commands(Own(_limit), 2)) == 2  # and nothing of it stays
+
+
+@pytest.mark.parametrize("wrong", [heart_path, settle, 1.5, None])
+def test_what_has_other_types_is_refused(wrong: object) -> None:
+    with pytest.raises(TypeError):
+        enter_limit.address(wrong)
+
+
+def test_a_path_is_entered_from_python_and_by_two_threads() -> None:
+    heart = iiwa_dnn.Heart()
+    expected = heart.at(3.0).data
+    found: list[np.ndarray] = []
+
+    def enter() -> None:
+        for _ in range(1000):
+            target = np.array(heart.base)
+            enter_path(enter_path.address(heart.path), 3.0, heart.constants, target)
+            found.append(target)
+
+    threads = [threading.Thread(target=enter) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 2000
+    assert all(target.tobytes() == expected.tobytes() for target in found)
+
+
+def test_a_wrong_argument_of_a_kernel_is_an_error() -> None:
+    with pytest.raises(TypeError, match="takes 5 arguments, not 1"):
+        residuals_of(np.zeros(3))  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="is no array of float64"):
+        residuals_of([0.0], 1, 0, 0, np.zeros(2))  # type: ignore[arg-type]
+
+
+RUNS = """
+import sys
+import numpy as np
+import iiwa_dnn
+from iiwa_dnn.compiling.library import INTERPRETED
+from iiwa_dnn.studies import paper
+
+assert INTERPRETED == (sys.argv[1] == "1")
+robot = iiwa_dnn.load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+slow = robot.with_limits(velocity=0.1 * robot.dq_max)
+ball = iiwa_dnn.CollisionAvoidance([iiwa_dnn.Sphere((0.5, 0.2, 0.6), 0.05)])
+moving = [iiwa_dnn.AccelerationLimits(10.0), ball]
+runs = [
+    (robot, [], {}),
+    (slow, [], {"policy": "slow"}),
+    (slow, [], {"policy": "relax"}),
+    (robot, [iiwa_dnn.AccelerationLimits(1.0), iiwa_dnn.JerkLimits(50.0)], {}),
+    (robot, moving, {"policy": "relax"}),
+    (robot, [], {"mode": "continuous"}),
+]
+for arm, limits, options in runs:
+    conf = iiwa_dnn.Configuration(arm, paper.START)
+    heart = iiwa_dnn.Heart(period=2.0).anchored(conf)
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=limits)
+    controller = iiwa_dnn.Controller(arm, scheme, heart, dt=1e-2, **options)
+    q = np.array(paper.START)
+    for k in range(int(sys.argv[2])):
+        command = controller.step(q, 1e-2 * k)
+        q = q + 1e-2 * command.dq
+        print(command.action.name, *[x.hex() for x in command.dq.tolist()])
+"""
+
+
+@pytest.mark.long
+def test_whole_steps_have_the_same_bits_interpreted() -> None:
+    results = []
+    for flag in ("0", "1"):
+        done = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", RUNS, flag, "60"],
+            env={**os.environ, "IIWA_DNN_INTERPRETED": flag},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        results.append(done.stdout.splitlines())
+    assert results[0] == results[1]
+    assert {line.split()[0] for line in results[0]} >= {"NONE", "SLOW", "RELAX"}

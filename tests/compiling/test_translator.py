@@ -1,0 +1,337 @@
+"""Each construct of the subset: Python's own bits, and refusals by file and line."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from iiwa_dnn.compiling.build import build, is_current
+from iiwa_dnn.compiling.sources import TranslationError
+from iiwa_dnn.compiling.translator import Translator
+
+HEAD = """
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+Vector = Matrix = Cube = IntVector = IntMatrix = np.ndarray
+Pair = tuple[float, float]
+
+
+def compiled(function):
+    return function
+
+
+inlined = released = entry = compiled
+
+
+class Kind(IntEnum):
+    FIRST = 3
+    SECOND = 4
+
+
+class Views(NamedTuple):
+    data: Vector
+    rows: Matrix
+    rate: float
+
+
+SECOND = int(Kind.SECOND)
+LOW, HIGH = range(2)
+TABLE = (0.5, 0.25, 2.0)
+LIMIT = np.finfo(float).eps
+LARGE = 10.0 ** 3
+"""
+
+KERNELS = (
+    HEAD
+    + '''
+@compiled
+def arithmetic(a: float, b: float, i: int, j: int) -> tuple[float, float, int, int, float, float]:
+    """Compute with numbers of both kinds."""
+    return a + b * -a - (a - b) / b, a % b, i // j, i % j, i / j, a**2 - (b - (a - b))
+
+
+@compiled
+def elementary(a: float, b: float) -> tuple[float, ...]:
+    """Compute elementary functions."""
+    return 0.0
+
+
+@compiled
+def functions(a: float, b: float) -> tuple[float, float, float, float, float, float, float]:
+    """Compute elementary functions."""
+    root = np.sqrt(abs(a)) + math.sqrt(abs(b))
+    return (
+        root,
+        np.sin(a) * math.cos(b),
+        np.arctan2(a, b),
+        math.copysign(a, b),
+        float(math.ceil(a) - math.floor(b)),
+        min(a, b, 0.5) + max(a, b, -0.5),
+        math.tanh(a) + math.exp(b),
+    )
+
+
+@compiled
+def decisions(a: float, b: float, i: int) -> int:
+    """Take branches."""
+    found = 0
+    if -1.0 < a <= 1.0 and not b > 0.0 or i == 2:
+        found += 1
+    elif i > 3:
+        found -= 2
+    else:
+        found = 10 if a < b else 20
+    return found + (i << 2) - (i >> 1) + (i & 3)
+
+
+@compiled
+def loops(values: Vector, n: int) -> float:
+    """Go through ranges, arrays and tuples."""
+    total = 0.0
+    for i in range(n):
+        if values[i] < -1.0:
+            continue
+        if values[i] > 2.0:
+            break
+        total += values[i]
+    for i in range(n - 1, -1, -1):
+        total *= 1.0 + 1e-3 * values[i]
+    for i in range(1, n, 2):
+        total -= values[i]
+    for value in values:
+        total += value * 0.125
+    for row, sign in ((0, 1.0), (n - 1, -1.0)):
+        total += sign * values[row]
+    for share in TABLE:
+        total *= share
+    while total > 1.0:
+        total /= 3
+    for _ in range(2):
+        total += 0.1
+    return total
+
+
+@compiled
+def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
+    """Write into parts of arrays."""
+    own = np.empty((2, values.size))
+    other = np.zeros(values.size)
+    own[0] = values
+    own[1, :] = 0.5
+    kept = values.copy()
+    for i in range(rows.shape[0]):
+        rows[i, 1:] = own[0, : rows.shape[1] - 1]
+        rows[i, 0] += own[1, i] + len(rows)
+    grid = kept[: 2 * (kept.size // 2)].reshape(2, kept.size // 2)
+    first, second = own[1], other
+    first, second = second, first
+    for i in range(values.size):
+        values[i] = second[i] - first[i] + grid[0, 0] + rows.size
+    counts[0], counts[-1] = counts[-1], counts[0]
+    values[-1] = -1.0
+
+
+@inlined
+def views_of(data: Vector, n: int) -> Views:
+    """Make views."""
+    return Views(data[:n], data[n:].reshape((data.size - n) // n, n), 2.0)
+
+
+@compiled
+def change(views: Views, factor: float) -> Pair:
+    """Write through views, and return two numbers."""
+    for i in range(views.data.size):
+        views.data[i] *= factor
+        views.rows[0, i] -= views.rate
+    return views.data[0], views.rows[0, 0]
+
+
+@released
+def views(data: Vector, n: int) -> float:
+    """Hand views on."""
+    own = views_of(data, n)
+    a, _ = change(own, 1.5)
+    _, b = change(views_of(data, n), 0.5)
+    x = y = a
+    x += change(own, 1.0)[HIGH]
+    return x + y * b
+
+
+@compiled
+def constants(a: float, sqrt: float, default: int) -> float:
+    """Read constants, by names that are C's too."""
+    int_min = SECOND + Kind.FIRST + LOW
+    register = LARGE if a < np.inf else -np.inf
+    return a * TABLE[1] + LIMIT + int_min * sqrt + default + register
+
+
+@entry
+def enter(address: int, views: Views, factor: float) -> Pair:
+    """Enter a function like `change`."""
+
+
+@compiled
+def scratch(n: int) -> float:
+    """Take more memory than an arena has."""
+    large = np.zeros((n, n))
+    total = 0.0
+    for i in range(n):
+        row = np.empty(n)
+        row[:] = 1.0 / (i + 1)
+        large[i] = row
+        total += large[i, n - 1]
+    return total
+'''
+)
+KERNELS = re.sub(r"@compiled\ndef elementary.*?\n\n\n", "", KERNELS, flags=re.S)
+
+
+def _module(path: Path, name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec
+    assert spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
+    """The kernels above as Python and as a library."""
+    folder = tmp_path_factory.mktemp("kernels") / "package"
+    folder.mkdir()
+    (folder / "own.py").write_text(KERNELS)
+    return _module(folder / "own.py", "own"), _module(build(folder), "_kernels")
+
+
+RNG = np.random.default_rng(0)
+NUMBERS = [0.0, -0.0, 0.3, -1.7, 2.5, 1e-300, -7.25, 1e17]
+CALLS: list[tuple[Any, ...]] = [
+    *(
+        ("arithmetic", a, b, i, j)
+        for a in NUMBERS
+        for b in (0.7, -3.1)
+        for i, j in ((7, -3), (-7, 2))
+    ),
+    *(("functions", a, b) for a in NUMBERS[:-1] for b in (0.7, -3.1, -0.0)),
+    *(("decisions", a, b, i) for a in NUMBERS for b in (0.5, -0.5) for i in (0, 2, 3, 9)),
+    *(("loops", 2.0 * RNG.standard_normal(n), n) for n in range(1, 9)),
+    *(("arrays", RNG.random(n), RNG.random((2, 4)), np.arange(3)) for n in (3, 4, 7)),
+    *(("views", RNG.random(3 * n), n) for n in (1, 2, 5)),
+    ("constants", 0.3, 1.5, 7),
+    *(("scratch", n) for n in (1, 50, 300)),
+]
+
+
+@pytest.mark.parametrize("name", sorted({str(call[0]) for call in CALLS}))
+def test_the_library_has_the_bits_of_python(both: tuple[Any, Any], name: str) -> None:
+    python, library = both
+    for _, *arguments in [call for call in CALLS if call[0] == name]:
+        ours = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
+        theirs = [np.copy(x) if isinstance(x, np.ndarray) else x for x in arguments]
+        expected = getattr(python, name)(*ours)
+        found = getattr(library, f"own_{name}")(*theirs)
+        assert np.array(found).tobytes() == np.array(expected).tobytes(), arguments
+        for mine, other in zip(ours, theirs, strict=True):
+            assert np.asarray(mine).tobytes() == np.asarray(other).tobytes()
+
+
+def test_named_tuples_come_from_python_too(both: tuple[Any, Any]) -> None:
+    python, library = both
+    one, other = (python.Views(np.arange(2.0), np.ones((1, 2)), 0.5) for _ in range(2))
+    assert library.own_change(one, 3.0) == python.change(other, 3.0)
+    np.testing.assert_array_equal(one.data, other.data)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (np.zeros(3),),
+        (np.zeros(3), 2, 1),
+        (np.zeros((3, 1)), 3),
+        (np.zeros(3, dtype=np.float32), 3),
+        (np.zeros(6)[::2], 3),
+        ([0.0, 1.0], 2),
+        (np.zeros(3), 2.5),
+        (np.zeros(3), "2"),
+    ],
+)
+def test_wrong_arguments_are_errors(both: tuple[Any, Any], arguments: tuple[Any, ...]) -> None:
+    with pytest.raises(TypeError):
+        both[1].own_loops(*arguments)
+
+
+REFUSED = [
+    ("def f(a) -> None:\n    pass", "`a` has no annotation"),
+    ("def f(a: object) -> None:\n    pass", "`object` is no type"),
+    ("def f(a: float = 1.0) -> None:\n    pass", "has other parameters than plain ones"),
+    ("def f(a: float) -> float:\n    a = a ** 3\n    return a", "`a ** 3` is no square"),
+    (
+        "def f(a: float) -> float:\n    b = 1.0\n    b = (a, a)\n    return a",
+        "changes a variable's type",
+    ),
+    ("def f(a: int) -> int:\n    a = 0.5\n    return a", "changes a parameter's type"),
+    ("def f(a: float) -> float:\n    return nothing", "`nothing` is not known here"),
+    ("def f(a: float) -> float:\n    return f(a)", "`f(a)` calls itself"),
+    ("def f(a: float) -> float:\n    return np.linalg.norm(a)", "`np.linalg.norm(a)` has no"),
+    ("def f(a: Matrix) -> None:\n    a[:, 0] = 1.0", "has gaps between its rows"),
+    ("def f(a: Vector) -> None:\n    a[::2] = 1.0", "is a slice with a step"),
+    ("def f(a: Vector) -> None:\n    a[:] = a + a", "`a` is no number"),
+    ("def f(a: Matrix) -> None:\n    a[0] = a", "is written with another type"),
+    ("def f(a: Vector) -> Vector:\n    return 1.0", "is not what is annotated"),
+    (
+        "def f(n: int) -> int:\n    for i in range(n):\n        pass\n    return i",
+        "`i` is not known",
+    ),
+    (
+        "def f(n: int) -> int:\n    for i in range(n):\n        i = 0\n    return n",
+        "is written in its",
+    ),
+    (
+        "def f(a: float) -> float:\n    try:\n        pass\n    finally:\n        pass",
+        "`try:` has no",
+    ),
+    ("def f(a: float) -> float:\n    return [a][0]", "`[a]` has no translation"),
+    ("def f(a: float) -> bool:\n    return a and True", "`a` is no condition"),
+]
+
+
+@pytest.mark.parametrize(("source", "message"), REFUSED)
+def test_what_is_no_kernel_is_refused_by_file_and_line(
+    tmp_path: Path, source: str, message: str
+) -> None:
+    folder = tmp_path / "package"
+    folder.mkdir()
+    (folder / "own.py").write_text(f"{HEAD}\n\n@compiled\n{source}\n")
+    with pytest.raises(TranslationError, match=re.escape(message)) as caught:
+        Translator(folder).all()
+    assert re.match(r"package/own\.py:\d+: ", str(caught.value))
+
+
+def test_the_library_follows_its_sources(tmp_path: Path) -> None:
+    folder = tmp_path / "package"
+    folder.mkdir()
+    source = (
+        "def compiled(f):\n    return f\n\n\n@compiled\ndef f(a: float) -> float:\n    return {}\n"
+    )
+    (folder / "own.py").write_text(source.format("a + 1.0"))
+    made = build(folder)
+    assert is_current(folder)
+    before = made.read_bytes()
+    (folder / "own.py").write_text("# A comment.\n" + source.format("a + 1.0"))
+    assert not is_current(folder)
+    assert build(folder).read_bytes() == before  # which no comment changes
+    (folder / "own.py").write_text(source.format("a + 2.0"))
+    assert not is_current(folder)
+    assert build(folder).read_bytes() != before
+    assert _module(made, "_kernels").own_f(1.0) == 3.0
