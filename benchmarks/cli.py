@@ -29,7 +29,6 @@ class BenchSettings(BenchOptions):
 
     steps: int = 5000  # number of steps in a stream of programs
     cold: int = 1000  # number of random programs of each size
-    batch: int = 100_000  # number of programs in the batch
 
 
 @dataclass(frozen=True)
@@ -71,11 +70,11 @@ def _targets(options: BenchTargetsSettings) -> int:
 
 
 def _solvers(options: BenchSettings) -> int:
-    for name in ("steps", "cold", "batch"):
+    for name in ("steps", "cold"):
         checks.integer(f"--{name}", getattr(options, name), 50)
     folder = prepare_folder(options.out)
     # Here, since the peers are in an extra.
-    from benchmarks.measurement import CHUNK, measure_batch, measure_known, measure_stream
+    from benchmarks.measurement import CHUNK, measure_known, measure_stream
     from benchmarks.peers import PEERS
     from benchmarks.report import environment, save_report, verdict
     from benchmarks.streams import all_streams
@@ -91,16 +90,11 @@ def _solvers(options: BenchSettings) -> int:
             measured.append(
                 {"name": stream.name, "about": stream.about, "warm": stream.warm, "rows": rows}
             )
-    batch = measure_batch(streams[0].programs, options.batch)
-    about = (
-        f"{options.batch} programs of the heart, limits idle, from a cold start, over all cores."
-    )
     share = options.cold / 1000
     known = measure_known(int(10_000 * share), int(1000 * share), int(200 * share))
     results = {
         "environment": environment(),
         "streams": measured,
-        "batch": {"about": about, "rows": batch},
         "known": known,
     }
     written = save_report(results, folder)

@@ -1,18 +1,15 @@
-"""Times and residuals of all peers on a stream, of a batch, and on programs without a solution."""
+"""Times and residuals of all peers on a stream, and on programs without a solution."""
 
 import gc
-import os
 from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from proxsuite import proxqp
 
 from benchmarks import programs
 from benchmarks.peers import TOL, Peer
 from benchmarks.streams import Stream
-from iiwa_dnn.networks.batch import solve_batch
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.program import QP, Vector
 from iiwa_dnn.qp.solution import Status
@@ -21,9 +18,6 @@ FAILED = 1e-8
 """An answer whose largest residual is above this has failed, whatever its solver says."""
 CHUNK = 50
 """Programs that one peer solves before the next has its turn, so that noise falls on all alike."""
-
-CALLS = 5
-"""Calls of `solve_batch`, of which the median counts; ProxQP's slices are many calls already."""
 
 Row = dict[str, Any]
 
@@ -88,84 +82,6 @@ def _summary(times: Vector, residuals: Vector) -> Row:
         "failed": int((~good).sum()),
         "programs": int(residuals.size),
     }
-
-
-def measure_batch(given: Sequence[QP], count: int, slice_size: int = 5000) -> list[Row]:
-    """`solve_batch` beside ProxQP's BatchQP with solve_in_parallel, on the same programs and cores.
-
-    Args:
-        given: Programs of one shape, taken in turn.
-        count: How many programs to solve.
-        slice_size: Programs in one BatchQP, which is heavy on memory; the times are added up. Every
-            tenth of its answers is judged.
-
-    Returns:
-        For each of both the time per program [µs] of solving alone and with what comes before it,
-        that is handing the programs over. `solve_batch` does both at once.
-    """
-    n, m, p = given[0].sizes
-    if m:
-        raise ValueError("the batch is measured on programs without inequality rows")
-    names = ("P", "q", "A", "b", "lb", "ub")
-    stacks: dict[str, Any] = {name: np.stack([getattr(qp, name) for qp in given]) for name in names}
-    solve_batch(**stacks)  # compiles
-    threads = os.cpu_count() or 1
-    eye = np.eye(n)
-    seconds = {"filled": 0.0, "solved": 0.0}
-    picked = np.arange(count) % len(given)
-    everything: dict[str, Any] = {name: stack[picked] for name, stack in stacks.items()}
-    calls = []
-    for _ in range(CALLS):
-        start = perf_counter()
-        batch = solve_batch(**everything, tol=TOL)
-        calls.append(perf_counter() - start)
-    ours = float(np.median(calls))
-    worst = 0.0
-    failed = 0
-    for begin in range(0, count, slice_size):
-        picked = np.arange(begin, min(begin + slice_size, count)) % len(given)
-        arrays = {name: stack[picked] for name, stack in stacks.items()}
-        start = perf_counter()
-        qps = proxqp.dense.BatchQP(picked.size)
-        for k in range(picked.size):
-            qp = qps.init_qp_in_place(n, p, n)
-            qp.settings.eps_abs = TOL
-            qp.settings.eps_rel = 0.0
-            qp.init(
-                arrays["P"][k],
-                arrays["q"][k],
-                arrays["A"][k],
-                arrays["b"][k],
-                eye,
-                arrays["lb"][k],
-                arrays["ub"][k],
-            )
-        seconds["filled"] += perf_counter() - start
-        start = perf_counter()
-        proxqp.dense.solve_in_parallel(qps, threads)
-        seconds["solved"] += perf_counter() - start
-        for k in range(0, picked.size, 10):
-            results = qps.get(k).results
-            residual = given[picked[k]].residuals(results.x, results.y, None, results.z).largest
-            worst = max(worst, residual)
-            failed = failed + 10 * (not residual <= FAILED)
-    scale = 1e6 / count
-    return [
-        {
-            "solver": "iiwa_dnn solve_batch",
-            "solve_us": scale * ours,
-            "total_us": scale * ours,
-            "worst_residual": float(batch.residuals.max()),
-            "failed": int((~batch.found).sum()),
-        },
-        {
-            "solver": "ProxQP BatchQP",
-            "solve_us": scale * seconds["solved"],
-            "total_us": scale * (seconds["solved"] + seconds["filled"]),
-            "worst_residual": worst,
-            "failed": failed,
-        },
-    ]
 
 
 def measure_known(solvable: int, infeasible: int, unbounded: int) -> list[Row]:

@@ -55,13 +55,6 @@ _SOLVERS = {
     "worst residual": "{worst_residual:.1e}",
     "failed": "{failed} of {programs}",
 }
-_BATCH = {
-    "solver": "{solver}",
-    "solving, µs per program": "{solve_us:.2f}",
-    "with handing over": "{total_us:.2f}",
-    "worst residual": "{worst_residual:.1e}",
-    "failed": "{failed}",
-}
 _KNOWN = {
     "kind": "{kind}",
     "recognised": "{recognised} of {programs}",
@@ -113,7 +106,7 @@ def save_report(results: Mapping[str, Any], folder: Path) -> list[Path]:
     """Write ``report.md``, ``results.json`` and ``times.png``/``.pdf``.
 
     Args:
-        results: ``environment``, ``streams`` (name, about, warm, rows), ``batch`` and ``known``.
+        results: ``environment``, ``streams`` (name, about, warm, rows) and ``known``.
         folder: Where to; it exists.
 
     Returns:
@@ -135,13 +128,7 @@ def markdown(results: Mapping[str, Any]) -> str:
     for stream in results["streams"]:
         parts += [f"## {stream['name']}", f"{stream['about'].capitalize()}."]
         parts += [tabulate(_SOLVERS, stream["rows"]), verdict(stream["rows"])]
-    ours, theirs = results["batch"]["rows"]
     parts += [
-        "## A batch",
-        results["batch"]["about"],
-        tabulate(_BATCH, (ours, theirs)),
-        f"Throughput: {theirs['total_us'] / ours['total_us']:.1f} times ProxQP's with handing "
-        f"over, {theirs['solve_us'] / ours['solve_us']:.1f} times its solving alone.",
         "## Programs known by construction",
         tabulate(_KNOWN, results["known"]),
         "## Limits of the comparison",

@@ -1,22 +1,19 @@
-"""Many small programs of one shape at once, over all cores."""
+"""Many small programs of one shape."""
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.compiling.library import released
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.integrators.implicit import ImplicitEuler, settle
-from iiwa_dnn.qp.dense import is_convex
-from iiwa_dnn.qp.layout import IntVector, Matrix, Sizes, Vector, field_shapes, qp_views
-from iiwa_dnn.qp.program import FIELDS, absent_fields, real_array, require_pairs
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.qp.layout import Matrix
+from iiwa_dnn.qp.program import FIELDS, QP, real_array
+from iiwa_dnn.qp.solution import Solution, Status
 
-CHUNK = 128
-"""Programs that one thread solves before it takes the next ones."""
+_AXES = dict(zip(FIELDS, (2, 1, 2, 1, 2, 1, 1, 1), strict=True))
+"""Axes of each field of one program."""
 
 
 class BatchSolution(NamedTuple):
@@ -53,11 +50,9 @@ def solve_batch(
     ub: ArrayLike | None = None,
     tol: float = 1e-9,
 ) -> BatchSolution:
-    """Solve k programs with the paper's network, integrated implicitly, each from a cold start.
+    """Solve k programs one after another, each from a cold start.
 
-    The programs are shared out over all cores. A program with a wrong value spoils no other: it is
-    not found. No second start and no certificate are tried:
-    `DNNSolver` does that for those that were not found.
+    A program with a wrong value spoils no other: it is not found.
 
     Args:
         P: Cost matrices, (k, n, n), or (n, n) for one that all share. The same holds for the
@@ -75,71 +70,46 @@ def solve_batch(
         InvalidInputError: An array has the wrong shape. The message names the argument.
     """
     checks.positive("tol", tol)
-    programs, sizes = _stacked((P, q, G, h, A, b, lb, ub))
-    n, m, p = sizes
-    count = len(programs)
-    points = np.full((count, 2 * n + m + p), np.nan)
-    residuals = np.full((count, 3), np.inf)
-    systems = np.zeros(count, dtype=np.int64)
-    constants = np.array([tol, ImplicitEuler().max_steps])
-
-    def settle_chunk(first: int) -> None:
-        rows = slice(first, first + CHUNK)
-        _settle_rows(programs[rows], sizes, constants, points[rows], residuals[rows], systems[rows])
-
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(settle_chunk, range(0, count, CHUNK)))
+    arrays = {
+        name: real_array(name, value)
+        for name, value in zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+        if value is not None
+    }
+    stacks = {name: array for name, array in arrays.items() if array.ndim > _AXES[name]}
+    count = _count(stacks)
+    solutions = []
+    for k in range(count):
+        own = {name: stack[k] for name, stack in stacks.items()}
+        solutions.append(_solve({"P": None, "q": None, **arrays, **own}, tol))
+    n, m, p = solutions[0].sizes
+    points = np.stack([solution.point for solution in solutions])
     x, y, z, z_box = np.split(points, [n, n + p, n + p + m], axis=1)
-    found = np.all(residuals <= tol, axis=1)
-    return BatchSolution(x, y, z, z_box, found, residuals, systems)
+    return BatchSolution(
+        x,
+        y,
+        z,
+        z_box,
+        np.array([solution.found for solution in solutions]),
+        np.array([solution.residuals for solution in solutions]),
+        np.array([solution.iterations for solution in solutions]),
+    )
 
 
-def _stacked(arguments: tuple[ArrayLike | None, ...]) -> tuple[Matrix, Sizes]:
-    """Stack the programs, one `QP.data` a row, (k, size); returns their sizes too."""
-    require_pairs(arguments)
-    q = real_array("q", arguments[1])
-    if q.ndim == 0 or q.size == 0:
-        raise InvalidInputError("q", "is empty", arguments[1])
-    n = q.shape[-1]
-    arrays = [
-        absent if value is None else real_array(name, value)
-        for name, value, absent in zip(FIELDS, arguments, absent_fields(n), strict=True)
-    ]
-    sizes = n, arrays[3].shape[-1], arrays[5].shape[-1]
-    shapes = field_shapes(sizes)
-    counts = {a.shape[0] for a, shape in zip(arrays, shapes, strict=True) if a.ndim > len(shape)}
-    count = max(counts, default=1)
-    fields = []
-    for name, array, shape in zip(FIELDS, arrays, shapes, strict=True):
-        if array.shape not in (shape, (count, *shape)):
-            problem = f"has shape {array.shape}, not {shape} or {(count, *shape)}"
-            raise InvalidInputError(name, problem)
-        fields.append(np.broadcast_to(array, (count, *shape)).reshape(count, -1))
-    return np.hstack(fields), sizes
+def _count(stacks: dict[str, NDArray[np.float64]]) -> int:
+    """Count the programs (k, ...) that are stacked."""
+    count = max((len(stack) for stack in stacks.values()), default=1)
+    for name, stack in stacks.items():
+        if len(stack) != count or count == 0:
+            raise InvalidInputError(name, f"has shape {stack.shape}, for {count} programs")
+    return count
 
 
-@released
-def _settle_rows(
-    programs: Matrix,
-    sizes: Sizes,
-    constants: Vector,
-    points: Matrix,
-    residuals: Matrix,
-    systems: IntVector,
-) -> None:
-    """Settle programs, one `QP.data` a row, each from a cold start, those whose cost is convex.
-
-    The constants are those of `settle`; points (k, 2n + m + p), residuals (k, 3) and linear systems
-    (k,) are written.
-    """
-    n, m, p = sizes
-    K = np.empty((n, n))
-    for k in range(programs.shape[0]):
-        qp = qp_views(programs[k], n, m, p)
-        if is_convex(qp.P, K):
-            state = np.zeros(3 * n + m + p)
-            count, _, primal, dual, gap = settle(qp, 0, constants, state, points[k])
-            residuals[k, 0] = primal
-            residuals[k, 1] = dual
-            residuals[k, 2] = gap
-            systems[k] = count
+def _solve(fields: dict[str, Any], tol: float) -> Solution:
+    """Solve the program of these fields; without a solution where a value is wrong."""
+    qp = QP(**fields)
+    try:
+        qp.check_values()
+    except InvalidInputError:
+        nothing = np.full(qp.sizes[0] + sum(qp.sizes), np.nan)
+        return Solution(nothing, qp.sizes, Status.NOT_FINITE, 0, 0.0, np.inf, np.inf, np.inf)
+    return DNNSolver(tol=tol).solve(qp)

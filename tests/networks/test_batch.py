@@ -70,7 +70,7 @@ def test_a_bad_program_is_never_found_and_spoils_no_other(name: str, value: obje
         ("P", np.ones((4, 4)), "shape"),
         ("P", None, "shape"),
         ("q", np.zeros((20, 0)), "empty"),
-        ("q", np.zeros((0, 3)), "empty"),
+        ("q", np.zeros((0, 3)), "programs"),
         ("q", "text", "numbers"),
         ("G", None, "missing"),
         ("b", None, "missing"),
