@@ -132,7 +132,9 @@ def _policies(metrics: Mapping[str, Any], incidents: Mapping[str, Any]) -> Itera
     yield text
     if done["slowed"]:
         clock = f"{incidents['path_time_s']:.4g} s of the path in {metrics['duration_s']:.4g} s"
-        yield f"slowed: {clock}{_needed(metrics)}{_off_path(incidents)}"
+        off = incidents["off_path_m"]
+        aside = "" if off is None else f"; rows kept the tip up to {_show(off)} m off the path"
+        yield f"slowed: {clock}{_needed(metrics)}{aside}"
 
 
 def _in_the_way(metrics: Mapping[str, Any]) -> str:
@@ -160,16 +162,6 @@ def _needed(metrics: Mapping[str, Any]) -> str:
     return text
 
 
-def _off_path(incidents: Mapping[str, Any]) -> str:
-    """Name the row that was longest in the way, and how far it kept the tip from the path."""
-    off = incidents["off_path_m"]
-    if off is None:
-        return ""
-    row = max(incidents["blocking_rows"], key=lambda row: row["steps"])
-    never = ", which no longer time mends" if off > FAR else ""
-    return f"; {describe(row)} kept the tip up to {_show(off)} m off the path{never}"
-
-
 def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
     first = metrics["unsolved"]
     if first is not None:
@@ -181,17 +173,19 @@ def _unsolved(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
-    if check["first_disagreement"] is not None:
-        yield _disagreement(check, check["first_disagreement"])
+    """Report disagreements, and what the references could not judge."""
+    first = check["first_disagreement"]
+    if first is not None:
+        count = _count(check["disagreements"])
+        yield f"{_at(first)}: {_disagreement(check, first)}; {count} in all"
     if not check["judged"]:  # in continuous mode the gap is a lag
         return
     missing = check["reference_failures"]
     if missing and check["solver"] == PROOF:
         yield f"{_count(missing)} not proven"
     elif missing:
-        answers = "answer" if missing == 1 else "answers"
         yield (
-            f"{missing:,} reference {answers} missing or not accurate enough to judge by "
+            f"reference answers missing or not accurate enough to judge by: {missing:,} "
             f"({check['solver']}); the check 'proof' needs no other solver"
         )
     unchecked = steps - check["steps_checked"] - check["kinds"]["stopped"]
@@ -202,18 +196,14 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
 
 
 def _disagreement(check: Mapping[str, Any], first: Mapping[str, Any]) -> str:
-    """Name the first step that disagrees, and whom with."""
+    """State by whom and by how much a step is found wrong."""
     gap = _show(first["gap"])
-    tolerance = check["tolerance"]
-    said = f"{first['solver']} differs by {gap} rad/s"
+    if first["solver"] == BOUNDS:
+        return f"the command is {gap} outside of its bounds and rows, tolerance {EXCESS_TOLERANCE}"
+    tolerance = f"tolerance {_show(check['tolerance'])}"
     if first["solver"] == PROOF:
-        said = f"proven within {gap} rad/s of the exact solution alone"
-    elif first["solver"] == BOUNDS:
-        said = f"the command is {gap} outside of its bounds and rows"
-        tolerance = EXCESS_TOLERANCE
-    steps = _count(check["disagreements"])
-    verb = "disagrees" if check["disagreements"] == 1 else "disagree"
-    return f"{_at(first)}: {said}, tolerance {_show(tolerance)}; {steps} {verb} in all"
+        return f"proven within {gap} rad/s of the exact solution alone, {tolerance}"
+    return f"{first['solver']} differs by {gap} rad/s, {tolerance}"
 
 
 def _broken_limits(metrics: Mapping[str, Any]) -> Iterator[str]:

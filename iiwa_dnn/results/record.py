@@ -13,7 +13,6 @@ from typing import Annotated, Any, NamedTuple, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from iiwa_dnn import checks
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import one_line, percent, plain, write_atomically
 
@@ -24,21 +23,6 @@ CodeArray = NDArray[np.int8]
 MODES = ("converged", "continuous")
 LIMITS = ("q_lower", "q_upper", "dq_max")
 RATES = ("ddq_max", "dddq_max")
-
-_NEEDED = ("robot", "status", "mode", "dt", "duration", "tol", "check", *LIMITS)
-_LENGTHS = {
-    "rows": "m",
-    "frames": "f",
-    **dict.fromkeys((*LIMITS, *RATES, "joints", "torque_max"), "n"),
-}
-_KINDS: dict[str, Any] = {
-    **dict.fromkeys(("robot", "status", "mode", "tip"), str),
-    **dict.fromkeys(("dt", "duration", "path_duration", "tol", "infeasible_step"), (int, float)),
-    **dict.fromkeys(("scheme", "reference", "integrator", "physics", "collisions", "check"), dict),
-    **dict.fromkeys((*_LENGTHS, "bounding", "own_tasks"), list),
-    "versions": dict,
-}
-"""Types of the settings that metrics and reports read."""
 
 
 class Column(NamedTuple):
@@ -274,7 +258,10 @@ class Record:
             object.__setattr__(self, name, array)
         if not (samples and np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
-        object.__setattr__(self, "settings", _checked(self, sizes))
+        try:
+            object.__setattr__(self, "settings", plain(self.settings))
+        except TypeError as error:
+            raise InvalidInputError("settings", str(error), self.settings) from error
 
     def __repr__(self) -> str:
         error = np.linalg.norm(self.position - self.position_desired, axis=1).max()
@@ -368,6 +355,9 @@ class Record:
         Raises:
             FileError: If the file is missing, damaged or not a record of this version.
         """
+        from iiwa_dnn.results.metrics import compute_metrics
+        from iiwa_dnn.results.report import summary
+
         try:
             with Path(path).open("rb") as file, warnings.catch_warnings():
                 # NumPy warns of a slightly wrong head before it gives up.
@@ -385,7 +375,9 @@ class Record:
                 arrays["dq_solver"] = arrays["dq"]
             if len(arrays["rotation_desired"]) == 1:
                 arrays["rotation_desired"] = arrays["rotation_desired"].repeat(len(arrays["t"]), 0)
-            return cls(settings=settings, **arrays)
+            record = cls(settings=settings, **arrays)
+            summary(compute_metrics(record))  # lest settings edited by hand fail later
+            return record
         except Exception as error:  # whatever NumPy, zip and JSON meet in a damaged file
             raise FileError(path, f"cannot be read as a record: {one_line(error)}") from error
 
@@ -423,40 +415,3 @@ def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any
         array.setflags(write=False)
         ended[name] = array[: steps + (COLUMNS[name].shape[0] == "N+1")]
     return ended
-
-
-def _checked(record: Record, sizes: Mapping[str, int]) -> dict[str, Any]:
-    """Return the settings in JSON types, after a check of what metrics and reports read of them."""
-    lengths = {name: sizes.get(symbol) for name, symbol in _LENGTHS.items()}
-    needed = {*_NEEDED, *(name for name in ("rows", "frames") if lengths[name])}
-    if len(record.torque):
-        needed.add("torque_max")
-    try:
-        settings: dict[str, Any] = plain(record.settings)
-        for name, kind in _KINDS.items():
-            value = settings[name] if name in needed else settings.get(name)
-            if value is not None or name in needed:
-                _check_setting(name, value, kind, lengths.get(name))
-        check = settings["check"]
-        _check_setting("solvers", check["solvers"], list, record.references)
-        checks.not_negative("tolerance", check["tolerance"])
-        checks.not_negative("reference_tolerance", check["reference_tolerance"])
-        pairs = settings["collisions"]["pairs"] if len(record.nearest) else ()
-    except KeyError as error:
-        raise InvalidInputError("settings", f"{error} is missing", record.settings) from error
-    except TypeError as error:
-        raise InvalidInputError("settings", str(error), record.settings) from error
-    checks.one_of("settings['mode']", settings["mode"], MODES)
-    checks.positive("settings['dt']", settings["dt"])
-    checks.positive("settings['duration']", settings["duration"])
-    if len(record.distance) != len(record.nearest) or record.nearest.max(initial=-1) >= len(pairs):
-        raise InvalidInputError("nearest", "must count the pairs of the distances", record.nearest)
-    return settings
-
-
-def _check_setting(name: str, value: Any, kind: Any, length: int | None) -> None:
-    """Refuse a setting of another type or length."""
-    if not isinstance(value, kind) or (length is not None and len(value) != length):
-        size = "" if length is None else f" with {length} entries"
-        problem = f"must be of {kind}{size}, not {value!r:.80}"
-        raise InvalidInputError(f"settings[{name!r}]", problem, value)

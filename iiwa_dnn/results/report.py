@@ -4,7 +4,6 @@ import os
 import platform
 import shlex
 import sys
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
@@ -24,8 +23,8 @@ Row = tuple[str, str, str]
 """Quantity, value and unit."""
 
 _OF_CHECK = (
-    ("linear systems a step, mean", "network_iterations.mean", ""),
-    ("linear systems a step, most", "network_iterations.max", ""),
+    ("network steps in a control period, mean", "network_iterations.mean", ""),
+    ("network steps in a control period, most", "network_iterations.max", ""),
     ("largest gap to the reference", "crosscheck.max_solution_gap", "rad/s"),
     ("tolerance on it", "crosscheck.tolerance", "rad/s"),
     ("largest residual of a reference", "crosscheck.max_reference_residual", ""),
@@ -46,28 +45,6 @@ _RESULTS = (
     *_OF_CHECK,
 )
 """Rows of numbers: quantity, place in the metrics, and unit."""
-
-_UNITS = {
-    "q_lower": "rad",
-    "q_upper": "rad",
-    "dq_max": "rad/s",
-    "ddq_max": "rad/s²",
-    "dddq_max": "rad/s³",
-    "q0": "rad",
-    "dt": "s",
-    "duration": "s",
-    "rho": "s",
-    "noise": "rad/s, or rad at the measurement",
-    "filter_window": "steps",
-    "locked": "rad",
-}
-_WHY = {
-    "adjacent": "joined to each other",
-    "never": "never near each other",
-    "always": "in touch in most postures",
-    "start": "near each other in the start posture",
-}
-"""Reasons of a collision model to leave a pair of links out, in words."""
 
 _SPELLS = {
     "active": ("active_bounds", "active_rows"),
@@ -121,6 +98,7 @@ def write_report(
         FileError: If it cannot be written.
     """
     settings = metrics["settings"]
+    shown = [(key, _text(value)) for key, value in settings.items() if value not in (None, [], {})]
     parts = [
         f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
         "## Verdict",
@@ -128,7 +106,7 @@ def write_report(
         "## Results",
         markdown_table(("quantity", "value", "unit"), rows(metrics, paper)),
         "## Settings",
-        markdown_table(("setting", "value"), _named(settings)),
+        markdown_table(("setting", "value"), shown),
         "## Made",
         *(f"- {name}: {value}" for name, value in made(metrics["versions"]).items()),
         *(f"![{CAPTIONS[path.stem]}]({path.name})" for path in figures if path.suffix == ".png"),
@@ -190,8 +168,6 @@ def _numbers(metrics: Mapping[str, Any], paper: Mapping[str, float]) -> Iterator
         value = _at(metrics, place)
         if value is None or (value == 0 and place.startswith("incidents.")):
             continue
-        if (settings.get("integrator") or {}).get("name") != "ImplicitEuler":
-            name = name.replace("linear systems", "network sub-steps")
         shown = completed(metrics) if place == "path_completed" else _text(value)
         if place in paper:
             shown += f" (the paper's {_text(paper[place])})"
@@ -267,23 +243,6 @@ def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
     return f"{unit} (orientation free)" if free else unit
 
 
-def _named(settings: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Put the settings in words, (name, value), without those that are not set."""
-    shown = {key: value for key, value in settings.items() if value not in (None, [], {})}
-    watched = shown.pop("collisions", {})
-    shown["watched pairs"] = [" and ".join(pair) for pair in watched.get("pairs", ())]
-    shown["pairs not watched"] = [
-        f"{first} and {second} ({_WHY.get(why, why)})"
-        for first, second, why in watched.get("left_out", ())
-    ]
-    shown["rows"] = dict(Counter(row["part"] for row in shown.get("rows") or ()))
-    named = [
-        (key.replace("_", " ") + (f" [{_UNITS[key]}]" if key in _UNITS else ""), _text(value))
-        for key, value in shown.items()
-    ]
-    return [(name, text) for name, text in named if text]
-
-
 def _text(value: object) -> str:
     """Put a value in words: numbers in four digits, equal entries of a list said once."""
     if isinstance(value, Mapping):
@@ -292,8 +251,10 @@ def _text(value: object) -> str:
     if isinstance(value, list):
         if len(value) > 1 and all(item == value[0] for item in value):
             return f"{_text(value[0])} (all {len(value)})"
-        between = "; " if value and isinstance(value[0], str | dict) else " "
-        return between.join(map(_text, value))
+        more = f" and {len(value) - _MOST} more" if len(value) > 2 * _MOST else ""
+        shown = value[:_MOST] if more else value
+        texts = (f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in shown)
+        return " ".join(texts) + more
     if isinstance(value, float):
         return f"{value:.4g}"
     return f"{value:,}" if type(value) is int else str(value)
