@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -26,7 +26,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError, suggestion
+from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
@@ -160,21 +160,12 @@ class CollisionAvoidance(Limit):
             FileError: It cannot be read, or something in it is wrong; the message says what.
         """
         tables = read_toml(path)
-        where = ""
         try:
-            obstacles = []
-            for number, table in enumerate(tables.pop("obstacle", []), 1):
-                where = f"obstacle {number}: "
-                obstacles.append(make_obstacle(table))
-            where = ""
-            known = [field.name for field in fields(cls) if field.init]
-            for key in tables.keys() - known:
-                hint = suggestion(key, known[1:])
-                raise TypeError(f"unexpected keyword argument {key!r}{hint}")
+            obstacles = [make_obstacle(table) for table in tables.pop("obstacle", [])]
             return cls(obstacles, **tables)
         except (IiwaDnnError, TypeError, ValueError, AttributeError) as error:
             text = one_line(error).replace(f"{cls.__name__}.__init__() ", "")
-            raise FileError(path, where + text) from error
+            raise FileError(path, text) from error
 
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:

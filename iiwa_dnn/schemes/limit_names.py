@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn.naming import describe, in_the_way
-from iiwa_dnn.qp import Matrix
-from iiwa_dnn.schemes.motion_limits import SHARE, approach
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.schemes.motion_limits import SHARE, MotionLimits, approach
 from iiwa_dnn.schemes.program import StepProgram
 
 Signs = NDArray[Any]
 
 POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
+
+_KINDS = (JERK, ACCELERATION, VELOCITY)
+"""Kinds that a bound may have beside that of a position; of several the last counts."""
 
 _CLOSE = 1e-9
 """Difference of two bounds that is rounding, in units of the velocity limit."""
@@ -33,12 +36,8 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self._settings = program.settings()
         self.dt = dt
-        self._limits = np.vstack(
-            [program.robot.limits[:3], np.full((3, program.robot.dof), np.inf)]
-        )
-        motion = program.rate_limits
-        if motion is not None:
-            self._limits = motion.constants(program.robot).reshape(self._limits.shape)
+        motion = program.rate_limits or MotionLimits()
+        self._limits = motion.constants(program.robot).reshape(6, -1)
 
     def in_words(self, bounds: Matrix, sides: Signs, rows: Signs, past: Matrix) -> list[str]:
         """Name bounds and rows of a program; arguments as `codes`, and (m,) not 0 for a row."""
@@ -55,38 +54,31 @@ class LimitNames:
         Returns:
             Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
         """
-        found = np.zeros(past.shape[1], np.int8)
-        for i in np.flatnonzero(sides[: found.size]):
-            crossed = bounds[0, i] > bounds[1, i]  # such bounds are others' than the robot's
-            value = bounds[1, i] if sides[i] > 0.0 else bounds[0, i]
-            sign = 1.0 if sides[i] > 0.0 else -1.0
-            kind = POSITION if crossed else bound_kind(value, sign, past, self._limits, i, self.dt)
-            found[i] = int(sign) * kind
-        return found
+        dof = past.shape[1]
+        sign = np.sign(sides[:dof])
+        lower, upper = bounds[:, :dof]
+        value = np.where(sign > 0.0, upper, -lower)
+        kinds = np.full(dof, POSITION)
+        # Crossed bounds are others' than the robot's.
+        close = np.where(lower > upper, -1.0, _CLOSE * self._limits[2])
+        with np.errstate(invalid="ignore"):  # joints without limits
+            for kind, candidate in zip(_KINDS, self._candidates(sign * past), strict=True):
+                kinds[np.abs(candidate - value) <= close] = kind
+        return np.asarray(sign * kinds, np.int8)
 
+    def _candidates(self, past: Matrix) -> list[Vector]:
+        """Return the upper bounds that the limit of each of `_KINDS` alone makes, (n,) [rad/s].
 
-def bound_kind(value: float, sign: float, past: Matrix, limits: Matrix, i: int, dt: float) -> int:
-    """Tell the kind of one bound: that of the first candidate which it equals, else a position.
-
-    Args:
-        value: The bound [rad/s].
-        sign: 1 for an upper bound, -1 for a lower one.
-        past: Joint positions [rad], last command and the one before [rad/s], (3, n).
-        limits: `MotionLimits.constants`, (6, n).
-        i: The joint.
-        dt: Control period [s].
-    """
-    _, _, velocity, acceleration, jerk, braking = limits[:, i]
-    last = sign * past[1, i]
-    fastest = velocity
-    if jerk < np.inf:  # the velocity after which the acceleration can still be taken back in time
-        unit = dt * dt * min(jerk, braking / dt / SHARE, velocity / (dt * dt) / SHARE)
-        fastest = last + unit * approach((velocity - last) / unit)
-    candidates = {
-        VELOCITY: fastest,
-        ACCELERATION: last + acceleration * dt,
-        JERK: 2.0 * last - sign * past[2, i] + jerk * dt * dt,
-    }
-    close = _CLOSE * velocity
-    found = [kind for kind, bound in candidates.items() if abs(bound - sign * value) <= close]
-    return found[0] if found else POSITION
+        Args:
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n); of the
+                joints whose lower bounds are meant they have the other sign.
+        """
+        _, last, before = past
+        _, _, velocity, acceleration, jerk, braking = self._limits
+        dt = self.dt
+        unit = dt * dt * np.fmin(jerk, np.fmin(braking / dt, velocity / (dt * dt)) / SHARE)
+        room = [approach(x) for x in (velocity - last) / unit]
+        # The velocity after which the acceleration can still be taken back in time.
+        fastest = np.where(jerk < np.inf, last + unit * room, velocity)
+        rates = [2.0 * last - before + jerk * dt * dt, last + acceleration * dt]
+        return [*rates, fastest]

@@ -37,7 +37,7 @@ third order is derived in docs/limits.md.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,7 +46,7 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.step import StepViews
 
 MARGIN = 0.2
@@ -68,6 +68,12 @@ SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
 
+def per_joint(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
+    """Return one number as it is, and several as a tuple; what they are is for a robot to check."""
+    several: tuple[float, ...] = tuple(np.ravel(value).tolist())
+    return several if np.ndim(value) else several[0]
+
+
 @dataclass(frozen=True)
 class _RateLimits(Limit):
     """A limit of each joint on a derivative of its velocity.
@@ -76,39 +82,24 @@ class _RateLimits(Limit):
         limit: The limit, one number or one a joint, above 0; None takes the robot's.
     """
 
+    _checks: ClassVar[Checks] = {"limit": per_joint}
     limit: ArrayLike | None = None
     quantity: ClassVar[str]
-    default: ClassVar[str]
-
-    def __post_init__(self) -> None:
-        if self.limit is None:
-            return
-        try:
-            values = np.asarray(self.limit, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            problem = "must be a number or (n,)"
-            raise InvalidInputError(self.quantity, problem, self.limit) from error
-        if values.ndim > 1 or not (values > 0.0).all():
-            raise InvalidInputError(self.quantity, "must be above 0, a number or (n,)", self.limit)
-        self._set(limit=float(values) if values.ndim == 0 else tuple(values.tolist()))
+    row: ClassVar[int]
 
     def of(self, robot: Robot) -> Vector:
         """Return the limit of each joint, (n,).
 
         Raises:
-            InvalidInputError: It is not one number or n, or None and the robot has none.
+            InvalidInputError: It is not one number or n, not above 0, or None and the robot has
+                none.
         """
-        if self.limit is not None:
-            values = np.asarray(self.limit)
-            if values.ndim and values.size != robot.dof:
-                problem = f"has {values.size} numbers for {robot.dof} joints"
-                raise InvalidInputError(self.quantity, problem, self.limit)
-            return np.array(np.broadcast_to(values, robot.dof))
-        limits: Vector = getattr(robot, self.default)
-        if np.isinf(limits).all():
-            problem = f"is needed: robot {robot.name} has no {self.default} of its own"
+        given: dict[str, Any] = {self.quantity: self.limit}
+        values: Vector = robot.with_limits(**given).limits[self.row]
+        if self.limit is None and np.isinf(values).all():
+            problem = f"is needed: robot {robot.name} has no limit of its own"
             raise InvalidInputError(self.quantity, problem)
-        return limits
+        return values
 
 
 @dataclass(frozen=True)
@@ -122,8 +113,8 @@ class AccelerationLimits(_RateLimits):
         limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`.
     """
 
-    quantity: ClassVar[str] = "acceleration_limit"
-    default: ClassVar[str] = "ddq_max"
+    quantity = "acceleration"
+    row = 3
 
 
 @dataclass(frozen=True)
@@ -134,8 +125,8 @@ class JerkLimits(_RateLimits):
         limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`.
     """
 
-    quantity: ClassVar[str] = "jerk_limit"
-    default: ClassVar[str] = "dddq_max"
+    quantity = "jerk"
+    row = 4
 
 
 @compiled
@@ -182,7 +173,7 @@ class MotionLimits(Limit):
         """
         rates = np.full((2, robot.dof), np.inf)
         for limit in self.limits:
-            row = rates[int(isinstance(limit, JerkLimits))]
+            row = rates[limit.row - 3]
             np.minimum(row, limit.of(robot), out=row)
         braking, room = braking_room(robot.ramps, rates[0])
         lower, upper, fastest = robot.limits[:3]
@@ -235,7 +226,7 @@ def check_ranges(constants: Vector, rate: float) -> None:
         problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range"
         if rate < np.inf:
             problem += f", and more cannot be used at {1.0 / rate:g} s a step"
-        raise InvalidInputError("jerk_limit", problem, jerk)
+        raise InvalidInputError("jerk", problem, jerk)
 
 
 def largest_gain(constants: Vector, rate: float) -> float:

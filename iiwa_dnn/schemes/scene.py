@@ -18,8 +18,8 @@ from iiwa_dnn.robot.collision import LinkCapsule, collision_model, unwatched_lin
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.distances import beyond, depth, difference, dot, moved, nearest_parameter
-from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, swept
-from iiwa_dnn.schemes.step import axis_at, vector_at
+from iiwa_dnn.schemes.motion_bounds import MotionBounds, bounds_of_motion, swept
+from iiwa_dnn.schemes.step import axis_at, seen_from, vector_at
 
 _HEAD = 4
 """Constants of a scene before those of joints, bodies and pairs."""
@@ -123,16 +123,6 @@ class _Body(NamedTuple):
     speed: float = 0.0
 
 
-class _Row(NamedTuple):
-    """A pair, its constants, `MotionBounds`, and a bound on the rate of its distance [m/s]."""
-
-    names: Pair
-    constants: PairConstants
-    moves: Vector
-    radii: Vector
-    speed: float
-
-
 def make_scene(
     robot: Robot, obstacles: Sequence[Obstacle], self_collision: bool, damper: Damper
 ) -> Scene:
@@ -153,8 +143,7 @@ def make_scene(
     pairs = list(model.pairs(robot)) if self_collision else []
     carried = [k for k in range(links) if bodies[k].joint]
     pairs += itertools.product(range(links, len(bodies)), carried)
-    rows = [_row(robot, bodies, i, k) for i, k in pairs]
-    if not rows:
+    if not pairs:
         bare = unwatched_links(robot)
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
@@ -166,9 +155,21 @@ def make_scene(
         if obstacle.moves
     ]
     frames = tuple(dict.fromkeys(body.name for body in bodies if body.joint))
-    speeds = np.array([row.speed for row in rows])
-    constants = _constants(robot, damper, bodies, rows)
-    return Scene(robot, [row.names for row in rows], frames, moving, speeds, constants)
+    motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
+    moves = np.array([motion.moves for motion in motions])
+    radii = np.array([motion.radii for motion in motions])
+    rows = [
+        PairConstants(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius) for i, k in pairs
+    ]
+    speeds = [
+        swept(moves, radii, k, robot.dq_max.copy())[0] + row.obstacle_speed
+        for k, row in enumerate(rows)
+    ]
+    head = [*damper, len(bodies), len(pairs)]
+    parts: list[Any] = [head, robot.dq_max, *map(_numbers, bodies), rows, moves, radii]
+    constants = np.concatenate([np.ravel(part) for part in parts])
+    names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
+    return Scene(robot, names, frames, moving, np.array(speeds), constants)
 
 
 def _check_velocity_limits(robot: Robot) -> None:
@@ -190,19 +191,14 @@ def _link(robot: Robot, capsule: LinkCapsule) -> _Body:
     return _Body(capsule.link, index, box_around(*ends), capsule.radius, joint)
 
 
-def _row(robot: Robot, bodies: list[_Body], i: int, k: int) -> _Row:
-    """Lay the pair of two bodies out."""
-    first = bodies[i]
-    second = bodies[k]
+def _motion(robot: Robot, first: _Body, second: _Body) -> MotionBounds:
+    """Return the joints that move the second body's segment as seen from the first body."""
     center, rotation, half = second.box
     ends = center + np.outer([-half[2], half[2]], rotation[:, 2])
     if second.joint:  # bounds are told the points in the joint's frame
         placement = robot.model.frames[second.frame].placement
         ends = np.array([placement.act(end) for end in ends])
-    moves, radii = bounds_of_motion(robot, first.joint, second.joint, ends)
-    speed, _ = swept(moves[np.newaxis], radii[np.newaxis], 0, robot.dq_max)
-    constants = PairConstants(first.speed, k, i, first.radius + second.radius)
-    return _Row(Pair(first.name, second.name), constants, moves, radii, speed + first.speed)
+    return bounds_of_motion(robot, first.joint, second.joint, ends)
 
 
 class SceneViews(NamedTuple):
@@ -224,19 +220,6 @@ class SceneViews(NamedTuple):
     pairs: Matrix
     moves: Matrix
     radii: Matrix
-
-
-def _constants(robot: Robot, damper: Damper, bodies: list[_Body], rows: list[_Row]) -> Vector:
-    """Join the constants of a scene in the order of `scene_views`, (k,)."""
-    parts: list[Any] = [
-        [*damper, len(bodies), len(rows)],
-        robot.dq_max,
-        *map(_numbers, bodies),
-        [row.constants for row in rows],
-        [row.moves for row in rows],
-        [row.radii for row in rows],
-    ]
-    return np.concatenate([np.ravel(part) for part in parts])
 
 
 def _numbers(body: _Body) -> Vector:
@@ -309,16 +292,6 @@ def ends_of(scene: SceneViews, placed: Matrix, body: int) -> tuple[Triple, Tripl
     axis = vector_at(placed[body], 6)
     half = scene.bodies[body, 3]
     return moved(center, -half, axis), moved(center, half, axis)
-
-
-@compiled
-def seen_from(placement: Vector, v: Triple) -> Triple:
-    """Turn a vector (3,) of the world into the coordinates of a placement (12,)."""
-    return (
-        dot(vector_at(placement, 0), v),
-        dot(vector_at(placement, 3), v),
-        dot(vector_at(placement, 6), v),
-    )
 
 
 @compiled

@@ -424,7 +424,7 @@ def test_obstacles_are_kept_away_from_and_links_without_geometry_are_told(
     file.write_text(f"{ball}radius = -1\n")
     assert call("track", "--obstacles", file, "--out", tmp_path / "bad") == 2
     said = capsys.readouterr().err
-    assert "ball.toml: obstacle 1: radius: must be a finite number above 0" in said
+    assert "ball.toml: radius: must be a finite number above 0" in said
     assert said.count("\n") == 1
 
 
