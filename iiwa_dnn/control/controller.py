@@ -25,7 +25,7 @@ from iiwa_dnn.control.paths import (
     warn_if_unwatched,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
-from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, Q
+from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, KeptStates, Q
 from iiwa_dnn.control.step import ControlStep
 from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step, yield_step
 from iiwa_dnn.networks.projection import is_projection
@@ -102,8 +102,7 @@ class Controller:
             InvalidInputError: An argument is out of range; the message names it.
         """
         self._lock = threading.Lock()
-        self._state = ControllerState.at_rest(0)
-        self._next = self._state  # after the last computed command, which may not have been sent
+        self._kept = KeptStates(ControllerState.at_rest(0))
         self._derived: ControlStep | None
         self._anchored: Scheme | None = None
         self.mode = mode
@@ -120,8 +119,8 @@ class Controller:
             check(name, value)
             self._derived = None
         object.__setattr__(self, name, value)
-        if name == "robot" and self._state.past.shape[1] != value.dof:
-            self._state = ControllerState.at_rest(value.dof)
+        if name == "robot" and self._kept.now.past.shape[1] != value.dof:
+            self._kept.now = ControllerState.at_rest(value.dof)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name not in _DERIVED}
@@ -134,19 +133,18 @@ class Controller:
     def __copy__(self) -> Controller:
         twin = type(self).__new__(type(self))
         twin.__setstate__(self.__getstate__())
-        twin._state = copy.deepcopy(self._state)
-        twin._next = twin._state
+        twin._kept = copy.deepcopy(self._kept)
         twin.solver = copy.copy(self.solver)
         return twin
 
     @property
     def delay(self) -> float:
         """Time by which the reference's clock is behind [s]."""
-        return self._state.delay
+        return self._kept.now.delay
 
     @delay.setter
     def delay(self, seconds: float) -> None:
-        self._state = self._state._replace(delay=seconds)
+        self._kept.now = self._kept.now._replace(delay=seconds)
 
     def step(
         self,
@@ -173,14 +171,14 @@ class Controller:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
                 there is neither reference nor target; or `dt` is not above 0.
         """
-        before = self._state
+        before = self._kept.now
         try:
             with self._lock:
                 command = self._compute(q, t, target, dt)
-                self._state = self._next
+                self._kept.now = self._kept.next
                 return command
         except BaseException:  # interrupted before anybody got the command
-            self._state = before
+            self._kept.now = before
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:
@@ -196,12 +194,12 @@ class Controller:
 
     def send(self, dq: Vector, fraction: float = 1.0) -> None:
         """Count a velocity dq (n,) [rad/s] as sent; the clock goes on by a share of the period."""
-        past = self._next.past.copy()
-        past[BEFORE] = self._state.past[LAST]
+        past = self._kept.next.past.copy()
+        past[BEFORE] = self._kept.now.past[LAST]
         past[LAST] = dq
         past[REST] = 0.0
-        delay = self._state.delay + self.dt * (1.0 - fraction)
-        self._state = self._next._replace(past=past, delay=delay)
+        delay = self._kept.now.delay + self.dt * (1.0 - fraction)
+        self._kept.now = self._kept.next._replace(past=past, delay=delay)
 
     def _compute(
         self,
@@ -211,10 +209,10 @@ class Controller:
         dt: float | None,
     ) -> Command:
         step = self._derived
-        state = self._state
+        state = self._kept.now
         if step is None or not state.begun:
             step = self._prepare(q, t, target is None)
-            state = self._state
+            state = self._kept.now
         if dt is None:
             dt = self.dt
         if dt != step.dt:
@@ -232,7 +230,7 @@ class Controller:
         state.past[Q] = joints
         following = state.past.copy()
         if self._answer(step, row, t, samples, following):
-            self._next = ControllerState(following, state.delay, True, False, state.halted)
+            self._kept.next = ControllerState(following, state.delay, True, False, state.halted)
             return Command(row, layout)
         return self._yield(step, row, following)
 
@@ -243,7 +241,7 @@ class Controller:
 
         The network is not asked if the task yielded at the last step, or the arm is halted.
         """
-        state = self._state
+        state = self._kept.now
         asks = state.halted is None and not state.yields
         network = self._warm_state(step)
         solved: bool = step.run(
@@ -302,7 +300,7 @@ class Controller:
         if step.yields or not step.yielding.stop:
             return 1.0
         step.program.kinematics.update(q)
-        past = np.zeros_like(self._state.past)
+        past = np.zeros_like(self._kept.now.past)
         following = past.copy()
         for share in TOWARDS:
             following[LAST] = share * dq
@@ -312,7 +310,7 @@ class Controller:
 
     def _yield(self, step: ControlStep, row: Vector, following: Matrix) -> Command:
         """Answer a step without a solution as the policy says."""
-        state = self._state
+        state = self._kept.now
         layout = step.layout
         halted = state.halted
         targets = layout.targets(row)
@@ -342,7 +340,7 @@ class Controller:
         command = Command(row, layout, Action(taken))
         delay = state.delay + step.dt * (1.0 - command.fraction)
         yields = ProgramKind.OWN < command.kind < ProgramKind.STOPPED
-        self._next = ControllerState(following, delay, True, yields, halted, relaxed)
+        self._kept.next = ControllerState(following, delay, True, yields, halted, relaxed)
         return command
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
@@ -353,7 +351,7 @@ class Controller:
         posture = checks.finite_array("q", q, (self.robot.dof,))
         checks.finite("t", t)
         start = Configuration(self.robot, posture)
-        begun = self._state.begun
+        begun = self._kept.now.begun
         self.anchor(start)
         if not begun:
             warn_if_lagging(self.program, self.mode, stacklevel=4)
@@ -367,7 +365,7 @@ class Controller:
         if step is None:
             scheme = self.scheme
             if getattr(type(scheme), "build_qp", None) is not Scheme.build_qp:
-                scheme = composed(scheme, self.robot, self._state.past[Q])
+                scheme = composed(scheme, self.robot, self._kept.now.past[Q])
             program = scheme.program(self.robot)
             step = ControlStep(
                 program, self._seen(self.dt) or {}, self.solver, self.dt, self.mode == "converged"
@@ -379,12 +377,12 @@ class Controller:
     @property
     def begun(self) -> bool:
         """Test whether a first step was taken."""
-        return self._state.begun
+        return self._kept.now.begun
 
     @property
     def positions(self) -> Vector:
         """Joint positions of the last step [rad], (n,), a copy."""
-        return np.array(self._state.past[Q])
+        return np.array(self._kept.now.past[Q])
 
     @property
     def control_step(self) -> ControlStep:
@@ -404,7 +402,7 @@ class Controller:
     @property
     def last(self) -> Vector:
         """Last command [rad/s], (n,), a view into the controller's state."""
-        last: Vector = self._state.past[LAST]
+        last: Vector = self._kept.now.past[LAST]
         return last
 
     def halt(self, command: Command | None = None) -> None:
@@ -415,18 +413,18 @@ class Controller:
                 None: it stops for another reason than a limit.
         """
         step = self._laid_out()
-        if self._state.halted is not None:
+        if self._kept.now.halted is not None:
             return
         if command is None:
             n, m, _ = step.layout.sizes
-            self._state = self._state._replace(halted=np.zeros(n + m))
+            self._kept.now = self._kept.now._replace(halted=np.zeros(n + m))
         elif step.yields:
             blocking = step.layout.view(command.row, "blocking").copy()
-            self._state = self._state._replace(halted=blocking)
+            self._kept.now = self._kept.now._replace(halted=blocking)
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""
-        first = not self._state.begun
+        first = not self._kept.now.begun
         if first:
             warn_if_outside(start, stacklevel=5)
         anchored = getattr(self.scheme, "anchored", None)
@@ -435,12 +433,12 @@ class Controller:
             if scheme is not self.scheme:
                 self.scheme = scheme
         self._anchored = self.scheme
-        self._state.past[Q] = start.q
+        self._kept.now.past[Q] = start.q
         if first:
             warn_if_too_few(self.program, stacklevel=5)
             warn_if_unstable(self.program, self.dt, stacklevel=5)
             warn_if_unwatched(self.scheme, self.robot, stacklevel=5)
-        self._state = self._state._replace(begun=True)
+        self._kept.now = self._kept.now._replace(begun=True)
 
     def warn_if_far(
         self, start: Configuration, t: float, stacklevel: int, refuses: bool = False
@@ -457,7 +455,7 @@ class Controller:
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""
         self.solver.reset()
-        self._state = ControllerState.at_rest(self.robot.dof, self._state.begun)
+        self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
         self._derived = None
 
     def warm_up(self, q: ArrayLike | None = None, t: float | None = None) -> None:
@@ -470,7 +468,7 @@ class Controller:
                 the first step warns.
         """
         twin = copy.copy(self)
-        twin._state = twin._state._replace(begun=True)  # warnings are for the first step
+        twin._kept.now = twin._kept.now._replace(begun=True)  # warnings are for the first step
         home = self.robot.start_posture()
         conf = Configuration(self.robot, home)
         frames = {name: conf.frame(name) for name in twin.program.target_frames}
@@ -486,10 +484,10 @@ class Controller:
             twin.step(home, 0.0, far)
         if q is None:
             return
-        begun = self._state.begun
-        self._state = self._state._replace(begun=begun or t is None)
+        begun = self._kept.now.begun
+        self._kept.now = self._kept.now._replace(begun=begun or t is None)
         self._prepare(q, 0.0 if t is None else t, self.reference is not None)
-        self._state = self._state._replace(begun=begun or t is not None)
+        self._kept.now = self._kept.now._replace(begun=begun or t is not None)
 
     def targets(
         self,
@@ -535,7 +533,7 @@ class Controller:
     def program_at(self, q: Vector, targets: Matrix, t: float) -> QP:
         """Build the program at joint positions q (n,) [rad] for targets (k, 18)."""
         program = self.program
-        past = self._state.past[: LAST + 2].copy()
+        past = self._kept.now.past[: LAST + 2].copy()
         past[Q] = q
         data = np.empty(program.data_size)
         program.kinematics.update(q)

@@ -38,3 +38,19 @@ class ControllerState(NamedTuple):
     def at_rest(cls, dof: int, begun: bool = False) -> "ControllerState":
         """Return the state of an arm of n joints that has had no command."""
         return cls(np.zeros((5, dof)), begun=begun)
+
+
+class KeptStates:
+    """The state that counts, and the one after the last computed command.
+
+    Attributes:
+        now: The state after the last command that was sent.
+        next: The state after the last command that was computed.
+    """
+
+    __slots__ = ("next", "now")
+
+    def __init__(self, state: ControllerState) -> None:
+        """Begin with a state."""
+        self.now = state
+        self.next = state

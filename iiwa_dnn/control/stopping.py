@@ -37,7 +37,7 @@ from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.schemes.distances import difference, dot
-from iiwa_dnn.schemes.motion_bounds import swept
+from iiwa_dnn.schemes.motion_bounds import second_order
 from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
 from iiwa_dnn.schemes.step import rate_along
 
@@ -349,13 +349,15 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
     for k in range(len(scene.pairs)):
         pair = pair_of(scene.pairs, k)
         contact = contact_of(scene, pair, placed)
-        way, second_order = swept(scene.moves, scene.radii, k, travel)
         left = contact.distance - pair.obstacle_speed * dt * motion.periods
+        way = 0.0
+        for i in range(n):
+            way += abs(scene.radii[k, i]) * travel[i]
         if left - way >= scene.damper.least:
             continue
         normal = contact.normal
         change = np.inf
-        lacking = 0.5 * second_order
+        lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
         a, b = ends_of(scene, placed, int(pair.second))
         for end in (a, b):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)

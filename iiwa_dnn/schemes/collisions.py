@@ -32,7 +32,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
-from iiwa_dnn.schemes.motion_bounds import swept
+from iiwa_dnn.schemes.motion_bounds import second_order
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.scene import (
     Contact,
@@ -64,6 +64,7 @@ def collision_rows(
     slacks = np.empty(pairs)
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, step.placements, placed)
+    gain = min(scene.damper.gain, step.rate)
     travel = np.empty(dof)
     for j in range(dof):
         travel[j] = abs(step.last[j]) / step.rate
@@ -71,13 +72,14 @@ def collision_rows(
         pair = pair_of(scene.pairs, k)
         contact = contact_of(scene, pair, placed)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
-        _, eps = swept(scene.moves, scene.radii, k, travel)
-        slack = contact.distance - scene.damper.least - eps
-        gain = min(scene.damper.gain, step.rate)
-        limits[k] = gain * slack - pair.obstacle_speed
-        if slack < 0.0 and eps > 0.0:
-            limits[k] -= (step.rate - gain) * min(-slack, eps)
+        left = contact.distance - scene.damper.least
+        limits[k] = gain * left - pair.obstacle_speed
         slacks[k] = limits[k] - fastest
+        if slacks[k] < 0.0:
+            eps = second_order(scene.moves, scene.radii, k, travel)
+            limits[k] -= gain * eps
+            if left < eps:
+                limits[k] -= (step.rate - gain) * min(eps - left, eps)
     row = 0
     for k in range(pairs):
         if pairs <= h.size or _rank(slacks, k) < h.size:

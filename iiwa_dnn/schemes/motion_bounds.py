@@ -56,8 +56,8 @@ def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> M
 
 
 @compiled
-def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> tuple[float, float]:
-    """Bound V and B for pair k, whose joints travel by `travel` (n,) [rad].
+def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
+    """Compute B [m] for pair k, whose joints travel by `travel` (n,) [rad].
 
     Args:
         moves: `MotionBounds.moves` of all pairs, (pairs, n).
@@ -66,22 +66,18 @@ def swept(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> tuple[float, 
         travel: Way of each joint, at least 0, (n,) [rad].
     """
     n = travel.size
-    way = 0.0
-    second_order = 0.0
+    B = 0.0
     turning = 0.0
     for step in range(2 * n):  # from the first body up to the common base, then down
         j = n - 1 - step if step < n else step - n
         if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
             continue
         if radii[k, j] < 0.0:
-            way += travel[j]
-            second_order += 2.0 * travel[j] * turning
+            B += 2.0 * travel[j] * turning
         else:
-            moved = travel[j] * radii[k, j]
-            way += moved
-            second_order += moved * (2.0 * turning + travel[j])
+            B += travel[j] * radii[k, j] * (2.0 * turning + travel[j])
             turning += travel[j]
-    return way, second_order
+    return B
 
 
 def _largest_radius(robot: Robot, path: list[int], up: list[int], points: Matrix) -> float:

@@ -18,7 +18,7 @@ from iiwa_dnn.robot.collision import LinkCapsule, collision_model, unwatched_lin
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.distances import beyond, depth, difference, dot, moved, nearest_parameter
-from iiwa_dnn.schemes.motion_bounds import MotionBounds, bounds_of_motion, swept
+from iiwa_dnn.schemes.motion_bounds import MotionBounds, bounds_of_motion
 from iiwa_dnn.schemes.step import axis_at, seen_from, vector_at
 
 _HEAD = 4
@@ -161,15 +161,12 @@ def make_scene(
     rows = [
         PairConstants(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius) for i, k in pairs
     ]
-    speeds = [
-        swept(moves, radii, k, robot.dq_max.copy())[0] + row.obstacle_speed
-        for k, row in enumerate(rows)
-    ]
+    speeds = np.abs(radii) @ robot.dq_max + [row.obstacle_speed for row in rows]
     head = [*damper, len(bodies), len(pairs)]
     parts: list[Any] = [head, robot.dq_max, *map(_numbers, bodies), rows, moves, radii]
     constants = np.concatenate([np.ravel(part) for part in parts])
     names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
-    return Scene(robot, names, frames, moving, np.array(speeds), constants)
+    return Scene(robot, names, frames, moving, speeds, constants)
 
 
 def _check_velocity_limits(robot: Robot) -> None:

@@ -34,9 +34,9 @@ from iiwa_dnn.control.stopping import (
     least_periods,
     next_velocity,
     sums,
-    swept,
     within_rates,
 )
+from iiwa_dnn.schemes.motion_bounds import second_order
 from judge_limits import breaches
 
 ROBOT = load_robot("iiwa7")
@@ -310,7 +310,7 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
 
 
 @pytest.mark.parametrize(
-    ("moves", "radii", "second_order"),
+    ("moves", "radii", "expected"),
     [
         # What slides after a turn is turned with it; what slides before it is not.
         ([1.0, 1.0], [-1.0, 0.5], 0.05 * 0.1),
@@ -319,13 +319,12 @@ def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:
         ([-1.0, -1.0], [-1.0, 0.5], 0.05 * 0.1 + 2.0 * 0.2 * 0.1),
     ],
 )
-def test_a_pair_is_swept_by_joints_that_slide_and_turn(
-    moves: list[float], radii: list[float], second_order: float
+def test_joints_that_slide_and_turn_bend_a_way(
+    moves: list[float], radii: list[float], expected: float
 ) -> None:
     travel = np.array([0.2, 0.1])
-    found = swept(np.array([moves]), np.array([radii]), 0, travel)
-    turn = travel[radii.index(0.5)]
-    assert found == pytest.approx((travel[radii.index(-1.0)] + 0.5 * turn, second_order))
+    found = second_order(np.array([moves]), np.array([radii]), 0, travel)
+    assert found == pytest.approx(expected)
 
 
 def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:

@@ -16,7 +16,7 @@ from helpers_simulation import rows_of
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, swept
+from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, second_order
 from iiwa_dnn.schemes.scene import pair_distances
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
@@ -112,7 +112,8 @@ def test_no_acceleration_is_above_its_bound() -> None:
     for first in (0, 2):
         moves, radii = bounds_of_motion(ROBOT, first, joint, point[None])
         assert moves.tolist() == [0.0] * first + [1.0] * (joint - first)
-        speed, acceleration = swept(moves[None], radii[None], 0, ROBOT.dq_max)
+        speed = float(np.abs(radii) @ ROBOT.dq_max)
+        acceleration = second_order(moves[None], radii[None], 0, ROBOT.dq_max)
         found = []
         for _ in range(300):
             q, dq = random.uniform(-2.0, 2.0, 7), ROBOT.dq_max * random.choice([-1.0, 1.0], 7)
