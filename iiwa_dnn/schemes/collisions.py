@@ -78,7 +78,7 @@ def collision_rows(
         if slacks[k] < 0.0:
             eps = second_order(scene.moves, scene.radii, k, travel)
             limits[k] -= gain * eps
-            if left < eps:
+            if left < eps and step.rate < np.inf:
                 limits[k] -= (step.rate - gain) * min(eps - left, eps)
     row = 0
     for k in range(pairs):
