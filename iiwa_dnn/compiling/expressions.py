@@ -327,15 +327,15 @@ class Expressions:
             shape += [] if size is None else [size]
             if start.known != 0:
                 strides = [own.text for own in sizes[axis + 1 :]]
-                offset.append(" * ".join([start.at(13), *strides]) if strides else start.at(12))
+                offset.append(" * ".join([start.at(13), *strides]))
         shape += [own.text for own in sizes[len(parts) :]]
         at = " + ".join(offset)
         if not shape:
             return Value(array.element, f"{owner.at(ATOM)}.data[{at or 0}]")
         kind = array_of(array.element, len(shape))
         assert kind is not None
-        data = f"{owner.at(ATOM)}.data"
-        return Value(kind, literal(kind, f"{data} + {at}" if at else data, *shape), UNARY)
+        data = " + ".join([f"{owner.at(ATOM)}.data", *offset])
+        return Value(kind, literal(kind, data, *shape), UNARY)
 
     def _range(self, part: ast.expr, size: Value) -> tuple[Value, str | None]:
         """Return the first index along an axis, and the number of them; None for one index."""
@@ -432,31 +432,33 @@ class Expressions:
 
     def _standard(self, node: ast.Call, name: str) -> Value:
         """Translate a function of Python, of its module math or of numpy."""
-        values = [self.number(each) if name != "len" else self.value(each) for each in node.args]
-        texts = [value.text for value in values]
-        kinds = [value.kind for value in values]
         if name == "len":
-            return values[0].sizes()[0]
+            return self.value(node.args[0]).sizes()[0]
+        values = [self.number(each) for each in node.args]
+        first = values[0]
         if name in ("min", "max"):
-            kind = FLOAT if FLOAT in kinds else INT
-            text = texts[0]
-            for other in texts[1:]:
-                text = f"{kind.tag.removesuffix('64_t')}_{name}({text}, {other})"
-            return Value(kind, text)
-        if name == "abs" and kinds[0] is not FLOAT:
-            return Value(INT, f"llabs({texts[0]})")
+            return self._extreme(name, values)
         if name in ("int", "float"):
             kind = INT if name == "int" else FLOAT
-            value = values[0]
-            return Value(kind, f"({kind.tag}){value.at(UNARY)}", UNARY)
+            return Value(kind, f"({kind.tag}){first.at(UNARY)}", UNARY)
+        if name == "abs" and first.kind is not FLOAT:
+            return Value(INT, f"llabs({first.text})")
         if name == "isfinite":
-            return Value(BOOL, f"isfinite({texts[0]})")
+            return Value(BOOL, f"isfinite({first.text})")
         self.require(name in _LIBRARY, node)
-        kind = INT if name in ("ceil", "floor") and ast.unparse(node.func)[:2] == "ma" else FLOAT
-        text = f"{_LIBRARY[name]}({', '.join(texts)})"
-        return Value(
-            kind, f"(int64_t){text}" if kind is INT else text, UNARY if kind is INT else ATOM
-        )
+        text = f"{_LIBRARY[name]}({', '.join(value.text for value in values)})"
+        # Those of the module math are integers.
+        if ast.unparse(node.func) in ("math.ceil", "math.floor"):
+            return Value(INT, f"(int64_t){text}", UNARY)
+        return Value(FLOAT, text)
+
+    def _extreme(self, name: str, values: list[Value]) -> Value:
+        """Translate ``min`` and ``max``, from the left to the right."""
+        kind = FLOAT if FLOAT in [value.kind for value in values] else INT
+        text = values[0].text
+        for other in values[1:]:
+            text = f"{kind.tag.removesuffix('64_t')}_{name}({text}, {other.text})"
+        return Value(kind, text)
 
 
 def table_kind(values: Any) -> Array:

@@ -85,9 +85,10 @@ class Kinds:
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             node = ast.parse(node.value, mode="eval").body
         text = ast.unparse(node)
-        if text in NUMBERS or text in ARRAYS:
-            return NUMBERS.get(text) or ARRAYS[text]
-        if text.startswith("tuple[") and isinstance(node, ast.Subscript):
+        known = NUMBERS.get(text) or ARRAYS.get(text)
+        if known is not None:
+            return known
+        if isinstance(node, ast.Subscript) and text.startswith("tuple["):
             items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
             return self.tuple([self.of(module, item) for item in items])
         home, found = self._package.find(module, text)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .expressions import ATOM, UNARY, Expressions, Value, literal, table_kind
+from .expressions import Expressions, Value, literal, table_kind
 from .kinds import FLOAT, INT, VOID, Array, Kind, Kinds, Struct
 from .sources import ENTRY, Module, Package, decoration
 
@@ -105,17 +105,15 @@ class Translator:
         key = (module.name, node.name)
         if key not in self.made:
             own = Function(self, module, node)
-            made = Made(
-                c_name(*key), ast.get_docstring(node) or "", own.given(), None, decoration(node)
-            )
+            name = c_name(*key)
+            about = ast.get_docstring(node) or ""
+            made = Made(name, about, own.given(), None, decoration(node))
             self.made[key] = made
-            result = self.kinds.of(module, node.returns)
-            self.made.pop(key)  # after all that it calls
             own.made = made
-            self.made[key] = made
+            result = self.kinds.of(module, node.returns)
             made.text = own.entry(result) if decoration(node) == ENTRY else own.translated(result)
             made.result = result
-            self.made[key] = self.made.pop(key)
+            self.made[key] = self.made.pop(key)  # after all that it calls
         return self.made[key]
 
 
@@ -280,22 +278,18 @@ class Function(Expressions):
 
     def _inside(self, node: ast.For, variables: dict[str, Kind]) -> None:
         """Translate the body of a loop with variables of its own."""
-        for own in variables:
-            stored = [each for part in node.body for each in ast.walk(part)]
-            for each in stored:
-                is_stored = isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
-                if is_stored and getattr(each, "id", "") == own and own != "_":
-                    is_loop = any(
-                        isinstance(part, ast.For) and part.target is each for part in stored
-                    )
-                    self.require(is_loop, each, "is written in its own loop")
-        outer = {own: self.kinds.get(own) for own in variables}
+        inner = [each for part in node.body for each in ast.walk(part)]
+        loops = [each.target for each in inner if isinstance(each, ast.For)]
+        for each in inner:
+            is_written = isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)
+            if is_written and each not in loops and getattr(each, "id", "_") != "_":
+                self.require(each.id not in variables, each, "is written in its own loop")  # type: ignore[attr-defined]
+        outer = dict(self.kinds)
         self.kinds |= variables
         self.block(node.body)
-        for own, kind in outer.items():
+        for own in variables:
             self.kinds.pop(own)
-            if kind is not None:
-                self.kinds[own] = kind
+        self.kinds |= {own: outer[own] for own in variables if own in outer}
         self.add("}")
 
     def do_annassign(self, node: ast.AnnAssign) -> None:
@@ -435,6 +429,3 @@ def _makes(node: ast.AST) -> bool:
 def _read(target: ast.expr) -> ast.expr:
     """Return a target as an expression that is read."""
     return ast.copy_location(ast.parse(ast.unparse(target), mode="eval").body, target)
-
-
-__all__ = ["ATOM", "UNARY", "Made", "Translator", "c_name"]
