@@ -363,9 +363,7 @@ def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
     robot = paper_robot()
     with pytest.raises(InvalidInputError, match="acceleration: must be one number or 7"):
         Scheme(limits=[AccelerationLimits([1.0, 2.0, 3.0])]).program(robot)
-    with pytest.raises(
-        InvalidInputError, match="jerk: is needed: robot iiwa7"
-    ):
+    with pytest.raises(InvalidInputError, match="jerk: is needed: robot iiwa7"):
         Scheme(limits=[JerkLimits()]).program(robot)
     with pytest.raises(InvalidInputError, match="too little to stop"):
         Scheme(limits=[AccelerationLimits(), JerkLimits(1.0)]).program(robot)

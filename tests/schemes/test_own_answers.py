@@ -53,6 +53,12 @@ class OwnRows(Limit):
         return self.answer
 
 
+class Rowless(OwnRows):
+    """Without `rows` its inequalities would not be asked for, and the limit not be kept."""
+
+    rows = 0
+
+
 class OwnBounds(Limit):
     def __init__(self, answer: Any) -> None:
         self.answer = answer
@@ -77,6 +83,9 @@ def beside(part: Any, **options: Any) -> Record:
         (OwnCost((-EYE, ZEROS)), "P is not convex, its least eigenvalue is -1"),
         (OwnCost((np.triu(np.ones((7, 7))), ZEROS)), "P is not symmetric"),
         (OwnCost((EYE, ZEROS + np.inf)), "q holds an infinite number"),
+        (OwnCost((EYE, ZEROS + np.nan)), "q holds NaN"),
+        (OwnRows((EYE[:2], ZEROS[:2])), "G has shape (2, 7), not (1, 7)"),
+        (Rowless((ROW, [0.0])), "G has shape (1, 7), not (0, 7)"),
         (OwnCost(None), "must return two arrays, P and q, not None"),
         (OwnCost((EYE, ZEROS, 1)), "must return two arrays, P and q"),
         (OwnTask("text"), "must return two arrays, A and b, not 'text'"),

@@ -208,38 +208,6 @@ def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
         run(check="osqp")
 
 
-class Rowless(Limit):
-    """Without `rows` its inequalities would not be asked for, and the limit not be kept."""
-
-    def inequalities(self, step: Step) -> tuple[Array, Array]:
-        return np.eye(7)[:1], np.zeros(1)
-
-
-class Undefined(Cost):
-    def quadratic(self, step: Step) -> tuple[Array, Array]:
-        return np.eye(7), np.full(7, np.nan)
-
-
-def test_a_limit_without_rows_and_a_cost_of_nan_are_named() -> None:
-    with pytest.raises(InvalidInputError, match=r"^Rowless: G has shape \(1, 7\), not \(0, 7\)"):
-        run(Scheme([KineticEnergy()], [PositionTask()], [JointLimits(), Rowless()]))
-    with pytest.raises(InvalidInputError, match=r"^Undefined: q holds NaN"):
-        run(Scheme([Undefined()], [PositionTask()], [JointLimits()]))
-
-
-class Misshaped(Limit):
-    rows = 2
-
-    def inequalities(self, step: Step) -> tuple[Array, Array]:
-        return np.zeros((1, 7)), np.zeros(1)
-
-
-def test_rows_of_a_wrong_shape_are_named_with_their_part() -> None:
-    scheme = Scheme([KineticEnergy()], [PositionTask()], [Misshaped()])
-    with pytest.raises(InvalidInputError, match=r"^Misshaped: G has shape \(1, 7\), not \(2, 7\)"):
-        scheme.build_qp(paper_start(), near_target(PAPER_Q0, 1))
-
-
 class SmallestLargest(Limit):
     """-s <= dq_i <= s for the slack variable s: the infinity norm of the joint velocity."""
 
@@ -339,11 +307,6 @@ def test_parts_serve_another_robot() -> None:
     qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
     assert qp.sizes == (6, 0, 3)
     assert_allclose(qp.A, conf.jacobian[:3], rtol=0, atol=1e-15)
-
-
-def test_a_home_of_the_wrong_length_is_named() -> None:
-    with pytest.raises(InvalidInputError, match=r"^home\b"):
-        Scheme([CyclicMotion(home=(0.0,))]).build_qp(paper_start(), near_target(PAPER_Q0, 1))
 
 
 def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> None:

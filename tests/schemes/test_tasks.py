@@ -1,0 +1,193 @@
+"""Rows of all tasks: derivatives by finite differences, moving targets, closed loops, refusals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg
+from scipy.spatial.transform import Rotation
+
+from helpers_kinematics import finite_difference
+from helpers_simulation import block_map, near_target, orientation_rows, paper_robot, rows_of
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from iiwa_dnn.networks.solver import DNNSolver
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes import (
+    AxisTask,
+    JointCouplingTask,
+    JointLimits,
+    KineticEnergy,
+    Manipulability,
+    OrientationTask,
+    PoseTask,
+    PositionTask,
+    PostureTask,
+    PseudoInverse,
+    RelativePoseTask,
+    RemoteCenterTask,
+    Scheme,
+)
+
+ROBOT = paper_robot()
+START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
+POSTURES = np.random.default_rng(21).uniform(-2.5, 2.5, (30, 7))
+AXIS = np.array([0.2, -0.5, 1.0])
+RAY = START.rotation.T @ (START.frame("iiwa7_link_2").position - START.position)
+SHAFT = START.position + 0.1 * START.rotation[:, 2]
+LINK = "iiwa7_link_6"
+
+TASKS: dict[str, Any] = {
+    "position": PositionTask(gain=1.0),
+    "position of a link": PositionTask(gain=1.0, frame=LINK),
+    "orientation": OrientationTask(gain=1.0),
+    "block": OrientationTask(gain=1.0, form="block"),
+    "block of a link": OrientationTask(gain=1.0, form="block", frame=LINK),
+    "pose": PoseTask(gain=1.0),
+    "axis": AxisTask(axis=AXIS, gain=1.0),
+    "axis in the world": AxisTask(axis=AXIS, direction=START.rotation @ AXIS, gain=1.0),
+    "relative pose": RelativePoseTask("iiwa7_link_7", "iiwa7_link_1", gain=1.0).anchored(START),
+    "remote center": RemoteCenterTask(SHAFT, gain=1.0),
+    "looking at a frame": RemoteCenterTask("iiwa7_link_2", RAY, gain=1.0),
+    "posture": PostureTask({"iiwa7_joint_3": 0.3, "iiwa7_joint_1": -1.2}, gain=1.0),
+    "coupling": JointCouplingTask({"iiwa7_joint_2": 2.0, "iiwa7_joint_4": -1.0}, -2.6, gain=1.0),
+}
+
+
+def target_of(task: Any, conf: Configuration, dq: Any = 0.0) -> Any:
+    """The target that the task's frame is at in a configuration, moving with joint velocities."""
+    name = task.frame_name(ROBOT) if task.tracks else ROBOT.tip
+    frame = conf.frame(name)
+    twist = frame.jacobian @ np.broadcast_to(dq, 7)
+    return {name: Target(frame.position, frame.rotation, twist[:3], twist[3:])}
+
+
+def rows(task: Any, q: Any, target: Any) -> tuple[np.ndarray, np.ndarray]:
+    qp = rows_of(task, Configuration(ROBOT, q), target)
+    return qp.A.copy(), qp.b.copy()
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_rows_are_the_derivative_of_the_error(name: str) -> None:
+    # With gain 1 the right-hand side is the error, and A minus its derivative where it is zero.
+    task = TASKS[name]
+    target = target_of(task, START)
+    A, b = rows(task, START.q, target)
+    np.testing.assert_allclose(b, 0.0, atol=1e-12)
+    change = finite_difference(lambda q: rows(task, q, target)[1], START.q)
+    np.testing.assert_allclose(A, -change, rtol=0, atol=1e-8)
+    assert np.linalg.matrix_rank(A, tol=1e-9) == (3 if "block" in name else len(A))
+
+
+@pytest.mark.parametrize("name", [name for name, task in TASKS.items() if task.tracks])
+def test_a_joint_velocity_follows_a_target_that_moves_with_it(name: str) -> None:
+    dq = np.random.default_rng(1).standard_normal(7)
+    A, b = rows(TASKS[name], START.q, target_of(TASKS[name], START, dq))
+    np.testing.assert_allclose(A @ dq, b, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_hard_and_soft_tasks_bring_the_error_to_rest(name: str) -> None:
+    target = target_of(TASKS[name], START)
+    task = replace(TASKS[name], gain=10.0)
+    for chosen in (task, replace(task, weight=10.0)):
+        scheme = Scheme([KineticEnergy(weight=1e-6)], [chosen], [JointLimits()])
+        solver, q = DNNSolver(), START.q + np.array([0.03, -0.02, 0.03, 0.02, -0.03, 0.02, 0.01])
+        first = np.abs(rows(task, q, target)[1]).max()
+        for _ in range(100):
+            solution = solver.solve(scheme.build_qp(Configuration(ROBOT, q), target))
+            assert solution.found
+            q = q + 0.01 * solution.x
+        assert np.abs(rows(task, q, target)[1]).max() < 1e-4 * first
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_a_gain_beyond_one_over_the_period_is_cut_to_it(name: str) -> None:
+    q = START.q + 0.01
+    task, target = TASKS[name], target_of(TASKS[name], START)
+    found = rows_of(replace(task, gain=np.inf), Configuration(ROBOT, q), target, dt=1e-2)
+    np.testing.assert_allclose(found.b, 100.0 * rows(task, q, target)[1], rtol=1e-12, atol=1e-13)
+
+
+def test_block_rows_lose_the_tilt_where_the_tool_is_vertical() -> None:
+    # PAPER, slip 4: with R31 = R32 = 0 the block sees rotations about the vertical only.
+    for yaw in (0.0, 0.7, -2.0):
+        for flip in (np.eye(3), np.diag([1.0, -1.0, -1.0])):
+            rotation = Rotation.from_euler("z", yaw).as_matrix() @ flip
+            assert np.linalg.matrix_rank(block_map(rotation), tol=1e-12) == 1
+    tilted = Rotation.from_euler("zy", (0.7, 0.2)).as_matrix()
+    assert np.linalg.matrix_rank(block_map(tilted), tol=1e-12) == 3
+
+
+def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() -> None:
+    # Its feed-forward is the rate of r_d along a turning target, here by finite differences.
+    for seed, q in enumerate(POSTURES):
+        conf = Configuration(ROBOT, q)
+        target = near_target(q, seed, size=0.5)
+
+        def turned(t: np.ndarray, target: Target = target) -> np.ndarray:
+            turn = Rotation.from_rotvec(target.angular_velocity * t[0]).as_matrix()
+            return (turn @ target.rotation)[:2, :2].reshape(4)
+
+        rate = finite_difference(turned, np.zeros(1))[:, 0]
+        error = (target.rotation - conf.rotation)[:2, :2].reshape(4)
+        A, b = orientation_rows("block", conf, target, 3.0)
+        basis = scipy.linalg.orth(A, rcond=1e-9)  # the four contradict each other off the path
+        np.testing.assert_allclose(b, basis @ (basis.T @ (rate + 3.0 * error)), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("axis", [(0, 0, 1), (1, 0, 0), (3, -2, 1), (-1, 3, 2), (1, 2, -3)])
+@pytest.mark.parametrize("angle", [1e-9, 1e-3, 1.0, 2.2, -2.9, np.pi - 1e-4])
+def test_so3_right_hand_side_is_the_rotation_vector(axis: tuple[int, ...], angle: float) -> None:
+    # Beyond 2 pi / 3 the quaternion's largest component may be any of four.
+    conf = Configuration(ROBOT, POSTURES[1])
+    vector = angle * np.array(axis) / np.linalg.norm(axis)
+    turn = Rotation.from_rotvec(vector).as_matrix()
+    _, b = orientation_rows("so3", conf, Target(conf.position, turn @ conf.rotation), 1.0)
+    np.testing.assert_allclose(b, vector, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("orientation", ["so3", "block", "none"])
+def test_the_baselines_answer_is_the_pseudo_inverse_times_the_task(orientation: str) -> None:
+    for q in POSTURES[:10]:
+        conf = Configuration(ROBOT, q)
+        near = near_target(q, seed=1)
+        # Without a pose error, so that the block's dependent rows can be fulfilled.
+        twist = (near.linear_velocity, near.angular_velocity)
+        target = Target(conf.position, conf.rotation, *twist)
+        qp = PseudoInverse(orientation=orientation).build_qp(conf, target)
+        assert len(qp.A) == {"so3": 6, "block": 7, "none": 3}[orientation]
+        assert np.isinf([qp.lb, qp.ub]).all()
+        expected = np.linalg.pinv(qp.A, rcond=1e-10) @ qp.b
+        np.testing.assert_allclose(DNNSolver().solve(qp).x, expected, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("make", "named"),
+    [
+        (lambda: AxisTask(axis=(0.0, 0.0, 0.0)), "axis"),
+        (lambda: PoseTask(gain=-1.0), "gain"),
+        (lambda: PoseTask(weight=-1.0), "weight"),
+        (lambda: RelativePoseTask("a", "b", ((1.0,),)), "pose"),
+        (lambda: RemoteCenterTask((0.0, 1.0)), "point"),
+        (lambda: PostureTask({"a": np.nan}), "joints"),
+        (lambda: PostureTask([0.0] * 7), "joints"),  # type: ignore[arg-type]
+        (lambda: JointCouplingTask({"a": 1.0}, np.inf), "offset"),
+        (lambda: OrientationTask(form="euler"), "form"),  # type: ignore[arg-type]
+        (lambda: Manipulability(weight=-1.0), "weight"),
+        (lambda: PseudoInverse(position_gain=-1.0), "position_gain"),
+        (lambda: PseudoInverse(orientation_gain=np.inf), "orientation_gain"),
+        (lambda: PseudoInverse(orientation="euler"), "orientation"),  # type: ignore[arg-type]
+    ],
+)
+def test_bad_parameters_are_named(make: Any, named: str) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{named}\b"):
+        make()
+
+
+def test_an_unknown_joint_is_named() -> None:
+    with pytest.raises(NotFoundError, match="iiwa7_joint_33"):
+        rows(PostureTask({"iiwa7_joint_33": 0.0}), START.q, Target(START.position, START.rotation))
