@@ -18,9 +18,6 @@ from iiwa_dnn.files import one_line, prepare_folder
 SETTINGS_FILE = "settings.toml"
 """Name of the settings in a run's folder."""
 
-_AGAIN = 1.0
-"""Time after which a command that SIGTERM has not ended is ended once more [s]."""
-
 
 def guard(prog: str, run: Callable[[], int | None]) -> int:
     """Call a command; print errors of the package and warnings as one line each.
@@ -37,8 +34,7 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         SystemExit: After ``--help`` or a wrong word, and after SIGTERM, with code 143.
     """
     if threading.current_thread() is threading.main_thread():
-        for number in (signal.SIGTERM, signal.SIGALRM):
-            signal.signal(number, _terminate)
+        signal.signal(signal.SIGTERM, _terminate)
     with warnings.catch_warnings():
         warnings.simplefilter("always", UserWarning)
         warnings.showwarning = lambda message, *_: print(f"{prog}: {message}", file=sys.stderr)
@@ -56,15 +52,11 @@ def guard(prog: str, run: Callable[[], int | None]) -> int:
         except IiwaDnnError as error:
             print(f"{prog}: error: {one_line(error)}", file=sys.stderr)
             return 1 if isinstance(error, NoSolutionError) else 2
-        finally:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 
 def _terminate(number: int, frame: object) -> NoReturn:
     """End the process in order: half-written files are removed, worker processes end."""
     warnings.simplefilter("ignore")  # of work that is given up
-    # Once more, since code that compiles swallows what is raised in a callback of its own.
-    signal.setitimer(signal.ITIMER_REAL, _AGAIN)
     sys.exit(128 + signal.SIGTERM)
 
 

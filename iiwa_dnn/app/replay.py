@@ -20,7 +20,8 @@ from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import ACTIONS, limits, position_error, rotation_angle
 from iiwa_dnn.results.pictures import obstacles_of
-from iiwa_dnn.results.record import FloatArray, Record
+from iiwa_dnn.results.plots import envelope
+from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.obstacles import Obstacle, outline
 from iiwa_dnn.robot.robot import source_of
@@ -138,13 +139,6 @@ def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int
     server.scene.add_line_segments(f"/{name}", pieces, color, **style)
 
 
-def largest(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return where each of `PIECES` stretches of values (M,) begins, and its largest value."""
-    count = len(values)
-    starts = np.linspace(0, count, min(PIECES, count), endpoint=False).astype(int)
-    return starts, np.maximum.reduceat(values, starts)
-
-
 class Replay:
     """A page that replays a record, in one state for all browsers.
 
@@ -171,7 +165,7 @@ class Replay:
         length = max(float(record.t[-1]) - start, 1e-6)
         self.playing = gui.add_checkbox("play", False)
         self.clock = gui.add_slider("time [s]", start, start + length, 1e-3 * length, start)
-        _, acts = largest(record.filled("action"))
+        acts = envelope(record.t[:-1], record.filled("action"), PIECES)[3]
         colors = np.where(acts > 0, "#d6001c", "#e5e7ec")
         marks = "".join(f'<i style="flex:1;background:{color}"></i>' for color in colors)
         self.marks = gui.add_html(
@@ -201,9 +195,9 @@ class Replay:
         """Draw the largest position error of each stretch of time, by its decimal logarithm."""
         from viser import uplot  # of an extra
 
-        starts, errors = largest(np.maximum(self._errors, LEAST))
+        times, _, _, errors = envelope(self.record.t, np.maximum(self._errors, LEAST), PIECES)
         self.server.gui.add_uplot(
-            (self.record.t[starts], np.log10(errors)),
+            (times, np.log10(errors)),
             (uplot.Series(), uplot.Series(stroke="#d6001c", width=1)),
             scales={"x": uplot.Scale(time=False)},
             title="position error, decimal logarithm [m]",

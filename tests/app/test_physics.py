@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
@@ -141,26 +140,3 @@ def test_without_the_extra_one_line_says_what_to_install(
     captured = capsys.readouterr()
     assert "pip install 'iiwa-dnn[sim]'" in captured.err
     assert captured.err.count("\n") == 1
-
-
-@needs_mujoco
-def test_another_robot(tmp_path: Path) -> None:
-    """A made-up arm with other joints: nothing is taken from the iiwa."""
-    links = "".join(
-        f'<link name="l{i}"><inertial><origin xyz="0 0 0.1"/><mass value="1"/>'
-        '<inertia ixx=".01" iyy=".01" izz=".01" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-        for i in range(8)
-    )
-    axes = ("0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1", "0 1 0", "0 0 1")
-    joints = "".join(
-        f'<joint name="j{i}" type="revolute"><parent link="l{i}"/><child link="l{i + 1}"/>'
-        f'<origin xyz="0 0 0.2"/><axis xyz="{axis}"/>'
-        '<limit lower="-3" upper="3" velocity="3" effort="90"/></joint>'
-        for i, axis in enumerate(axes)
-    )
-    path = tmp_path / "arm.urdf"
-    path.write_text(f'<robot name="arm">{links}{joints}</robot>')
-    words = ("--robot", path, "--q0", 0.2, 0.6, 0.1, 0.9, -0.1, 0.8, 0, "--check", "none")
-    assert call(*DRY, *words, "--out", tmp_path / "run") == 0
-    settings = json.loads((tmp_path / "run" / "metrics.json").read_text())["settings"]
-    assert settings["torque_max"] == [90.0] * 7

@@ -53,13 +53,6 @@ def test_order_on_a_field_that_depends_on_time(motion: str) -> None:
     assert slope(steps, errors) == pytest.approx(ORDERS[motion], abs=0.25)
 
 
-def test_constant_velocity_is_exact_for_all() -> None:
-    rate = np.array([0.3, -0.2, 0.1])
-    for method in MOTIONS.values():
-        mean = method.step(lambda q, t: rate, np.zeros(3), 5.0, 0.1)
-        np.testing.assert_allclose(mean, rate, rtol=1e-15)
-
-
 @pytest.mark.parametrize(("motion", "stages"), [("euler", 1), ("midpoint", 2), ("rk4", 4)])
 def test_stages_are_at_the_ends_and_the_middle_of_the_step(motion: str, stages: int) -> None:
     times = []

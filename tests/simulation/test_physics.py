@@ -114,17 +114,6 @@ def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
     assert lag(late) == lag(prompt) + 7
 
 
-def test_the_bound_holds_for_another_seed(robot):
-    record = heart_in_physics(
-        robot, ("proxqp",), disturbances=Disturbances.typical(), seed=3, duration=2.5
-    )
-    assert distance(record).max() <= 2e-3
-    assert limits_are_kept(record)
-    found = compute_metrics(record)["crosscheck"]
-    assert found["steps_checked"] == 2500
-    assert found["max_solution_gap"] <= 1e-6
-
-
 def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
     files = []
     for name in "ab":

@@ -90,12 +90,6 @@ def test_a_decision_is_noted_at_its_step_with_the_kind_of_each_bound() -> None:
     assert_array_equal(arrays["blocking_rows"], [[0, 0, 0], [0, 0, 0], [0, 0, 1]])
 
 
-def test_clipped_joints_are_noted_at_their_step() -> None:
-    clipped = np.array([0, 0, 1, 0, 0, 0, 1], np.int8)
-    arrays = recorded([outcome(), outcome(clipped=clipped)])
-    assert_array_equal(arrays["clipped"].nonzero(), [[1, 1], [2, 6]])
-
-
 def test_the_reason_of_a_stop_names_all_that_is_in_the_way() -> None:
     made = recorder()
     decision = decided([1, 1, -1, -1, 0, 0, 0, 0], [0, 1, 1])

@@ -12,7 +12,7 @@ from helpers_physics import START
 from iiwa_dnn import Configuration, InvalidInputError, load_robot
 from iiwa_dnn.robot.arms import ARMS
 from iiwa_dnn.robot.mujoco_model import JointDynamics
-from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
+from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.base import Plant
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 from iiwa_dnn.simulation.plants.torque_control import TorqueGains
@@ -55,16 +55,6 @@ def test_it_starts_at_rest_and_reaches_the_commanded_velocity(robot):
     assert ((np.abs(torque) > 0.0) & (np.abs(torque) < limit)).all()
 
 
-def test_its_arrays_are_copies(robot):
-    plant = started(robot)
-    other = started(robot)
-    for array in (plant.read(), *plant.move(COMMAND)[:2]):
-        array[:] = 9.0
-    other.read()
-    other.move(COMMAND)
-    np.testing.assert_array_equal(drive(plant, 20), drive(other, 20))
-
-
 def test_a_second_start_gives_the_same_run_and_another_seed_another(robot):
     plant = started(robot, disturbances=Disturbances.typical(), seed=4)
     first = drive(plant, 50)
@@ -72,34 +62,6 @@ def test_a_second_start_gives_the_same_run_and_another_seed_another(robot):
     np.testing.assert_array_equal(drive(plant, 50), first)
     plant.start(robot, START, DT, 5)
     assert not np.array_equal(drive(plant, 50), first)
-
-
-def test_the_first_physics_step_goes_by_the_reading_of_the_step(robot, monkeypatch):
-    readings = []
-    measure = Encoder.__call__
-
-    def counted(encoder, q):
-        readings.append(measure(encoder, q))
-        return readings[-1]
-
-    monkeypatch.setattr(Encoder, "__call__", counted)
-    noisy = Disturbances(encoder_noise=1e-4)
-    plant, seen = started(robot, disturbances=noisy), []
-    torque = plant._torques.torque
-
-    def noted(reading):
-        seen.append(reading)
-        return torque(reading)
-
-    monkeypatch.setattr(plant._torques, "torque", noted)
-    for step in range(3):
-        reading = plant.read()
-        plant.move(COMMAND)
-        np.testing.assert_array_equal(seen[4 * step], reading)
-    assert len(readings) == len(seen) == 3 * 4
-    plant.move(COMMAND)  # without a reading of its own it makes one
-    assert len(readings) == 4 * 4
-    np.testing.assert_array_equal(seen, readings)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 7])
@@ -152,12 +114,6 @@ def test_an_arm_with_its_gripper_locked_follows_too():
 def test_wrong_timesteps_are_refused_before_there_is_a_robot(timestep, problem):
     with pytest.raises(InvalidInputError, match=problem):
         MujocoPlant(timestep=timestep)
-
-
-@pytest.mark.parametrize(("timestep", "dt"), [(3e-4, 1e-3), (1e-3, 1e-4)])
-def test_the_timestep_has_to_divide_the_control_period(robot, timestep, dt):
-    with pytest.raises(InvalidInputError, match="physics_dt: must divide"):
-        MujocoPlant(timestep=timestep).start(robot, START, dt, 0)
 
 
 def test_the_push_has_the_impulse_that_is_asked_for(robot):

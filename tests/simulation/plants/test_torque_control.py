@@ -106,8 +106,3 @@ def test_torques_stay_within_the_limits_and_it_does_not_wind_up(robot):
 def test_wrong_gains(name, value):
     with pytest.raises(InvalidInputError, match=name):
         TorqueGains(**{name: value})
-
-
-def test_the_robots_own_model_stays_as_it_is(robot):
-    loop(robot)
-    assert not robot.model.armature.any()
