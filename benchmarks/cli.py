@@ -46,29 +46,6 @@ class BenchLoopSettings(BenchOptions):
     rounds: int = 3  # number of repetitions of all that is not a step
 
 
-@dataclass(frozen=True)
-class BenchTargetsSettings(BenchOptions):
-    """Measure six kinds of targets beside Pink and mink: error, jerk, frozen steps and times."""
-
-    out: Path = Path("runs/bench_targets")  # folder of the results
-    steps: int = 10_000  # number of steps of each loop towards each kind of target
-    period: float = 1e-3  # control period [s]
-    mink_python: str | None = None  # Python interpreter with mink; by default this one
-
-
-def _targets(options: BenchTargetsSettings) -> int:
-    checks.integer("--steps", options.steps, 50)
-    checks.positive("--period", options.period)
-    folder = prepare_folder(options.out)
-    from benchmarks.target_table import STREAMS, measure_targets, save
-
-    with tqdm(total=options.steps * len(STREAMS), unit="step", disable=options.quiet) as bar:
-        python = None if options.mink_python is None else Path(options.mink_python)
-        rows = measure_targets(options.steps, options.period, python, bar.update)
-    print(save(rows, options.period, folder))
-    return 0
-
-
 def _solvers(options: BenchSettings) -> int:
     for name in ("steps", "cold"):
         checks.integer(f"--{name}", getattr(options, name), 50)
@@ -156,4 +133,3 @@ def _command(kind: type[Any], run: Callable[[Any], int], name: str) -> Callable[
 
 bench_solvers = _command(BenchSettings, _solvers, "solvers")
 bench_loop = _command(BenchLoopSettings, _loop, "loop")
-bench_targets = _command(BenchTargetsSettings, _targets, "targets")

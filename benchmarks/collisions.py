@@ -14,10 +14,8 @@ import iiwa_dnn
 from benchmarks.control import LOOPS, measure_steps
 from iiwa_dnn.robot.collision import collision_model
 from iiwa_dnn.studies.runs import paper_robot
+from tests.export_settings import BALLS, DISTANCE, RADII
 
-BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
-RADII = (0.05, 0.1, 0.1)  # [m]
-DISTANCE = 0.03  # [m]
 _NAMES = ("iiwa_dnn, with q + dt dq", "PlaCo", "Pink, daqp", "mink, daqp")
 
 

@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from benchmarks.control import LOOPS, measure_steps
-from benchmarks.export_settings import SETTINGS, Made
 from benchmarks.report import environment, made_on, tabulate
 from iiwa_dnn.export import c99, load
 from iiwa_dnn.export.load import find_compiler
 from iiwa_dnn.robot import Configuration
+from tests.export_settings import SETTINGS, Made
 
 FAST = ("-std=c99", "-O3", "-march=native")
 SMALL = ("-std=c99", "-Os", "-fno-asynchronous-unwind-tables")

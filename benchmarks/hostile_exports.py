@@ -14,10 +14,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from benchmarks.export_settings import SETTINGS
 from benchmarks.exports import compiled
 from benchmarks.report import environment, made_on, tabulate
 from iiwa_dnn.export import c99
+from tests.export_settings import SETTINGS
 
 CHOSEN = (
     "heart",

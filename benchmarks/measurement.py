@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import programs
 from benchmarks.peers import TOL, Peer
 from benchmarks.streams import Stream
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.program import QP, Vector
 from iiwa_dnn.qp.solution import Status
+from tests import programs
 
 FAILED = 1e-8
 """An answer whose largest residual is above this has failed, whatever its solver says."""

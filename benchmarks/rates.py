@@ -17,8 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.collisions import BALLS, DISTANCE, RADII
-from benchmarks.targets import STREAMS
 from iiwa_dnn import (
     AccelerationLimits,
     CollisionAvoidance,
@@ -36,6 +34,8 @@ from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.schemes import PoseTask
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
+from tests.export_settings import BALLS, DISTANCE, RADII
+from tests.targets import STREAMS
 
 DT = 1e-3
 STEPS = 20_000

@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.programs import strictly_convex
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP, Matrix, Vector
 from iiwa_dnn.references import Heart
@@ -12,6 +11,7 @@ from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import simulate
 from iiwa_dnn.studies import paper
+from tests.programs import strictly_convex
 
 Programs = list[QP]
 

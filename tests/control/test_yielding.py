@@ -38,7 +38,7 @@ from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
 from judge_limits import Breach, breaches
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from benchmarks.targets import STREAMS, drive, longest_freeze, scheme
+from targets import STREAMS, drive, longest_freeze, scheme
 
 JERK = 500.0
 LIMITS = (AccelerationLimits(), JerkLimits(JERK))

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from benchmarks.export_settings import SETTINGS, drawing, with_parts
+from export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
 from iiwa_dnn.control.command import RowLayout

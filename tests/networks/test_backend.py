@@ -5,7 +5,7 @@ import pytest
 import qpsolvers
 
 import iiwa_dnn
-from benchmarks import programs
+import programs
 
 
 @pytest.mark.long

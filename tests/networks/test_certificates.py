@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import linprog
 
 import iiwa_dnn
-from benchmarks import programs
+import programs
 from iiwa_dnn import QP, DNNSolver, Status
 from iiwa_dnn.qp import certificates
 

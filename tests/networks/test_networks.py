@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import iiwa_dnn
-from benchmarks import programs
+import programs
 from helpers_qp import known_qp, network_rates
 from iiwa_dnn import (
     QP,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 import iiwa_dnn
-from benchmarks import programs
+import programs
 from iiwa_dnn import QP, DNNSolver, InvalidInputError
 
 SEEDS = st.integers(0, 2**32 - 1)

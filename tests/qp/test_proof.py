@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 import qpsolvers
 
+import exact
 import iiwa_dnn
-from benchmarks import exact, programs
-from benchmarks.proofs import whole_numbers
+import programs
+from exact import whole_numbers
 from helpers_qp import known_qp
 from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
 from iiwa_dnn.qp.proof import CROSSED, DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof

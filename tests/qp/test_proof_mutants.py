@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import exact
-from benchmarks.proofs import small, whole_numbers
+import exact
+from exact import small, whole_numbers
 from iiwa_dnn import QP, DNNSolver
 from iiwa_dnn.qp import proof
 

@@ -11,13 +11,13 @@ import pinocchio as pin
 import pytest
 
 import iiwa_dnn
-from benchmarks.random_motion import SLACK, Judge, obstacles_for, wander
 from helpers_simulation import rows_of
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, second_order
 from iiwa_dnn.schemes.scene import pair_distances
+from random_motion import SLACK, Judge, obstacles_for, wander
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
 START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])

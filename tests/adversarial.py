@@ -1,21 +1,18 @@
-"""``python -m benchmarks.adversarial STEPS``: arms driven by hostile targets, every step judged.
+"""``python tests/adversarial.py STEPS``: arms driven by hostile targets, every step judged.
 
 Each of iiwa7, panda and xarm7 takes its share of the steps at 1 kHz towards each kind of target of
-`benchmarks.targets`, raw and through the filter, with limits on acceleration alone and with limits
+`targets`, raw and through the filter, with limits on acceleration alone and with limits
 on jerk too. The judge of tests/judge_limits.py takes finite differences of the joint positions.
 """
 
 import itertools
 import sys
-from pathlib import Path
 
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.targets import STREAMS, drive, longest_freeze, scheme
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from judge_limits import breaches
+from targets import STREAMS, drive, longest_freeze, scheme
 
 DT = 1e-3
 PIECE = 10_000

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.collisions import BALLS, DISTANCE, RADII
 from iiwa_dnn import Controller, DoubleIndicator, Limit, Reference, Robot, Scheme, Task
 from iiwa_dnn.checks import Array
 from iiwa_dnn.compiling.library import compiled
@@ -19,6 +18,9 @@ from iiwa_dnn.studies.runs import paper_robot
 
 Made = tuple[Controller, Array]
 
+BALLS = ([0.36, 0.16, 0.64], [0.7, 0.0, 0.3], [-0.3, 0.5, 0.6])
+RADII = (0.05, 0.1, 0.1)  # [m]
+DISTANCE = 0.03  # [m]
 DT = 1e-3  # [s]
 
 

@@ -213,3 +213,36 @@ def face_of(qp: QP, active: np.ndarray) -> Face:
 def distance(x: np.ndarray, exact: list[Fraction]) -> Fraction:
     """Compute the largest distance of the entries of a point (n,) from the exact ones."""
     return max(abs(Fraction(float(v)) - w) for v, w in zip(x, exact, strict=True))
+
+
+def whole_numbers(rng: np.random.Generator) -> QP:
+    """A program of small whole numbers around a point: rows repeat, multipliers vanish."""
+    n = int(rng.integers(1, 4))
+    m = int(rng.integers(0, 4))
+    p = int(rng.integers(0, 2))
+    numbers = rng.integers(-2, 3, (2 * n + m + p + 2, n)).astype(float)
+    choices = rng.integers(0, 2, (4, max(n, m)))
+    root = numbers[:n]
+    A = numbers[n : n + p]
+    G = numbers[n + p : n + p + m]
+    x = numbers[-1]
+    P = root @ root.T + np.eye(n) * choices[3, 0]
+    return QP(
+        P, numbers[-2], G, G @ x + choices[0, :m], A, A @ x, x - choices[1, :n], x + choices[2, :n]
+    )
+
+
+def small(rng: np.random.Generator) -> QP:
+    """A program of 2 or 3 variables with three inequality rows and bounds."""
+    n = int(rng.integers(2, 4))
+    numbers = rng.standard_normal((n + 6, n))
+    root = numbers[:n]
+    size = np.abs(numbers[-2])
+    return QP(
+        root @ root.T,
+        3.0 * numbers[-1],
+        numbers[n : n + 3],
+        numbers[-3:, 0] + 1.0,
+        lb=-size,
+        ub=size,
+    )

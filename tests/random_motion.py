@@ -1,4 +1,4 @@
-"""Random motion among obstacles, judged by coal: ``python -m benchmarks.random_motion STEPS``.
+"""Random motion among obstacles, judged by coal: ``python tests/random_motion.py STEPS``.
 
 Each joint is asked for its largest velocity, up or down, drawn anew every tenth of a second, and
 the rows alone keep the arm out of still and moving obstacles and of itself. coal computes every

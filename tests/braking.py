@@ -1,4 +1,4 @@
-"""Hostile targets, obstacles, acceleration limits: ``python -m benchmarks.braking STEPS [SEED]``.
+"""Hostile targets, obstacles, acceleration limits: ``python tests/braking.py STEPS [SEED]``.
 
 With ``--exported`` C that `iiwa_dnn.export` wrote drives the arms, each ten times as long, among
 obstacles that stand still.
@@ -19,18 +19,15 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import iiwa_dnn
-from benchmarks.random_motion import Judge, swinging
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.qp import Matrix, Vector
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from judge_limits import breaches
+from random_motion import Judge, swinging
 
 ARMS = ("iiwa7", "panda", "ur5", "xarm7", "kinova")
 ACCELERATION = 10.0
