@@ -1,4 +1,4 @@
-r"""The zeroing network: it follows a program that moves.
+r"""Networks on the residual of the KKT conditions; the zeroing network follows a program that moves.
 
 The residual E(s, t) of the KKT conditions (`iiwa_dnn.networks.kkt_system`) is to vanish along
 :math:`\rho\,\dot E = -\Phi(E)`. With W its derivative in s and :math:`\partial_t E` the program's
@@ -20,6 +20,36 @@ presence of various kinds of noises", IEEE Transactions on Neural Networks and L
 (2016); Z. Zhang et al., "A varying-parameter convergent-differential neural network for solving
 joint-angular-drift problems of redundant robot manipulators", IEEE/ASME Transactions on
 Mechatronics 23 (2018).
+
+**The gradient network** is steepest descent on half the squared residual:
+
+.. math::  \rho\,\dot s = -W^T E(s), \qquad W = \partial E / \partial s
+
+It needs one product where the zeroing network solves a linear system, and decays at the smallest
+eigenvalue of :math:`W^T W`, the square of the program's condition; behind a program that moves at
+a speed v it lags by about :math:`\rho\,v/\lambda_{min}`.
+
+Source: Y. Zhang, K. Chen, H.-Z. Tan, "Performance analysis of gradient neural network exploited for
+online time-varying matrix inversion", IEEE Transactions on Automatic Control 54 (2009).
+
+**The noise-suppressing neural dynamics** are a zeroing network with bounded activations in series.
+
+With the residual E of the KKT conditions in its ``"smooth"`` form, the perturbed Fischer-Burmeister
+function as the NCP function (`iiwa_dnn.networks.kkt_system`), and n the noise,
+
+.. math::
+
+    \rho\,\dot E = -\eta\,\Phi(E) - \gamma\,\Phi\bigl(E + \eta\,\Phi(Z)\bigr) + n, \qquad
+    \rho\,\dot Z = E, \qquad \Phi(e) = \min(\max(e, -1), 1) .
+
+Near rest :math:`\Phi` is linear and the integral takes a constant noise out that is below
+:math:`\gamma\,\min(1, \eta)`, with :math:`Z \to n/(\gamma\,\eta)`; it is the noise-tolerant
+zeroing network with the gains :math:`\gamma + \eta` and :math:`\gamma\,\eta`.
+
+Source: L. Wei, L. Jin et al., "Noise-suppressing neural dynamics for time-dependent constrained
+nonlinear optimization with applications", IEEE Transactions on Systems, Man, and Cybernetics:
+Systems, equation (12); the form above was read out of the authors' published programs
+(docs/noise_suppressing.md), not of the text.
 """
 
 from dataclasses import dataclass, field
@@ -32,7 +62,8 @@ from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
 from iiwa_dnn.networks.base import Flow, Network, kkt_product, settings_of
 from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
-from iiwa_dnn.qp.layout import Sizes, Vector
+from iiwa_dnn.networks.primal_dual import variational
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -116,3 +147,82 @@ class ZeroingNetwork(Network):
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
         return {**settings_of(self), "activation": settings_of(self.activation)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class GradientNetwork(ZeroingNetwork):
+    """The gradient network; the zeroing network's activation and form, no integral, no growth."""
+
+    def work(self, sizes: Sizes) -> tuple[float, float]:
+        """Count, for each evaluation, the residual and a product with W^T; sizes are (n, m, p)."""
+        return 0.0, 2.0 * kkt_product(sizes)
+
+    def flow(self, qp: QP, rate: QP | None = None) -> Flow:
+        """Set a program up; its rate of change has no effect.
+
+        Steps of explicit Euler are stable below 2 / ||W||^2, if the activation is linear. Over all
+        active sets of the projected form, W has the rows of the whole KKT matrix or the identity's.
+        """
+        system = KktSystem(qp, self.form)
+
+        def rates(state: Vector) -> Vector:
+            error, _ = system.evaluate(state)
+            result: Vector = -system.matrix.T @ self.activation(error)
+            return result
+
+        def jacobian(state: Vector) -> Matrix:
+            system.evaluate(state)
+            result: Matrix = -system.matrix.T @ system.matrix
+            return result
+
+        def step(state: Vector | None) -> float:
+            if state is None:
+                return 2.0 / (float(np.linalg.norm(variational(qp)[0], 2)) ** 2 + 1.0)
+            system.evaluate(state)
+            return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)
+
+        # W is constant on an active set of the projected form.
+        exact = self.form == "projected" and isinstance(self.activation, Linear)
+        return Flow(rates, jacobian if exact else None, step=step)
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoiseSuppressingNetwork(ZeroingNetwork):
+    """The network with 2 (3 n + p + m) states: unknowns and the integrals of their residuals.
+
+    Attributes:
+        form: Form of the complementarity; ``"smooth"`` is the source's.
+        integral: gamma, in units of 1 / rho.
+        proportional: eta, in units of 1 / rho.
+        bound: Bound of the activations; the source's is 1.
+        noise: Constant noise in the rate of the residual [1/rho].
+    """
+
+    form: Form = "smooth"
+    integral: float = 1.0
+    proportional: float = 1.0
+    bound: float = 1.0
+    noise: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        super().__post_init__()
+        for name in ("integral", "proportional", "bound"):
+            checks.positive(name, getattr(self, name))
+        checks.finite("noise", self.noise)
+
+    def removal(self, error: Vector, state: Vector) -> Vector:
+        """Return the rate (size,) at which a residual (size,) is removed, less the noise."""
+        size = error.size
+        bound = self.bound
+        first = self.proportional * np.clip(error, -bound, bound)
+        summed = self.proportional * np.clip(state[size : 2 * size], -bound, bound)
+        second: Vector = self.integral * np.clip(error + summed, -bound, bound)
+        return first + second - self.noise
+
+    def step(self, state: Vector | None) -> float:
+        """Bound the steps of explicit Euler [rho] near rest, where the activations are linear.
+
+        The bound is the same at every state (size,). Both eigenvalues, -gamma and -eta, are real.
+        """
+        return 2.0 / max(self.integral, self.proportional)
