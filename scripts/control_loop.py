@@ -75,7 +75,7 @@ def main(
         position_gain=gain, orientation_gain=gain, extra_limits=limits
     )
     controller = iiwa_dnn.Controller(robot, scheme, heart, dt=DT)
-    controller.warm_up()  # lays the step out, so that the first step is as quick as the others
+    controller.warm_up(arm.q)  # lays the step out, so that the first one is as quick as the others
     times = []
     errors = []
     began = time.perf_counter()

@@ -137,7 +137,7 @@ def drive(
     controller = iiwa_dnn.Controller(
         robot, scheme, hand if filtered else None, dt=dt, policy=policy
     )
-    controller.warm_up()
+    controller.warm_up(q0)
     hand = iiwa_dnn.MovingTarget(start)
     if filtered:
         controller.reference = hand

@@ -36,7 +36,7 @@ def make(task: Task, variant: str) -> Loop:
         avoid = iiwa_dnn.CollisionAvoidance(list(balls), self_collision=False, distance=distance)
         scheme = iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*scheme.limits, avoid])
     controller = iiwa_dnn.Controller(robot, scheme, reference, dt=dt)
-    controller.warm_up()
+    controller.warm_up(q)
     command: Any = None
 
     def only_command(k: int) -> None:

@@ -458,32 +458,15 @@ class Controller:
         self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
         self._derived = None
 
-    def warm_up(self, q: ArrayLike | None = None, t: float | None = None) -> None:
-        """Compile all that a step needs, so that the first one is as quick as the others.
+    def warm_up(self, q: ArrayLike, t: float | None = None) -> None:
+        """Lay the program out ahead, so that the first step is as quick as the others.
 
         Args:
             q: Joint positions of the first step [rad], (n,), which become the scheme's home if it
-                has none; None: the first step lays the program out for them, in milliseconds.
+                has none.
             t: Time of the first step [s], at which a warning says where the reference begins; None:
                 the first step warns.
         """
-        twin = copy.copy(self)
-        twin._kept.now = twin._kept.now._replace(begun=True)  # warnings are for the first step
-        home = self.robot.start_posture()
-        conf = Configuration(self.robot, home)
-        frames = {name: conf.frame(name) for name in twin.program.target_frames}
-        poses = {name: Target(at.position, at.rotation) for name, at in frames.items()}
-        for _ in range(3):
-            twin.step(home, 0.0, poses)
-        if self.reference is not None:
-            twin.step(home, 0.0)
-        if self.mode == "converged":  # and a target that no arm reaches, once and again
-            twin.policy = "relax"
-            far = {name: Target(at.position + 99.0, at.rotation) for name, at in frames.items()}
-            twin.step(home, 0.0, far)
-            twin.step(home, 0.0, far)
-        if q is None:
-            return
         begun = self._kept.now.begun
         self._kept.now = self._kept.now._replace(begun=begun or t is None)
         self._prepare(q, 0.0 if t is None else t, self.reference is not None)

@@ -10,10 +10,7 @@ import pytest
 
 from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, near_target, paper_robot, paper_start, solve_by
-from iiwa_dnn.control import controller as controller_module
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.policies import Action
-from iiwa_dnn.control.yielding import yield_step
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import ProjectionNetwork
 from iiwa_dnn.networks.solver import DNNSolver
@@ -217,20 +214,6 @@ def test_targets_of_two_frames_are_sampled_ahead_too(gain: float, compiled: bool
         want = one_by_one.step(q, k * 1e-3, given).dq
         np.testing.assert_allclose(dq, want, rtol=0, atol=1e-9)
         q = q + 1e-3 * dq
-
-
-def test_a_warm_up_takes_a_step_without_a_solution_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    taken: list[int] = []
-    monkeypatch.setattr(
-        controller_module,
-        "yield_step",
-        lambda *given: taken.append(yield_step(*given)) or taken[-1],  # type: ignore[func-returns-value]
-    )
-    for policy in ("slow", "stop"):
-        controller = Controller(paper_robot(), DoubleIndicator(), policy=policy)  # type: ignore[arg-type]
-        controller.warm_up()
-        assert controller.policy == policy
-        assert taken.pop() == Action.RELAX
 
 
 def test_a_network_that_lags_says_that_it_keeps_bounds_alone() -> None:

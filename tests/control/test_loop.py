@@ -99,13 +99,6 @@ def test_a_path_that_is_too_quick_is_followed_more_slowly() -> None:
     assert 0.0 < controller.delay < DT
 
 
-def test_warm_up_leaves_no_trace() -> None:
-    cold, warm = (Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT) for _ in range(2))
-    warm.warm_up()
-    np.testing.assert_array_equal(loop(warm, 30), loop(cold, 30))
-    assert warm.scheme.home == PAPER_Q0
-
-
 def test_warm_up_at_a_posture_leaves_nothing_to_be_laid_out() -> None:
     cold, warm = (Controller(paper_robot(), DoubleIndicator(), heart(), dt=DT) for _ in range(2))
     warm.warm_up(PAPER_Q0)

@@ -321,7 +321,6 @@ def test_a_gain_that_is_too_high_is_warned_of_once() -> None:
     conf = Configuration(robot, robot.start_posture())
     target = Target(conf.position, conf.rotation)
     controller = Controller(robot, DoubleIndicator(position_gain=60.0, extra_limits=limits))
-    controller.warm_up()
     with pytest.warns(UserWarning, match=r"gain of 60 1/s is above 35\.1 1/s"):
         controller.step(conf.q, 0.0, target)
     controller.step(conf.q, 1e-3, target)  # a second warning would be an error
