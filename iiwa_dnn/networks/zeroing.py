@@ -1,4 +1,4 @@
-r"""Networks on the residual of the KKT conditions; the zeroing network follows a program that moves.
+r"""Networks on the residual of the KKT conditions: zeroing, gradient, noise-suppressing.
 
 The residual E(s, t) of the KKT conditions (`iiwa_dnn.networks.kkt_system`) is to vanish along
 :math:`\rho\,\dot E = -\Phi(E)`. With W its derivative in s and :math:`\partial_t E` the program's
