@@ -140,18 +140,14 @@ class SignBiPower(Activation):
 
     power: float = 0.5
 
-    @property
-    def _two_powers(self) -> FixedTime:
-        """The same function."""
-        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5)
-
     def magnitude(self, size: Vector) -> Vector:
         """Evaluate at sizes (...,)."""
-        return self._two_powers.magnitude(size)
+        value: Vector = 0.5 * (size**self.power + size ** (1.0 / self.power))
+        return value
 
     def settle_time(self, error: float) -> float:
         """Return the bound [rho] of the two powers."""
-        return self._two_powers.settle_time(error)
+        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5).settle_time(error)
 
 
 @dataclass(frozen=True)

@@ -137,13 +137,9 @@ class TrackingSolver(DNNSolver):
         for i in range(self.substeps):
             now = QP.from_data(self._programs[0] + i * step * rate, sizes)
             change = step / network.rho * network.flow(now, moving).rates(state)
-            before = state.copy()
-            if len(self._states) >= len(formula.past) - 1:
-                state *= formula.past[0]
-                state += formula.rate * change
-                for share, old in zip(formula.past[1:], self._states, strict=False):
-                    state += share * old
-            else:
-                state += change
-            self._states.insert(0, before)
-            del self._states[max(1, len(formula.past) - 1) :]
+            past = [state.copy(), *self._states]
+            known = formula if len(past) >= len(formula.past) else EULER
+            state[:] = known.rate * change
+            for share, old in zip(known.past, past, strict=False):
+                state += share * old
+            self._states[:] = past[: len(formula.past) - 1]
