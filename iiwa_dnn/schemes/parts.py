@@ -60,10 +60,8 @@ def enter_limit(
 
 
 _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
-"""Infinite values that an answer may hold, by its name."""
-
-_UNBOUNDED = {"lb": -np.inf, "ub": np.inf}
-"""Values of variables that an answer leaves out, by its name; others are zero."""
+"""Values that an answer may hold though they are infinite, and that variables which it leaves out
+have, by its name; others are zero."""
 
 _ROUNDING = 1e-9
 """Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
@@ -204,7 +202,7 @@ def _checked(
         if not (np.isfinite(array) | (array == _IDLE.get(name, 0.0))).all():
             problem = f"{name} holds {'NaN' if np.isnan(array).any() else 'an infinite number'}"
             raise InvalidInputError(type(part).__name__, problem, array)
-        given[name] = np.full(_shape(name, n, rows), _UNBOUNDED.get(name, 0.0))
+        given[name] = np.full(_shape(name, n, rows), _IDLE.get(name, 0.0))
         given[name][tuple(map(slice, shape))] = array
     return given
 

@@ -381,21 +381,18 @@ def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
 @compiled
 def _clear(qp: QPViews) -> None:
     """Set all rows and costs to zero, and all bounds to infinity."""
-    n = qp.q.size
-    for i in range(n):
+    for i in range(qp.q.size):
         qp.q[i] = 0.0
         qp.lb[i] = -np.inf
         qp.ub[i] = np.inf
-        for k in range(n):
+        for k in range(qp.q.size):
             qp.P[i, k] = 0.0
-    for j in range(qp.h.size):
-        qp.h[j] = 0.0
-        for k in range(n):
-            qp.G[j, k] = 0.0
-    for j in range(qp.b.size):
-        qp.b[j] = 0.0
-        for k in range(n):
-            qp.A[j, k] = 0.0
+        for j in range(qp.h.size):
+            qp.h[j] = 0.0
+            qp.G[j, i] = 0.0
+        for j in range(qp.b.size):
+            qp.b[j] = 0.0
+            qp.A[j, i] = 0.0
 
 
 @compiled

@@ -150,6 +150,15 @@ def test_so3_right_hand_side_is_the_rotation_vector(axis: tuple[int, ...], angle
     np.testing.assert_allclose(b, vector, rtol=0, atol=1e-11)
 
 
+@pytest.mark.parametrize("angle", [1e-9, 0.5, 2.0, 3.1])
+def test_the_axis_is_to_turn_by_the_angle_that_it_is_off(angle: float) -> None:
+    here = START.rotation @ AXIS / np.linalg.norm(AXIS)
+    normal = np.cross(here, [1.0, 0.0, 0.0])
+    turn = Rotation.from_rotvec(angle * normal / np.linalg.norm(normal)).as_matrix()
+    _, b = rows(AxisTask(axis=AXIS, direction=turn @ here, gain=1.0), START.q, None)
+    assert np.linalg.norm(b) == pytest.approx(angle, rel=1e-7)
+
+
 @pytest.mark.parametrize("orientation", ["so3", "block", "none"])
 def test_the_baselines_answer_is_the_pseudo_inverse_times_the_task(orientation: str) -> None:
     for q in POSTURES[:10]:
