@@ -55,7 +55,7 @@ test: $(PACKAGES)  ## run the tests
 # Built anew afterwards. A sanitizer's own allocator reports what Python keeps until its end.
 sanitize: $(PACKAGES)  ## run the tests on a library that checks addresses and undefined behaviour
 	rm -f iiwa_dnn/_kernels.*
-	CFLAGS='-g -fsanitize=address,undefined -fno-sanitize-recover=undefined' LD_PRELOAD="$$(cc -print-file-name=libasan.so)" \
+	CFLAGS='-g -fsanitize=address,undefined -fno-sanitize-recover=undefined' LD_PRELOAD="$$(cc -print-file-name=libasan.so) $$(cc -print-file-name=libstdc++.so)" \
 		ASAN_OPTIONS=detect_leaks=0 $(VENV_PYTHON) -m pytest -q -m "not long" \
 		tests/compiling tests/control tests/networks tests/qp tests/references tests/schemes; \
 		code=$$?; rm -f iiwa_dnn/_kernels.*; exit $$code

@@ -30,7 +30,8 @@ static inline bool counted(const char *name, Py_ssize_t count, Py_ssize_t expect
     return false;
 }
 
-static inline void *read_array(PyObject *object, int axes, int type, const char *word, int64_t *size)
+static inline void *read_array(
+    PyObject *object, int axes, int type, const char *word, int64_t *size, bool writes)
 {
     PyArrayObject *array = (PyArrayObject *)object;
     if (!PyArray_Check(object) || PyArray_NDIM(array) != axes || PyArray_TYPE(array) != type
@@ -38,18 +39,22 @@ static inline void *read_array(PyObject *object, int axes, int type, const char 
         PyErr_Format(PyExc_TypeError, "%R is no array of %s of %d axes without gaps", object, word, axes);
         return NULL;
     }
+    if (writes && !PyArray_ISWRITEABLE(array)) {
+        PyErr_SetString(PyExc_TypeError, "an array that is written into is read-only");
+        return NULL;
+    }
     for (int i = 0; i < axes; i++) size[i] = PyArray_DIM(array, i);
     return PyArray_DATA(array);
 }
 
-static inline double *read_doubles(PyObject *object, int axes, int64_t *size)
+static inline double *read_doubles(PyObject *object, int axes, int64_t *size, bool writes)
 {
-    return read_array(object, axes, NPY_DOUBLE, "float64", size);
+    return read_array(object, axes, NPY_DOUBLE, "float64", size, writes);
 }
 
-static inline int64_t *read_ints(PyObject *object, int axes, int64_t *size)
+static inline int64_t *read_ints(PyObject *object, int axes, int64_t *size, bool writes)
 {
-    return read_array(object, axes, NPY_INT64, "int64", size);
+    return read_array(object, axes, NPY_INT64, "int64", size, writes);
 }
 
 static inline bool read_double(PyObject *object, double *value)

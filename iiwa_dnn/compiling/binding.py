@@ -69,7 +69,7 @@ def _wrapper(made: Made) -> str:
         lines.append(f"    {kind.tag} a{i};")
     lines.append(f'    if (!counted("{made.name}", count, {len(kinds)})')
     for i, kind in enumerate(kinds):
-        _read(kind, f"a{i}", f"given[{i}]", lines)
+        _read(kind, f"a{i}", f"given[{i}]", lines, i in made.written)
     lines.append("    ) return NULL;")
     own = ", ".join(["arena_here()", *(f"{'&' * is_named(k)}a{i}" for i, k in enumerate(kinds))])
     result = made.result or VOID
@@ -86,12 +86,12 @@ def _wrapper(made: Made) -> str:
     return "\n".join([*lines, "}"])
 
 
-def _read(kind: Kind, place: str, source: str, lines: list[str]) -> None:
+def _read(kind: Kind, place: str, source: str, lines: list[str], writes: bool = False) -> None:
     """Write the conditions that fail unless an argument is read."""
     if isinstance(kind, Array):
         word = "read_doubles" if kind.element is FLOAT else "read_ints"
-        sizes = f"&{place}.size0"
-        lines.append(f"        || !(({place}.data = {word}({source}, {kind.axes}, {sizes})))")
+        rest = f"{kind.axes}, &{place}.size0, {str(writes).lower()}"
+        lines.append(f"        || !(({place}.data = {word}({source}, {rest})))")
     elif isinstance(kind, Struct):
         lines.append(f"        || !is_tuple({source}, {len(kind.members)})")
         for i, (name, own) in enumerate(kind.members):

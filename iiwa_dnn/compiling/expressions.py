@@ -100,6 +100,7 @@ class Expressions:
         parameters: Names of its parameters.
         scope: Variables of the loops that are being translated.
         lines: Lines of C.
+        written: Names of the arrays that are written into.
     """
 
     def __init__(self, translator: Translator, module: Module) -> None:
@@ -110,6 +111,7 @@ class Expressions:
         self.parameters: set[str] = set()
         self.scope: list[str] = []
         self.lines: list[str] = []
+        self.written: set[str] = set()
         self._count = 0
 
     def require(self, holds: object, node: ast.AST, problem: str = "has no translation") -> None:
@@ -412,6 +414,8 @@ class Expressions:
         self.require(len(node.args) == len(made.parameters), node, "leaves arguments out")
         pairs = zip(node.args, made.parameters.values(), strict=True)
         texts = [self._argument(each, kind) for each, kind in pairs]
+        given = [node.args[i] for i in made.written]
+        self.written |= {each.id for each in given if isinstance(each, ast.Name)}
         assert made.result is not None
         return Value(made.result, f"{made.name}({', '.join(['arena', *texts])})")
 

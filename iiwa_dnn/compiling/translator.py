@@ -8,7 +8,7 @@ file and line.
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ class Made:
         result: Type of its result; None while it is being translated.
         decoration: The decorator that it has in Python.
         text: The function.
+        written: Indices of the parameters that are arrays it writes into.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Made:
     result: Kind | None
     decoration: str
     text: str = ""
+    written: set[int] = field(default_factory=set)
 
     @property
     def code(self) -> str:
@@ -149,6 +151,7 @@ class Function(Expressions):
         """Translate the body; the types of variables are those of the last of several rounds."""
         self._result = result
         self.parameters = set(self.made.parameters)
+        self.written = {_base(each) for each in ast.walk(self.node) if _is_stored(each)}
         self.kinds = dict(self.made.parameters)
         self._makes = any(_makes(each) for each in ast.walk(self.node))
         before: dict[str, Kind] | None = None
@@ -164,6 +167,7 @@ class Function(Expressions):
         if self._makes:
             declared.insert(0, "    const struct arena mark = *arena;")
         self.made.result = result
+        self.made.written = {i for i, own in enumerate(self.made.parameters) if own in self.written}
         self.made.parameters = {self.name(own): kind for own, kind in self.made.parameters.items()}
         about = self.made.about.replace("*/", "* /").replace("\n", "\n * ").replace(" \n", "\n")
         comment = f"/* {about}\n *\n * {self.module.path}: {self.node.name} */"
@@ -415,6 +419,18 @@ def _flatten(value: Value, flat: list[tuple[str, str]]) -> None:
         flat += [("int64_t", own.text) for own in value.sizes()]
     else:
         flat.append((value.kind.tag, value.text))
+
+
+def _is_stored(node: ast.AST) -> bool:
+    """Test whether a node is a part of an array that is written."""
+    return isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store)
+
+
+def _base(node: ast.AST) -> str:
+    """Return the name of the array that a node is a part of; nothing if it is a tuple's."""
+    while isinstance(node, ast.Subscript):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else ""
 
 
 def _makes(node: ast.AST) -> bool:

@@ -175,6 +175,18 @@ def constants(a: float, sqrt: float, default: int) -> float:
     return a * TABLE[1] + LIMIT + int_min * sqrt + default + register
 
 
+@compiled
+def fill(values: Vector) -> None:
+    """Write."""
+    values[0] += 1.0
+
+
+@compiled
+def through(values: Vector) -> None:
+    """Write by another kernel."""
+    fill(values)
+
+
 @entry
 def enter(address: int, views: Views, factor: float) -> Pair:
     """Enter a function like `change`."""
@@ -269,6 +281,17 @@ def test_named_tuples_come_from_python_too(both: tuple[Any, Any]) -> None:
 def test_wrong_arguments_are_errors(both: tuple[Any, Any], arguments: tuple[Any, ...]) -> None:
     with pytest.raises(TypeError):
         both[1].own_loops(*arguments)
+
+
+def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None:
+    closed = np.ones(4)
+    closed.flags.writeable = False
+    assert both[1].own_loops(closed, 4) == both[0].loops(closed, 4)
+    with pytest.raises(TypeError, match="is read-only"):
+        both[1].own_arrays(closed, np.ones((2, 4)), np.arange(3))
+    with pytest.raises(TypeError, match="is read-only"):
+        both[1].own_through(closed)
+    assert closed.tolist() == [1.0] * 4
 
 
 REFUSED = [
