@@ -127,7 +127,7 @@ def scenes(csv):
         ("csv", arm, lambda: run("track", csv)),
         ("turning", partial(figure, turned), lambda: example("own_orientation.py")),
         ("obstacle", arm, lambda: example("avoid_obstacle.py")),
-        ("clearance", partial(figure, elbow), lambda: example("own_parts.py")),
+        ("clearance", partial(figure, elbow), lambda: example("own_parts.py")[:1]),
         ("two_arms", partial(arm, index=0), lambda: example("two_arms.py")),
         ("network", partial(figure, residual), lambda: example("own_network.py", "1000")),
         ("noise", error, lambda: run("track", "--noise", "0.01")),
