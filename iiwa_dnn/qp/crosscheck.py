@@ -179,14 +179,14 @@ class CrossCheck:
         directions, it is measured in the norm of P.
         """
         n = qp.sizes[0]
-        reference, first_residual = _answer(name, qp)
-        judge = 0
-        residual = first_residual
-        if not residual <= self.reference_tolerance:
-            judge = 1
-            reference, residual = _answer(_second(name), qp)
-        if not residual <= self.reference_tolerance:
-            return np.nan, np.nan, first_residual, -1
+        residuals = []
+        for solver in (name, _second(name)):
+            reference, residual = _answer(solver, qp)
+            residuals.append(residual)
+            if residual <= self.reference_tolerance:
+                break
+        else:
+            return np.nan, np.nan, residuals[0], -1
         step = point[:n] - reference[:n]
         curved = qp.P @ step
         # As a difference of points: subtracting two objectives would cancel.
@@ -196,7 +196,7 @@ class CrossCheck:
             curvatures = np.linalg.eigvalsh(qp.P + qp.A.T @ qp.A)
             if curvatures[0] <= _FLAT * curvatures[-1]:
                 gap = math.sqrt(max(float(step @ curved), 0.0))
-        return gap, objective_gap, residual, judge
+        return gap, objective_gap, residual, len(residuals) - 1
 
 
 def _installed() -> list[str]:
