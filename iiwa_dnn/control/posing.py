@@ -37,6 +37,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.robot.obstacles import Obstacle
 from iiwa_dnn.schemes import (
     CollisionAvoidance,
+    JointCouplingTask,
     JointLimits,
     PoseTask,
     Scheme,
@@ -106,8 +107,9 @@ class _Point(NamedTuple):
         q: Joint positions [rad], (n,).
         jacobian: Jacobian of the tip, linear over angular, (6, n).
         error: Position [m] over rotation vector [rad] from the tip to the goal, (6,).
-        qp: Program of a step at `q`, whose equalities are the pose.
-        missing: Squared error, and the distances by which pairs are too near.
+        qp: Program of a step at `q`, whose equalities begin with the pose.
+        missing: Squared error, the distances by which pairs are too near, and how far mimic joints
+            are from where their leaders put them.
         far: Largest of the errors of the pose [m], [rad], and of those distances.
     """
 
@@ -218,11 +220,13 @@ def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     program.kinematics.update(q)
     program.write(data, goal, np.array([q, 0.0 * q, 0.0 * q]), np.inf)
     qp = QP.from_data(data, program.sizes)
-    error = qp.b
-    too_near = np.maximum(-qp.h, 0.0)
-    missing = float(error @ error + too_near.sum())
-    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), too_near.max(initial=0.0))
-    return _Point(q, qp.A, error, qp, missing, far)
+    error = qp.b[:6]
+    linkage = qp.b[6:]
+    linkage /= JointCouplingTask.gain  # of a step, as the pose
+    apart = np.concatenate([np.abs(linkage), np.maximum(-qp.h, 0.0)])
+    missing = float(error @ error + apart.sum())
+    far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), apart.max(initial=0.0))
+    return _Point(q, qp.A[:6], error, qp, missing, far)
 
 
 def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
@@ -230,7 +234,8 @@ def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
     P = point.jacobian.T @ point.jacobian
     P.flat[:: P.shape[1] + 1] += damping * float(point.error @ point.error)
     qp = point.qp
-    return solver.solve(QP(P, -point.jacobian.T @ point.error, qp.G, qp.h, lb=qp.lb, ub=qp.ub))
+    q = -point.jacobian.T @ point.error
+    return solver.solve(QP(P, q, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
 
 
 def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
-from iiwa_dnn.robot.robot import Robot, frame_id
+from iiwa_dnn.robot.robot import Mimic, Robot, frame_id
 
 _Joints = dict[str, ET.Element]
 
@@ -60,7 +60,7 @@ def load_robot(
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
         FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
-            left free has more or less than one coordinate, or follows another (``<mimic>``).
+            left free has more or less than one coordinate, or follows one that is locked.
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
@@ -77,12 +77,19 @@ def load_robot(
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
     others = tips if len(tips) > 1 else ()
-    idle = _idle_joints(full, (tip, *others, *frames))
+    mimics = _mimics(joints)
+    idle = _idle_joints(full, mimics, (tip, *others, *frames))
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
+    following = tuple(mimics[joint] for joint in model.names if joint in mimics)
+    for joint, leader, *_ in following:
+        if leader in held:
+            problem = f"joint {joint!r} follows {leader!r}, which is locked: lock it too"
+            raise InvalidInputError("locked", problem, joint)
     limits, ramps = _limits(name, model, joints)
-    robot = Robot(name, model, tip, limits, ramps, tuple(held), tuple(held.values()), path, text)
-    expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
+    positions = tuple(held.values())
+    robot = Robot(name, model, tip, limits, ramps, tuple(held), positions, following, path, text)
+    expected = {*chosen, *(_idle_joints(full, mimics, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     if still:
         message = f"held still, since they do not move {tip}: {', '.join(still)}"
@@ -136,11 +143,22 @@ def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
     return chosen
 
 
-def _idle_joints(model: pin.Model, frames: Iterable[str]) -> list[str]:
-    """List the joints that move none of the frames."""
+def _mimics(joints: _Joints) -> dict[str, Mimic]:
+    """Find the joints of a file that follow another, by their names."""
+    found = {}
+    for name, joint in joints.items():
+        for mimic in joint.findall("mimic"):
+            values = [float(mimic.get("multiplier", 1.0)), float(mimic.get("offset", 0.0))]
+            found[name] = Mimic(name, mimic.get("joint", ""), *values)
+    return found
+
+
+def _idle_joints(model: pin.Model, mimics: dict[str, Mimic], frames: Iterable[str]) -> list[str]:
+    """List the joints that move none of the frames, and lead no joint that does."""
     carriers = [model.frames[frame_id(model, frame)].parentJoint for frame in frames]
-    moving = {joint for carrier in carriers for joint in model.supports[carrier]}
-    return [str(name) for joint, name in enumerate(model.names) if joint not in moving]
+    moving = {model.names[joint] for carrier in carriers for joint in model.supports[carrier]}
+    moving |= {mimics[name].leader for name in moving if name in mimics}
+    return [str(name) for name in model.names if name not in moving]
 
 
 def _lock(model: pin.Model, locked: Iterable[str]) -> tuple[pin.Model, dict[str, float]]:
@@ -170,8 +188,6 @@ def _limits(name: str, model: pin.Model, joints: _Joints) -> tuple[Array, Array]
     limits[2, limits[2] == 0.0] = np.inf
     for i, joint in enumerate(tuple(model.names)[1:]):
         element = joints.get(joint, ET.Element("joint"))
-        if element.find("mimic") is not None:
-            raise InvalidInputError("locked", f"joint {joint!r} follows another: lock it", joint)
         limit = element.find("limit")
         if limit is not None and not {"lower", "upper"} & set(limit.keys()):
             limits[:2, i] = [-np.inf, np.inf]

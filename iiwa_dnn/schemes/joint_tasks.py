@@ -107,3 +107,11 @@ class JointCouplingTask(JointTask):
 
     def _relations(self) -> list[tuple[Mapping[str, float], float]]:
         return [(self.coefficients, self.offset)]
+
+
+def couplings(robot: Robot) -> list[JointCouplingTask]:
+    """Return the tasks that hold a robot's mimic joints to those they follow."""
+    return [
+        JointCouplingTask({joint: 1.0, leader: -multiplier}, offset)
+        for joint, leader, multiplier, offset in robot.mimics
+    ]

@@ -19,6 +19,7 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import (
     Limit,
@@ -112,7 +113,7 @@ class StepProgram:
         """
         self.robot = robot
         self.scheme = scheme
-        tasks = scheme.tasks
+        tasks = [*scheme.tasks, *couplings(robot)]
         limits = merged(scheme.limits)
         last = limits[-1] if limits else None
         self.rate_limits = last if isinstance(last, MotionLimits) else None
