@@ -81,11 +81,7 @@ def load_robot(
     idle = _idle_joints(full, mimics, (tip, *others, *frames))
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    following = tuple(mimics[joint] for joint in model.names if joint in mimics)
-    for joint, leader, *_ in following:
-        if leader in held:
-            problem = f"joint {joint!r} follows {leader!r}, which is locked: lock it too"
-            raise InvalidInputError("locked", problem, joint)
+    following = _following(model, mimics, held)
     limits, ramps = _limits(name, model, joints)
     positions = tuple(held.values())
     robot = Robot(name, model, tip, limits, ramps, tuple(held), positions, following, path, text)
@@ -150,6 +146,18 @@ def _mimics(joints: _Joints) -> dict[str, Mimic]:
         for mimic in joint.findall("mimic"):
             values = [float(mimic.get("multiplier", 1.0)), float(mimic.get("offset", 0.0))]
             found[name] = Mimic(name, mimic.get("joint", ""), *values)
+    return found
+
+
+def _following(
+    model: pin.Model, mimics: dict[str, Mimic], held: dict[str, float]
+) -> tuple[Mimic, ...]:
+    """Select the joints of a model that follow another; that one must not be held."""
+    found = tuple(mimics[joint] for joint in model.names if joint in mimics)
+    for joint, leader, *_ in found:
+        if leader in held:
+            problem = f"joint {joint!r} follows {leader!r}, which is locked: lock it too"
+            raise InvalidInputError("locked", problem, joint)
     return found
 
 
