@@ -9,8 +9,8 @@ from hypothesis.extra.numpy import arrays
 
 from helpers_kinematics import Array
 from helpers_qp import bounds_as_rows
-from helpers_simulation import near_target, paper_robot, paper_start, velocity_bounds
-from iiwa_dnn import load_robot
+from helpers_simulation import near_target, paper_robot, paper_start, rows_of, velocity_bounds
+from iiwa_dnn import JointLimits, load_robot
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator
@@ -62,6 +62,12 @@ def test_the_papers_formula_inside_the_limits() -> None:
             assert ub[i] == pytest.approx(min(robot.dq_max[i], upper), rel=1e-14)
             binding += lb[i] > -robot.dq_max[i] or ub[i] < robot.dq_max[i]
     assert binding >= 300
+
+
+def test_a_gain_beyond_one_over_the_period_is_cut_to_it() -> None:
+    conf = Configuration(paper_robot(), np.full(7, 2.5 - 1e-3))
+    qp = rows_of(JointLimits(gain=1e4), conf, dt=1e-2)
+    np.testing.assert_allclose(qp.ub, 0.1, rtol=1e-9)
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
