@@ -244,17 +244,22 @@ def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
 
 
 def _text(value: object) -> str:
-    """Put a value in words: numbers in four digits, equal entries of a list said once."""
+    """Put a value in words: numbers in four digits."""
     if isinstance(value, Mapping):
         items = value.items()
         return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
     if isinstance(value, list):
-        if len(value) > 1 and all(item == value[0] for item in value):
-            return f"{_text(value[0])} (all {len(value)})"
-        more = f" and {len(value) - _MOST} more" if len(value) > 2 * _MOST else ""
-        shown = value[:_MOST] if more else value
-        texts = (f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in shown)
-        return " ".join(texts) + more
+        return _listed(value)
     if isinstance(value, float):
         return f"{value:.4g}"
     return f"{value:,}" if type(value) is int else str(value)
+
+
+def _listed(values: Sequence[Any]) -> str:
+    """Put a list in words: equal entries said once, a long one cut off."""
+    if len(values) > 1 and all(item == values[0] for item in values):
+        return f"{_text(values[0])} (all {len(values)})"
+    more = f" and {len(values) - _MOST} more" if len(values) > 2 * _MOST else ""
+    shown = values[:_MOST] if more else values
+    texts = (f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in shown)
+    return " ".join(texts) + more

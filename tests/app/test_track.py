@@ -425,7 +425,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "policy: must be one of": ("--policy", "hope"),
     "mode: must be one of": ("--mode", "slow"),
     "proof, not 'nobody'": ("--check", "nobody"),
-    "no dddq_max": ("--jerk-limit", "robot"),
+    "jerk: is needed": ("--jerk-limit", "robot"),
     "motion: ": ("--mode", "continuous", "--motion", "rk4"),
     "no path 'hart'; did you mean: heart": ("hart",),
     "none.csv: No such file": ("none.csv",),
