@@ -235,9 +235,6 @@ class Expressions:
         right = self.number(node.right)
         kind = type(node.op)
         both = FLOAT if FLOAT in (left.kind, right.kind) else INT
-        if kind is ast.Pow:
-            self.require(left.kind is FLOAT and right.known == 2, node, "is no square of a float")
-            return Value(FLOAT, f"square_of({left.text})")
         if kind in (ast.FloorDiv, ast.Mod):
             word = "quotient" if kind is ast.FloorDiv else "remainder"
             self.require(both is INT or kind is ast.Mod, node)

@@ -16,7 +16,6 @@ static inline double double_min(double a, double b) { return b < a ? b : a; }
 static inline double double_max(double a, double b) { return b > a ? b : a; }
 static inline int64_t int_min(int64_t a, int64_t b) { return b < a ? b : a; }
 static inline int64_t int_max(int64_t a, int64_t b) { return b > a ? b : a; }
-static inline double square_of(double a) { return a * a; }
 
 /* Quotient and remainder are rounded down. */
 static inline int64_t int_quotient(int64_t a, int64_t b)

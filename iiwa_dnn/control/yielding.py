@@ -344,7 +344,8 @@ def _races(qp: QPViews, x: Vector) -> bool:
     for i in range(qp.q.size):
         joints += x[i] * x[i]
     for j in range(qp.b.size):
-        tip += row_dot(qp.A, j, x) ** 2
+        speed = row_dot(qp.A, j, x)
+        tip += speed * speed
     return tip < SINGULAR * SINGULAR * joints
 
 

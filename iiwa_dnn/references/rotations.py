@@ -25,7 +25,8 @@ def coefficients(square: float) -> tuple[float, float]:
     """Compute a and b at a squared angle."""
     if square > 1.0:
         angle = np.sqrt(square)
-        versine = 2.0 * np.sin(0.5 * angle) ** 2
+        sine = np.sin(0.5 * angle)
+        versine = 2.0 * sine * sine
         return versine / square, (angle - np.sin(angle)) / (square * angle)
     term_a = 0.5
     term_b = 1.0 / 6.0

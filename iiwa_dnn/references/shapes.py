@@ -70,7 +70,8 @@ def circle_path(t: float, constants: Array, target: Array) -> None:
     rate = constants[1]
     p = rate * t
     # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-    along_u = -2.0 * np.sin(0.5 * p) ** 2
+    sine = np.sin(0.5 * p)
+    along_u = -2.0 * sine * sine
     along_v = np.sin(p)
     for i in range(3):
         u = constants[2 + i]
@@ -123,7 +124,8 @@ def line_path(t: float, constants: Array, target: Array) -> None:
     rate = constants[0]
     p = rate * t
     # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
-    fraction = np.sin(0.5 * p) ** 2
+    sine = np.sin(0.5 * p)
+    fraction = sine * sine
     speed = 0.5 * rate * np.sin(p)
     for i in range(3):
         target[i] += fraction * constants[1 + i]

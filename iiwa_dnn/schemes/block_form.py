@@ -49,8 +49,8 @@ def block_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b:
 @compiled
 def project_on_range(placement: Vector, b: Vector) -> None:
     """Replace b (4,) by its projection on the range of W of a frame's placement (12,)."""
-    row = math.sqrt(placement[2] ** 2 + placement[5] ** 2)
-    column = math.sqrt(placement[6] ** 2 + placement[7] ** 2)
+    row = math.sqrt(placement[2] * placement[2] + placement[5] * placement[5])
+    column = math.sqrt(placement[6] * placement[6] + placement[7] * placement[7])
     normal = np.empty(4)
     for i in range(4):
         if row > VERTICAL:
