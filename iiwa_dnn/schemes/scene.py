@@ -155,6 +155,14 @@ def make_scene(
         if obstacle.moves
     ]
     frames = tuple(dict.fromkeys(body.name for body in bodies if body.joint))
+    names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
+    return Scene(robot, names, frames, moving, *_lay_out(robot, damper, bodies, pairs))
+
+
+def _lay_out(
+    robot: Robot, damper: Damper, bodies: list[_Body], pairs: list[tuple[int, int]]
+) -> tuple[Vector, Vector]:
+    """Return `Scene.speeds` and `Scene.constants` of pairs of bodies, by their indices."""
     motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
     moves = np.array([motion.moves for motion in motions])
     radii = np.array([motion.radii for motion in motions])
@@ -164,9 +172,7 @@ def make_scene(
     speeds = np.abs(radii) @ robot.dq_max + [row.obstacle_speed for row in rows]
     head = [*damper, len(bodies), len(pairs)]
     parts: list[Any] = [head, robot.dq_max, *map(_numbers, bodies), rows, moves, radii]
-    constants = np.concatenate([np.ravel(part) for part in parts])
-    names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
-    return Scene(robot, names, frames, moving, speeds, constants)
+    return speeds, np.concatenate([np.ravel(part) for part in parts])
 
 
 def _check_velocity_limits(robot: Robot) -> None:
