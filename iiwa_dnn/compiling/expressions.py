@@ -35,10 +35,11 @@ _OPERATORS: dict[type, tuple[str, int]] = {
     ast.BitAnd: ("&", 8),
 }
 
-_LIBRARY = {"arctan2": "atan2", "abs": "fabs"}
-_LIBRARY |= {
-    name: name for name in ["sqrt", "sin", "cos", "tanh", "exp", "log", "ceil", "floor", "copysign"]
-}
+_EXACT = {"abs": "fabs"} | {name: name for name in ["sqrt", "ceil", "floor", "copysign"]}
+"""Functions of C whose results are exact or rounded correctly, of whichever library they are."""
+
+_LIBRARY = _EXACT | {name: name for name in ["sin", "cos", "atan2", "tanh", "exp", "log"]}
+"""All functions of C: those of the module math. Numpy's own may differ in the last digit."""
 
 _C_WORDS = """
 auto bool break case char const continue default do double else enum extern float for goto
@@ -447,6 +448,8 @@ class Expressions:
         if name == "isfinite":
             return Value(BOOL, f"isfinite({first.text})")
         self.require(name in _LIBRARY, node)
+        is_exact = name in _EXACT or not ast.unparse(node.func).startswith("np.")
+        self.require(is_exact, node, "may have other last digits than that of the module math")
         text = f"{_LIBRARY[name]}({', '.join(value.text for value in values)})"
         # Those of the module math are integers.
         if ast.unparse(node.func) in ("math.ceil", "math.floor"):

@@ -13,6 +13,8 @@ A rotation vector :math:`\theta(t)` gives :math:`R = \exp[\theta]_\times`, which
 Source: T. D. Barfoot, "State Estimation for Robotics", Cambridge University Press 2017, section 7.
 """
 
+import math
+
 import numpy as np
 
 from iiwa_dnn.checks import Array, Matrix, Vector3
@@ -25,9 +27,9 @@ def coefficients(square: float) -> tuple[float, float]:
     """Compute a and b at a squared angle."""
     if square > 1.0:
         angle = np.sqrt(square)
-        sine = np.sin(0.5 * angle)
+        sine = math.sin(0.5 * angle)
         versine = 2.0 * sine * sine
-        return versine / square, (angle - np.sin(angle)) / (square * angle)
+        return versine / square, (angle - math.sin(angle)) / (square * angle)
     term_a = 0.5
     term_b = 1.0 / 6.0
     a = term_a
@@ -143,7 +145,7 @@ def rotation_log(R: Matrix, out: Array) -> None:
         out[k] = sign * (R[i, k] + R[k, i]) / (4.0 * largest)
     sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
     # angle / sin(angle / 2), whose limit at 0 is 2
-    scale = 2.0 * np.arctan2(sine, w) / sine if sine > 1e-12 else 2.0
+    scale = 2.0 * math.atan2(sine, w) / sine if sine > 1e-12 else 2.0
     for i in range(3):
         out[i] *= scale
 

@@ -3,6 +3,7 @@
 The compiled function above each class is its `Reference.path`.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -20,10 +21,12 @@ def heart_path(t: float, constants: Array, target: Array) -> None:
     scale = constants[0]
     rate = constants[1]
     p = rate * t
-    s1 = np.sin(p)
-    c1 = np.cos(p)
-    y = 13.0 * c1 - 5.0 * np.cos(2.0 * p) - 2.0 * np.cos(3.0 * p) - np.cos(4.0 * p) - 5.0
-    slope = -13.0 * s1 + 10.0 * np.sin(2.0 * p) + 6.0 * np.sin(3.0 * p) + 4.0 * np.sin(4.0 * p)
+    s1 = math.sin(p)
+    c1 = math.cos(p)
+    y = 13.0 * c1 - 5.0 * math.cos(2.0 * p) - 2.0 * math.cos(3.0 * p) - math.cos(4.0 * p) - 5.0
+    slope = (
+        -13.0 * s1 + 10.0 * math.sin(2.0 * p) + 6.0 * math.sin(3.0 * p) + 4.0 * math.sin(4.0 * p)
+    )
     target[0] += scale * 16.0 * s1 * s1 * s1
     target[1] += scale * y
     target[12] += rate * scale * 48.0 * s1 * s1 * c1
@@ -70,14 +73,14 @@ def circle_path(t: float, constants: Array, target: Array) -> None:
     rate = constants[1]
     p = rate * t
     # -2 sin^2(p/2) is cos(p) - 1 without the cancellation near the start.
-    sine = np.sin(0.5 * p)
+    sine = math.sin(0.5 * p)
     along_u = -2.0 * sine * sine
-    along_v = np.sin(p)
+    along_v = math.sin(p)
     for i in range(3):
         u = constants[2 + i]
         v = constants[5 + i]
         target[i] += radius * (along_u * u + along_v * v)
-        target[12 + i] += rate * radius * (np.cos(p) * v - along_v * u)
+        target[12 + i] += rate * radius * (math.cos(p) * v - along_v * u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +127,9 @@ def line_path(t: float, constants: Array, target: Array) -> None:
     rate = constants[0]
     p = rate * t
     # sin^2(p/2) is (1 - cos(p)) / 2 without the cancellation near the start.
-    sine = np.sin(0.5 * p)
+    sine = math.sin(0.5 * p)
     fraction = sine * sine
-    speed = 0.5 * rate * np.sin(p)
+    speed = 0.5 * rate * math.sin(p)
     for i in range(3):
         target[i] += fraction * constants[1 + i]
         target[12 + i] += speed * constants[1 + i]
@@ -169,8 +172,8 @@ def lissajous_path(t: float, constants: Array, target: Array) -> None:
         rate = constants[3 + i]
         phase = constants[6 + i]
         angle = rate * t + phase
-        target[i] += amplitude * (np.sin(angle) - np.sin(phase))
-        target[12 + i] += amplitude * rate * np.cos(angle)
+        target[i] += amplitude * (math.sin(angle) - math.sin(phase))
+        target[12 + i] += amplitude * rate * math.cos(angle)
 
 
 @dataclass(frozen=True, eq=False)

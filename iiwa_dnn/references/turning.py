@@ -38,9 +38,9 @@ def cone_path(t: float, constants: Array, target: Array) -> None:
     # The tool's x and y axes where its z axis is the cone's; the tilt to the start is about x.
     u = column_of(target, 0)
     v = column_of(target, 1)
-    tilt = combined(angle * np.cos(p), u, angle * np.sin(p), v)
+    tilt = combined(angle * math.cos(p), u, angle * math.sin(p), v)
     speed = angle * rate
-    turn_target(target, tilt, combined(speed * np.cos(p), v, -speed * np.sin(p), u))
+    turn_target(target, tilt, combined(speed * math.cos(p), v, -speed * math.sin(p), u))
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +88,8 @@ def tilting_path(t: float, constants: Array, target: Array) -> None:
         waypoints_path(t, along, target)
     rate = constants[2]
     axis = (constants[3], constants[4], constants[5])
-    tilt = constants[1] * np.sin(rate * t)
-    speed = constants[1] * rate * np.cos(rate * t)
+    tilt = constants[1] * math.sin(rate * t)
+    speed = constants[1] * rate * math.cos(rate * t)
     turn_target(target, scaled(tilt, axis), scaled(speed, axis))
 
 

@@ -10,6 +10,7 @@ A gain above 1 / dt is cut to it. With this one and a reference seen one period 
 but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, which does not add up.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal
@@ -278,7 +279,7 @@ def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
     here = axis_at(placement, axis)
     turn = cross(here, wanted)
     sine = np.sqrt(dot(turn, turn))
-    angle = np.arctan2(sine, dot(here, wanted))
+    angle = math.atan2(sine, dot(here, wanted))
     factor = angle / sine if sine > 1e-12 else 1.0
     rate = combined(1.0, spin, min(constants[GAIN], step.rate) * factor, turn)
     for i in range(2):

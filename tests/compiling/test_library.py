@@ -178,7 +178,7 @@ def test_whole_steps_have_the_same_bits_interpreted() -> None:
     results = []
     for flag in ("0", "1"):
         done = subprocess.run(
-            [sys.executable, "-W", "ignore", "-c", RUNS, flag, "60"],
+            [sys.executable, "-W", "ignore", "-c", RUNS, flag, "500"],
             env={**os.environ, "IIWA_DNN_INTERPRETED": flag},
             capture_output=True,
             text=True,

@@ -72,8 +72,8 @@ def functions(a: float, b: float) -> tuple[float, float, float, float, float, fl
     root = np.sqrt(abs(a)) + math.sqrt(abs(b))
     return (
         root,
-        np.sin(a) * math.cos(b),
-        np.arctan2(a, b),
+        math.sin(a) * math.cos(b) + math.log(1.0 + a * a),
+        math.atan2(a, b),
         math.copysign(a, b),
         float(math.ceil(a) - math.floor(b)),
         min(a, b, 0.5) + max(a, b, -0.5),
@@ -236,6 +236,7 @@ CALLS: list[tuple[Any, ...]] = [
         for i, j in ((7, -3), (-7, 2))
     ),
     *(("functions", a, b) for a in NUMBERS[:-1] for b in (0.7, -3.1, -0.0)),
+    *(("functions", *RNG.standard_normal(2).tolist()) for _ in range(500)),
     *(("decisions", a, b, i) for a in NUMBERS for b in (0.5, -0.5) for i in (0, 2, 3, 9)),
     *(("loops", 2.0 * RNG.standard_normal(n), n) for n in range(1, 9)),
     *(("arrays", RNG.random(n), RNG.random((2, 4)), np.arange(3)) for n in (3, 4, 7)),
@@ -307,6 +308,8 @@ REFUSED = [
     ("def f(a: float) -> float:\n    return nothing", "`nothing` is not known here"),
     ("def f(a: float) -> float:\n    return f(a)", "`f(a)` calls itself"),
     ("def f(a: float) -> float:\n    return np.linalg.norm(a)", "`np.linalg.norm(a)` has no"),
+    ("def f(a: float) -> float:\n    return np.sin(a)", "`np.sin(a)` may have other last digits"),
+    ("def f(a: float) -> float:\n    return np.arctan2(a, a)", "`np.arctan2(a, a)` has no"),
     ("def f(a: Matrix) -> None:\n    a[:, 0] = 1.0", "has gaps between its rows"),
     ("def f(a: Vector) -> None:\n    a[::2] = 1.0", "is a slice with a step"),
     ("def f(a: Vector) -> None:\n    a[:] = a + a", "`a` is no number"),
