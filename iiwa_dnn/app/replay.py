@@ -71,7 +71,7 @@ def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
     }
     if settings.is_file():
         table = read_toml(settings).get("robot", {})
-    robot = load({**table, "name": name or table["name"]})
+    robot = load({**table, "name": name or table.get("name", kept["robot"])})
     if robot.dof != record.dof:
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, name)

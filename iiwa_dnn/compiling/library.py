@@ -121,6 +121,8 @@ class Entry(Generic[P, R]):
             return int(_LIBRARY.addresses[name])
         found = getattr(function, "address", function)
         if isinstance(found, int):
+            if found <= 0:
+                raise TypeError(f"{found} is no address of a function")
             return -found
         if not callable(function):
             raise TypeError(f"{function!r} is no function")

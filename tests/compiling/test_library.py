@@ -107,7 +107,7 @@ def test_an_error_in_ones_own_function_comes_with_its_traceback() -> None:
     assert len(_commands(Own(_limit), 2)) == 2  # and nothing of it stays
 
 
-@pytest.mark.parametrize("wrong", [heart_path, settle, 1.5, None])
+@pytest.mark.parametrize("wrong", [heart_path, settle, 1.5, None, 0, -1])
 def test_what_has_other_types_is_refused(wrong: object) -> None:
     with pytest.raises(TypeError):
         enter_limit.address(wrong)
