@@ -16,7 +16,9 @@ from .sources import Constants, Module, decoration, fail
 if TYPE_CHECKING:
     from .translator import Translator
 
-ATOM, UNARY, CONDITIONAL = 15, 14, 3
+ATOM = 15
+UNARY = 14
+CONDITIONAL = 3
 """Precedences: of a name, of a sign, and of the conditional operator."""
 
 _OPERATORS: dict[type, tuple[str, int]] = {
