@@ -1,0 +1,193 @@
+"""Kinematics of a robot as a kernel, from tables of its model: an exported controller's own.
+
+At the desk Pinocchio computes the same (`iiwa_dnn.robot.kinematics`), and the tests hold the kernel
+to it.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from iiwa_dnn.checks import Array
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.robot.robot import Robot
+
+Vector = Array
+Matrix = Array
+IntVector = NDArray[np.int64]
+IntMatrix = NDArray[np.int64]
+
+CYCLE = (0, 1, 2, 0, 1)
+"""Axes, so that those after one are the next two."""
+
+
+class ModelTables(NamedTuple):
+    """Tables of a robot of n joints, each of which turns about an axis or slides along it.
+
+    A placement has 12 numbers: the rotation's columns, then the position [m].
+
+    Attributes:
+        parents: For each joint the number of the one that carries it, from 1; 0: the world, (n,).
+        joints: Placement of each joint at 0 in the frame of its parent, (n, 12).
+        axes: Direction of each joint's motion in its own frame, linear and angular, (n, 6).
+        frames: For each frame its row among the placements, and the joint that carries it, (k, 2).
+        placements: Placement of each frame in its joint's, (k, 12).
+        bodies: For what each joint carries the placement of its principal axes, and the roots of
+            its mass and of its moments about them, (n, 16); none without the inertia matrix.
+        supports: 1 where joint j moves body i, else 0, (n, n).
+        armature: Inertia of the motors [kg m^2], (n,).
+    """
+
+    parents: IntVector
+    joints: Matrix
+    axes: Matrix
+    frames: IntMatrix
+    placements: Matrix
+    bodies: Matrix
+    supports: Matrix
+    armature: Vector
+
+
+def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) -> ModelTables:
+    """Return the tables of a robot and its frames, by Pinocchio's indices; with bodies if asked."""
+    model = robot.model
+    moving = range(1, model.njoints)
+    axes = []
+    for j in moving:
+        joint = model.joints[j]
+        data = joint.createData()
+        joint.calc(data, np.zeros(1), np.zeros(1))
+        axes.append(np.ravel(data.S))
+    carried = [[model.frames[k].placement, model.frames[k].parentJoint] for k in frames]
+    bodies = [_body(model.inertias[j]) for j in moving]
+    supports = [[float(j in list(model.supports[i])) for j in moving] for i in moving]
+    return ModelTables(
+        np.array(model.parents[1:], dtype=np.int64),
+        np.array([_flat(model.jointPlacements[j]) for j in moving]),
+        np.array(axes),
+        np.array([[k, row[1]] for k, row in zip(frames, carried, strict=True)], dtype=np.int64),
+        np.array([_flat(row[0]) for row in carried]),
+        np.array(bodies if dynamics else np.zeros((0, 16))),
+        np.array(supports),
+        np.array(model.armature),
+    )
+
+
+def _flat(placement: Any) -> Vector:
+    """Return Pinocchio's placement as 12 numbers."""
+    return np.append(placement.rotation.T, placement.translation)
+
+
+def _body(body: Any) -> Vector:
+    """Return a row of `ModelTables.bodies` for Pinocchio's inertia of a body."""
+    moments, axes = np.linalg.eigh(body.inertia)
+    masses = np.append(body.mass, moments.clip(0.0))
+    return np.concatenate([axes.T.ravel(), body.lever, np.sqrt(masses)])
+
+
+@compiled
+def write_kinematics(
+    model: ModelTables, q: Vector, jacobian: Matrix, placements: Matrix, inertia: Matrix
+) -> None:
+    """Write the kinematics at joint positions q (n,) [rad or m], as `Kinematics` holds them.
+
+    Args:
+        model: The robot's tables.
+        q: Joint positions, (n,).
+        jacobian: Joint Jacobian, (n, 6), overwritten.
+        placements: Frame placements by frame index, (frames, 12): rows of the model's frames.
+        inertia: Joint-space inertia matrix [kg m^2], (n, n), overwritten if the model has bodies.
+    """
+    placed = np.zeros((q.size + 1, 12))
+    start = np.empty(12)
+    motion = np.empty(12)
+    for i in range(3):
+        placed[0, 4 * i] = 1.0
+    for j in range(q.size):
+        compose(placed[model.parents[j]], model.joints[j], start)
+        _write_twist(start, model.axes[j], jacobian[j])
+        _write_motion(model.axes[j], q[j], motion)
+        compose(start, motion, placed[j + 1])
+    for k in range(len(model.frames)):
+        carrier = placed[model.frames[k, 1]]
+        compose(carrier, model.placements[k], placements[model.frames[k, 0]])
+    if len(model.bodies) > 0:
+        _write_inertia(model, placed, jacobian, inertia)
+
+
+@compiled
+def compose(first: Vector, second: Vector, product: Vector) -> None:
+    """Write the product (12,) of two placements (12,)."""
+    for k in range(4):
+        for i in range(3):
+            product[3 * k + i] = (
+                first[i] * second[3 * k]
+                + first[3 + i] * second[3 * k + 1]
+                + first[6 + i] * second[3 * k + 2]
+            )
+    for i in range(3):
+        product[9 + i] += first[9 + i]
+
+
+@compiled
+def _write_twist(placement: Vector, axis: Vector, twist: Vector) -> None:
+    """Write a joint's twist (6,) about the world's origin, from its placement (12,), axis (6,)."""
+    for i in range(3):
+        twist[i] = 0.0
+        twist[3 + i] = 0.0
+        for k in range(3):
+            twist[i] += placement[3 * k + i] * axis[k]
+            twist[3 + i] += placement[3 * k + i] * axis[3 + k]
+    twist[0] += placement[10] * twist[5] - placement[11] * twist[4]
+    twist[1] += placement[11] * twist[3] - placement[9] * twist[5]
+    twist[2] += placement[9] * twist[4] - placement[10] * twist[3]
+
+
+@compiled
+def _write_motion(axis: Vector, q: float, motion: Vector) -> None:
+    """Write the placement (12,) of a joint at q [rad or m] in its own frame; the axis is (6,)."""
+    sine = math.sin(q)
+    lacking = 1.0 - math.cos(q)
+    square = axis[3] * axis[3] + axis[4] * axis[4] + axis[5] * axis[5]
+    for k in range(3):
+        for i in range(3):
+            motion[3 * k + i] = lacking * axis[3 + i] * axis[3 + k]
+        motion[4 * k] += 1.0 - lacking * square
+        motion[9 + k] = axis[k] * q
+    for k in range(3):
+        x = sine * axis[3 + k]
+        motion[CYCLE[k + 1] + 3 * CYCLE[k + 2]] -= x
+        motion[CYCLE[k + 2] + 3 * CYCLE[k + 1]] += x
+
+
+@compiled
+def _write_inertia(model: ModelTables, placed: Matrix, jacobian: Matrix, inertia: Matrix) -> None:
+    """Write the inertia matrix (n, n) out of the joints' placements (n + 1, 12) and twists (n, 6).
+
+    Each body adds the products of what its joints move it by, times the roots of mass and moments.
+    """
+    n = len(inertia)
+    own = np.empty(12)
+    moved = np.empty((n, 6))
+    for i in range(n):
+        for j in range(n):
+            inertia[i, j] = model.armature[i] if i == j else 0.0
+    for body in range(n):
+        compose(placed[body + 1], model.bodies[body, :12], own)
+        for j in range(n):
+            factor = model.supports[body, j] * model.bodies[body, 12]
+            for i in range(3):
+                along = 0.0
+                for k in range(3):
+                    along += own[3 * i + k] * jacobian[j, 3 + k]
+                moved[j, 3 + i] = model.supports[body, j] * model.bodies[body, 13 + i] * along
+                turned = jacobian[j, 3 + CYCLE[i + 1]] * own[9 + CYCLE[i + 2]]
+                turned -= jacobian[j, 3 + CYCLE[i + 2]] * own[9 + CYCLE[i + 1]]
+                moved[j, i] = factor * (jacobian[j, i] + turned)
+        for i in range(n):
+            for j in range(n):
+                for k in range(6):
+                    inertia[i, j] += moved[i, k] * moved[j, k]
