@@ -43,9 +43,10 @@ def make_controller(robot, q, radius, period):
         iiwa_dnn.JerkLimits(),
         iiwa_dnn.TipSpeedLimit(2.5),  # [m/s]; the robot's own is 3, of the measured motion
     )
-    scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=100.0, extra_limits=limits)
+    gains = {"position_gain": 100.0, "orientation_gain": 100.0}  # [1/s]
+    scheme = iiwa_dnn.DoubleIndicator(**gains, extra_limits=limits)
     circle = iiwa_dnn.Circle(radius, period).anchored(iiwa_dnn.Configuration(robot, q))
-    controller = iiwa_dnn.Controller(robot, scheme, circle, dt=DT)
+    controller = iiwa_dnn.Controller(robot, scheme, circle.ahead(DT), dt=DT)
     controller.warm_up(q)
     return controller
 

@@ -16,7 +16,16 @@ from iiwa_dnn.qp.program import QP
 from iiwa_dnn.references import Heart, Reference, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Configuration, Robot, load_robot
-from iiwa_dnn.schemes import DoubleIndicator, JointLimits, Limit, OrientationTask, Scheme
+from iiwa_dnn.schemes import (
+    Cost,
+    DoubleIndicator,
+    JointLimits,
+    Limit,
+    OrientationTask,
+    Scheme,
+    Step,
+    Task,
+)
 from iiwa_dnn.simulation import simulate
 
 UNCHECKED = CrossCheck(())
@@ -87,6 +96,38 @@ def rows_of(part: Any, conf: Configuration, target: Target | None = None, **opti
     kind = "limits" if isinstance(part, Limit) else "tasks"
     target = target or Target(conf.position, conf.rotation)
     return Scheme(**{kind: [part]}).build_qp(conf, target, **options)
+
+
+class _Fixed:
+    """Rows of one program, whatever the instant is."""
+
+    def __init__(self, qp: QP, rows: int = 0) -> None:
+        self.qp = qp
+        self.rows = rows
+
+
+class FixedCost(_Fixed, Cost):
+    def quadratic(self, step: Step) -> Any:
+        return self.qp.P, self.qp.q
+
+
+class FixedTask(_Fixed, Task):
+    def equations(self, step: Step) -> Any:
+        return self.qp.A, self.qp.b
+
+
+class FixedLimit(_Fixed, Limit):
+    def inequalities(self, step: Step) -> Any:
+        return self.qp.G, self.qp.h
+
+    def bounds(self, step: Step) -> Any:
+        return self.qp.lb, self.qp.ub
+
+
+def fixed(qp: QP) -> Scheme:
+    """A scheme with one program."""
+    _, m, p = qp.sizes
+    return Scheme([FixedCost(qp)], [FixedTask(qp, p)], [FixedLimit(qp, m)])
 
 
 def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:

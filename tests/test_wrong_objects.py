@@ -23,11 +23,9 @@ def step(target: Any) -> Any:
     return d.Controller(paper_robot(), d.DoubleIndicator()).step(PAPER_Q0, 0.0, target)
 
 
-class Programless:
-    def build_qp(self, conf: Any, target: Any) -> None: ...
-
-    def settings(self) -> dict[str, Any]:
-        return {}
+class Builder(d.Scheme):
+    def build_qp(self, *given: Any, **options: Any) -> d.QP:
+        return d.DoubleIndicator().build_qp(*given, **options)
 
 
 class Distant(d.Cost):
@@ -55,8 +53,8 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "reference array": (lambda: drive(reference=EYE[0]), "reference: must be an iiwa_dnn.Ref"),
     "no reference": (lambda: drive(reference={}), "reference: is missing"),
     "reference class of a frame": (lambda: drive(reference={"x": d.Heart}), "reference: must be"),
-    "scheme class": (lambda: drive(scheme=d.DoubleIndicator), "scheme: must be an object with bui"),
-    "scheme text": (lambda: drive(scheme="paper"), "scheme: must be an object with build_qp"),
+    "scheme class": (lambda: drive(scheme=d.DoubleIndicator), "scheme: must be an iiwa_dnn.Scheme"),
+    "scheme text": (lambda: drive(scheme="paper"), "scheme: must be an iiwa_dnn.Scheme"),
     "plant class": (lambda: drive(plant=d.MujocoPlant), "plant: must be an object with start"),
     "estimator": (lambda: drive(estimator=3), "estimator: must be an iiwa_dnn.NoiseModel"),
     "noise": (lambda: drive(noise=EYE[0]), "noise: must have shape"),
@@ -85,7 +83,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "record": (lambda: d.compute_metrics({}), "record: must be an iiwa_dnn.Record"),
     "run": (lambda: d.failures("runs/heart"), "run: must be a record or its metrics"),
     "file": (lambda: d.Record.load(3), "3: "),
-    "no program": (lambda: drive(scheme=Programless()), "build_qp: must be an iiwa_dnn.QP, not No"),
+    "own programs": (lambda: drive(scheme=Builder()), "scheme: Builder overrides build_qp"),
     "no such target": (
         lambda: drive(scheme=d.Scheme([Distant()], [d.PositionTask()])), "no target of frame 'x'",
     ),

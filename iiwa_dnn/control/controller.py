@@ -35,7 +35,6 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.base import targets_of
-from iiwa_dnn.schemes.foreign import composed
 from iiwa_dnn.schemes.program import StepProgram
 
 Mode = Literal["converged", "continuous"]
@@ -90,7 +89,7 @@ class Controller:
 
         Args:
             robot: The robot.
-            scheme: A `Scheme`, or an object with its methods `build_qp` and `settings`.
+            scheme: The scheme.
             reference: Path of the tip or of several frames; None where every step gets a target.
             dt: Control period [s].
             mode: ``"converged"`` or ``"continuous"``.
@@ -363,10 +362,7 @@ class Controller:
         """Return the control step, laid out anew after a change of the settings."""
         step = self._derived
         if step is None:
-            scheme = self.scheme
-            if getattr(type(scheme), "build_qp", None) is not Scheme.build_qp:
-                scheme = composed(scheme, self.robot, self._kept.now.past[Q])
-            program = scheme.program(self.robot)
+            program = self.scheme.program(self.robot)
             step = ControlStep(
                 program, self._seen(self.dt) or {}, self.solver, self.dt, self.mode == "converged"
             )
@@ -427,11 +423,9 @@ class Controller:
         first = not self._kept.now.begun
         if first:
             warn_if_outside(start, stacklevel=5)
-        anchored = getattr(self.scheme, "anchored", None)
-        if anchored is not None:
-            scheme = anchored(start)
-            if scheme is not self.scheme:
-                self.scheme = scheme
+        scheme = self.scheme.anchored(start)
+        if scheme is not self.scheme:
+            self.scheme = scheme
         self._anchored = self.scheme
         self._kept.now.past[Q] = start.q
         if first:
@@ -503,7 +497,7 @@ class Controller:
         if self.reference is None:
             return None
         given = by_frame(self.reference, self.robot.tip)
-        if not getattr(self.scheme, "ahead", False):
+        if not self.scheme.ahead:
             return given
         return {name: path.ahead(dt) for name, path in given.items()}
 
@@ -536,7 +530,7 @@ _DERIVED = ("_derived", "_lock")
 # A change of one of them is checked, and what is derived from them is made anew.
 _CHECKS: dict[str, Callable[[str, Any], object]] = {
     "robot": partial(checks.instance, kind=Robot),
-    "scheme": lambda name, value: checks.offers(name, value, "build_qp", "settings"),
+    "scheme": partial(checks.instance, kind=Scheme),
     "reference": lambda name, value: by_frame(value, ""),
     "dt": checks.positive,
     "mode": partial(checks.one_of, choices=MODES),

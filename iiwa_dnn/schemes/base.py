@@ -93,8 +93,12 @@ class Scheme:
 
         Raises:
             NotFoundError: A part names a frame that the robot does not have.
-            InvalidInputError: A parameter of a part does not fit the robot.
+            InvalidInputError: A parameter of a part does not fit the robot, or a subclass builds
+                its programs in another way, which no control loop would follow.
         """
+        if type(self).build_qp is not Scheme.build_qp:
+            problem = f"{type(self).__name__} overrides build_qp; write a Cost, a Task or a Limit"
+            raise InvalidInputError("scheme", problem, self)
         return StepProgram(robot, self)
 
     def build_qp(

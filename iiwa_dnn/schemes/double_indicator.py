@@ -53,9 +53,8 @@ class DoubleIndicator(Scheme):
             `simulate` and `Controller` anchor it where they begin.
         extra_limits: Limits beside the joints' positions and velocities, for example
             `AccelerationLimits` and `JerkLimits`.
-        tracking: ``"paper"``, or ``"next"``: rows towards the next target, `next_gain` in place of
-            the two gains (`iiwa_dnn.schemes.tasks`).
-        next_gain: Gain of ``"next"`` [1/s]; None stands for 1 / dt.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target, with 1 / dt in place
+            of both gains (`iiwa_dnn.schemes.tasks`); `Reference.ahead` goes with other gains.
     """
 
     weight: float = 0.2
@@ -68,7 +67,6 @@ class DoubleIndicator(Scheme):
     home: tuple[float, ...] | None = None
     extra_limits: tuple[Limit, ...] = ()
     tracking: Tracking = "paper"
-    next_gain: float | None = None
 
     @property
     def ahead(self) -> bool:  # type: ignore[override]
@@ -81,8 +79,6 @@ class DoubleIndicator(Scheme):
         checks.not_negative("drift_gain", self.drift_gain)
         checks.positive("limit_gain", self.limit_gain)
         checks.one_of("tracking", self.tracking, TRACKINGS)
-        if self.next_gain is not None:
-            checks.not_negative("next_gain", self.next_gain)
         cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
         object.__setattr__(self, "home", cyclic.home)
         if isinstance(self.extra_limits, Limit):
@@ -90,8 +86,7 @@ class DoubleIndicator(Scheme):
             raise InvalidInputError("extra_limits", problem, self.extra_limits)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
         if self.ahead:
-            gain = np.inf if self.next_gain is None else self.next_gain
-            tasks = [replace(task, gain=gain) for task in tasks]
+            tasks = [replace(task, gain=np.inf) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
         limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
         self._compose([energy, cyclic], tasks, limits)

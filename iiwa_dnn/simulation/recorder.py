@@ -187,12 +187,12 @@ class Recorder:
             self._array("bound_kind")[k] = kinds
 
     def _add_kinetic_index(self, steps: slice, ended: bool) -> None:
-        """Compute the kinetic index; a scheme of one's own may have its own, or none."""
+        """Compute the kinetic index; a scheme of one's own may have its own."""
         scheme = self._controller.scheme
         robot = self._controller.robot
-        index = getattr(type(scheme), "kinetic_index", None)
         column = self.arrays["kinetic_index"]
-        if index is None or (index is Scheme.kinetic_index and scheme.kinetic == "identity"):
+        inherited = type(scheme).kinetic_index is Scheme.kinetic_index
+        if inherited and scheme.kinetic == "identity":
             column[steps] = np.square(self.arrays["dq"][steps]).sum(axis=1)
             return
         for k in range(steps.start, steps.stop - ended):

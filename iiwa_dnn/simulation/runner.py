@@ -119,8 +119,7 @@ def simulate(
     controller.solver.reset()
     steps = count_steps(reference, dt, duration)
     _anchor(controller, start, refuses=not far_start)
-    ahead = getattr(controller.scheme, "ahead", False)
-    check_motion(motion, mode == "continuous" or not plant.exact, ahead)
+    check_motion(motion, mode == "continuous" or not plant.exact, controller.scheme.ahead)
     chain = SignalChain(
         noise, noise_at, filter_window, estimator, (steps, robot.dof), controller.dt, seed
     )

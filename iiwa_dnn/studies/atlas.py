@@ -95,13 +95,12 @@ PATHS: tuple[Callable[[], Reference], ...] = (
 )
 """Paths; the seeds take them in turn."""
 
-_AHEAD: dict[str, Any] = {"home": START, "tracking": "next", "next_gain": 10.2}
 _TASKS = [PositionTask(), OrientationTask()]
 
 SCHEMES: dict[str, Callable[[], Scheme]] = {
-    "double indicator": lambda: DoubleIndicator(**_AHEAD),
+    "double indicator": lambda: DoubleIndicator(home=START),
     "double indicator, the paper's rows": lambda: DoubleIndicator(orientation="block", home=START),
-    "double indicator, position only": lambda: DoubleIndicator(orientation="none", **_AHEAD),
+    "double indicator, position only": lambda: DoubleIndicator(orientation="none", home=START),
     "minimum velocity": literature.minimum_velocity_norm,
     "minimum kinetic energy": lambda: Scheme(
         [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
@@ -114,8 +113,11 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
     ),
     "pseudo-inverse": PseudoInverse,
 }
-"""Schemes by name; the first is the league's. The double indicator's rows ask for the target one
-period ahead, so that the joints' Euler steps leave no floor that hides a network's own error."""
+"""Schemes by name; the first is the league's."""
+
+AHEAD = ("double indicator", "double indicator, position only")
+"""Schemes whose rows ask for the target one period ahead, so that the joints' Euler steps leave no
+floor that hides a network's own error."""
 
 
 def _along(course: Callable[[Vector], Vector]) -> Callable[[np.random.Generator, Vector], Matrix]:
@@ -517,6 +519,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     times = cell.dt * np.arange(round(DURATION / cell.dt), dtype=np.float64)
     noise = NOISES[cell.disturbance](np.random.default_rng(seed), times)
     solver = entry.make(count, cell.share, cell.dt)
+    path = PATHS[seed % len(PATHS)]().anchored(Configuration(robot, START))
     measured: dict[str, Any] = {}
     if cell.disturbance == "measurement":
         measured = {"noise": noise, "noise_at": "measurement"}
@@ -525,7 +528,7 @@ def _run(cell: Cell, seed: int) -> dict[str, Any]:
     record = simulate(
         robot,
         scheme,
-        PATHS[seed % len(PATHS)]().anchored(Configuration(robot, START)),
+        path.ahead(cell.dt) if cell.scheme in AHEAD else path,
         START,
         dt=cell.dt,
         duration=DURATION,

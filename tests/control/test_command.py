@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,11 +11,9 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, near_target, paper_robot, paper_start
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Solution, Status
-from iiwa_dnn.references import Target
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import DoubleIndicator, PseudoInverse, Scheme
 
@@ -82,16 +79,6 @@ def test_compiled_code_answers_every_step(monkeypatch: pytest.MonkeyPatch) -> No
     assert not solved
 
 
-@dataclass(frozen=True)
-class Halved(DoubleIndicator):
-    """A subclass that builds in a way of its own."""
-
-    def build_qp(self, conf: Configuration, target: Any) -> QP:
-        qp = super().build_qp(conf, target)
-        qp.b[:] *= 0.5
-        return qp
-
-
 class Fixed(DNNSolver):
     """A subclass that solves in a way of its own."""
 
@@ -103,12 +90,6 @@ class Fixed(DNNSolver):
 
 def test_what_a_subclass_does_in_its_own_way_is_done() -> None:
     target = heart().at(0.5)
-    controller = Controller(paper_robot(), Halved(home=PAPER_Q0))
-    whole = SCHEMES["so3"].build_qp(paper_start(), target)
-    for _ in range(3):
-        command = controller.step(PAPER_Q0, 0.0, target)
-        np.testing.assert_allclose(whole.A @ command.dq, 0.5 * whole.b, rtol=0, atol=1e-9)
-        np.testing.assert_array_equal(command.qp.b, 0.5 * whole.b)
     controller = Controller(paper_robot(), SCHEMES["so3"], solver=Fixed())
     for _ in range(3):
         np.testing.assert_array_equal(controller.step(PAPER_Q0, 0.0, target).dq, np.full(7, 0.25))
@@ -157,23 +138,6 @@ def test_a_step_that_is_not_solved_leaves_the_others_as_they_are() -> None:
     assert [command.action for command in commands] == [Action.NONE, Action.SLOW, Action.NONE]
     assert [command.ok for command in commands] == [True, False, True]
     np.testing.assert_allclose(commands[2].dq, commands[0].dq, rtol=0, atol=1e-9)
-
-
-class Capricious(DoubleIndicator):
-    """A scheme whose programs change their shape."""
-
-    def build_qp(self, conf: Configuration, target: Any) -> QP:
-        qp = super().build_qp(conf, target)
-        rows = 2 if target.position[2] < 0.4 else 3
-        return QP(qp.P, qp.q, A=qp.A[:rows], b=qp.b[:rows], lb=qp.lb, ub=qp.ub)
-
-
-def test_programs_of_two_shapes_are_refused_by_name() -> None:
-    controller = Controller(paper_robot(), Capricious(home=PAPER_Q0))
-    start = paper_start()
-    controller.step(PAPER_Q0, 0.0, Target(start.position, start.rotation))
-    with pytest.raises(InvalidInputError, match=r"^BuiltRows: A has shape"):
-        controller.step(PAPER_Q0, 0.0, Target(start.position + [0.0, 0.0, 0.5], start.rotation))
 
 
 class Unsettled(DNNSolver):

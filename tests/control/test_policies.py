@@ -12,7 +12,7 @@ import qpsolvers
 from scipy.optimize import linprog
 
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import near_target, paper_robot, paper_start
+from helpers_simulation import fixed, near_target, paper_robot, paper_start
 from iiwa_dnn import (
     QP,
     Command,
@@ -32,26 +32,13 @@ WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
 """Weights of a pose's rows where they yield: a metre counts twice as much as a radian."""
 
 
-class Fixed:
-    """A scheme with one program, whatever the posture and the target are."""
-
-    def __init__(self, qp: QP) -> None:
-        self.qp = qp
-
-    def build_qp(self, conf: Configuration, target: Target) -> QP:
-        return QP.from_data(self.qp.data.copy(), self.qp.sizes)
-
-    def settings(self) -> dict[str, Any]:
-        return {"name": "Fixed"}
-
-
 def decide(qp: QP, policy: Policy, moves: bool = True) -> Command:
     """The command of a step with this program; `moves`: the reference does."""
     n = qp.sizes[0]
     robot = robot_from_dh([[0.3, 0.0, 0.0, 0.0]] * n, lower=-3.0, upper=3.0, velocity=1.0)
     twist = [0.01 * moves, 0.0, 0.0]
     target = Target([0.3, 0.0, 0.0], np.eye(3), twist)
-    return Controller(robot, Fixed(qp), policy=policy).step(np.zeros(n), 0.0, target)  # type: ignore[arg-type]
+    return Controller(robot, fixed(qp), policy=policy).step(np.zeros(n), 0.0, target)
 
 
 def posed(seed: int, velocity: float = 0.3) -> tuple[Controller, np.ndarray, Target]:

@@ -213,40 +213,6 @@ def test_a_slack_variable_works() -> None:
     assert record.row_multiplier.shape == (300, 14)
 
 
-class TooMany:
-    """A scheme in eight variables that says nothing of a slack."""
-
-    def build_qp(self, conf: Configuration, target: Target) -> Any:
-        from iiwa_dnn import QP
-
-        return QP(np.eye(8), np.zeros(8))
-
-    def settings(self) -> dict[str, Any]:
-        return {"name": "too many"}
-
-
-class Bare:
-    """The least that a scheme of one's own has to offer."""
-
-    def build_qp(self, conf: Configuration, target: Target) -> Any:
-        return PseudoInverse().build_qp(conf, target)
-
-    def settings(self) -> dict[str, Any]:
-        return {"name": "bare"}
-
-
-def test_a_scheme_of_ones_own_needs_two_methods() -> None:
-    record = run(Bare(), reference=heart(period=2.0), duration=0.05)
-    assert_array_equal(record.q, run(PseudoInverse(), reference=heart(period=2.0)).q)
-    assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
-    assert failures(record) == []
-
-
-def test_more_variables_than_the_scheme_states_are_refused() -> None:
-    with pytest.raises(InvalidInputError, match=r"^scheme: .*8 variables for 7 joints"):
-        simulate(paper_robot(), TooMany(), heart(), PAPER_Q0, dt=1e-3, duration=0.01)
-
-
 def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> None:
     point = paper_start().frame(ELBOW).position + [0.08, 0.06, 0.0]
     nearest = float(np.linalg.norm(paper_start().frame(ELBOW).position - point))

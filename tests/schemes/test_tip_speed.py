@@ -44,7 +44,9 @@ def test_the_tip_is_no_quicker_where_its_target_jumps(wanted: float | None) -> N
     limits = [iiwa_dnn.AccelerationLimits(10.0), iiwa_dnn.JerkLimits(1000.0)]
     if wanted is not None:
         limits.append(iiwa_dnn.TipSpeedLimit(wanted))
-    scheme = iiwa_dnn.DoubleIndicator(tracking="next", next_gain=50.0, extra_limits=tuple(limits))
+    scheme = iiwa_dnn.DoubleIndicator(
+        position_gain=50.0, orientation_gain=50.0, extra_limits=tuple(limits)
+    )
     controller = iiwa_dnn.Controller(paper_robot(), scheme, dt=DT)
     q = np.array(paper_start().q)
     tip = [paper_start().position]
