@@ -28,12 +28,6 @@ from iiwa_dnn.compiling.library import source_of
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
-WITH_CODE = (
-    "README.md", "atlas.md", "collisions.md", "commands.md", "control_loop.md", "index.md",
-    "networks.md", "noise.md", "own_network.md", "own_reference.md", "own_scheme.md",
-    "real_arm.md", "robots.md", "theory.md", "tutorial.md",
-)  # fmt: skip
-
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
 _RAW_LINK = re.compile(r'<a href="([^"#:]+)"')
@@ -86,9 +80,7 @@ def test_the_code_in_the_documents_runs(
 ) -> None:
     monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
     compile_quickly(monkeypatch)
-    count = run_blocks(path.read_text(encoding="utf-8"), path.name)
-    if path.name in WITH_CODE:
-        assert count > 0
+    run_blocks(path.read_text(encoding="utf-8"), path.name)
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
