@@ -1,20 +1,48 @@
-"""``python -m benchmarks`` and a name of `COMMANDS`: measure."""
+"""``python -m benchmarks``, a name and options: measure, and print tables in Markdown.
 
+``loop`` measures steps of every kind, beside PlaCo, Pink and mink; ``solvers`` the network beside
+QP solvers; ``export`` controllers in C; ``figures`` all of it, the heart, the paper's tables, the
+league of networks and hostile motion: every figure that the pages quote.
+"""
+
+import argparse
 import sys
+from pathlib import Path
 
-from benchmarks.cli import bench_loop, bench_solvers
-from benchmarks.collisions import bench_collisions
-from benchmarks.exports import bench_export
+from benchmarks.report import machine
 
-COMMANDS = {
-    "solvers": bench_solvers,
-    "loop": bench_loop,
-    "collisions": bench_collisions,
-    "export": bench_export,
-}
+
+def main() -> int:
+    """Carry out one of the commands; returns the exit code."""
+    parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__)
+    parser.add_argument("command", choices=("loop", "solvers", "export", "figures"))
+    parser.add_argument("--steps", type=int, default=10_000, help="number of steps of a kind")
+    for library in ("placo", "mink"):
+        words = f"Python interpreter of an environment with {library}"
+        parser.add_argument(f"--{library}-python", type=Path, dest=library, help=words)
+    options = parser.parse_args()
+    pythons = {"placo": options.placo, "mink": options.mink}
+    print(machine(), flush=True)
+    if options.command in ("loop", "figures"):
+        from benchmarks import kinds, loop, runs
+
+        loop.report(options.steps, pythons)
+        kinds.report(options.steps)
+        runs.report()
+    if options.command in ("solvers", "figures"):
+        from benchmarks import solvers  # the peers are in an extra
+
+        solvers.report(options.steps)
+    if options.command in ("export", "figures"):
+        from benchmarks import export
+
+        export.report(options.steps)
+    if options.command == "figures":
+        from benchmarks import figures
+
+        return figures.report(options.steps)
+    return 0
+
 
 if __name__ == "__main__":
-    name = sys.argv[1] if len(sys.argv) > 1 else ""
-    if name not in COMMANDS:
-        sys.exit(f"benchmarks: error: name one of {', '.join(COMMANDS)}")
-    sys.exit(COMMANDS[name](sys.argv[2:], prog=f"benchmarks {name}"))
+    sys.exit(main())

@@ -5,12 +5,10 @@ alone: handing the numbers over, solving, and getting the answer back. `point` b
 qpsolvers' conventions afterwards, so that the same residuals judge all.
 """
 
-import warnings
 from abc import ABC, abstractmethod
 from typing import Any
 
 import numpy as np
-import qpsolvers
 import scipy.sparse as spa
 
 from iiwa_dnn.errors import MissingDependencyError
@@ -76,7 +74,10 @@ class Network(Peer):
 
 
 class Daqp(Peer):
-    """DAQP's function: equalities are rows marked 5, bounds come first."""
+    """DAQP's workspace, updated in place: it starts from its last active set.
+
+    Bounds come first, and equalities are rows marked 5.
+    """
 
     name = "DAQP"
 
@@ -91,20 +92,6 @@ class Daqp(Peer):
         return qp.P.copy(), qp.q.copy(), rows, upper, lower, sense
 
     def solve(self, given: Any) -> Any:
-        return daqp.solve(*given, primal_tol=TOL, dual_tol=TOL)
-
-    def point(self, qp: QP, answer: Any) -> Point:
-        x, _, _, info = answer
-        n, m, _ = qp.sizes
-        return x, info["lam"][n + m :], info["lam"][n : n + m], info["lam"][:n]
-
-
-class DaqpModel(Daqp):
-    """DAQP's workspace, updated in place; it starts from its last active set."""
-
-    name = "DAQP Model"
-
-    def solve(self, given: Any) -> Any:
         if self.warm and self.ready:
             P, q, rows, upper, lower, _ = given
             self.model.update(P, q, rows, upper, lower)
@@ -114,6 +101,11 @@ class DaqpModel(Daqp):
             self.model.setup(*given)
             self.ready = True
         return self.model.solve()
+
+    def point(self, qp: QP, answer: Any) -> Point:
+        x, _, _, info = answer
+        n, m, _ = qp.sizes
+        return x, info["lam"][n + m :], info["lam"][n : n + m], info["lam"][:n]
 
 
 class Quadprog(Peer):
@@ -273,68 +265,4 @@ class Osqp(Peer):
         return answer.x, answer.y[:p], answer.y[p : p + m], answer.y[p + m :]
 
 
-class ThroughQpsolvers(Peer):
-    """A solver through `qpsolvers.solve_problem`, warm-started with the last x."""
-
-    solver: str
-    settings: dict[str, Any]
-
-    def __init__(self, warm: bool) -> None:
-        super().__init__(warm)
-        self.last: Vector | None = None
-
-    def convert(self, qp: QP) -> qpsolvers.Problem:
-        return qp.to_qpsolvers()
-
-    def solve(self, given: qpsolvers.Problem) -> Any:
-        start = self.last if self.warm else None
-        solution = qpsolvers.solve_problem(given, self.solver, initvals=start, **self.settings)
-        self.last = solution.x
-        return solution
-
-    def point(self, qp: QP, answer: Any) -> Point:
-        return answer.x, answer.y, answer.z, answer.z_box
-
-
-class ProxqpThroughQpsolvers(ThroughQpsolvers):
-    """ProxQP through qpsolvers."""
-
-    name = "ProxQP (qpsolvers)"
-    solver = "proxqp"
-    settings = {"eps_abs": TOL, "eps_rel": 0.0}  # noqa: RUF012
-
-
-class OsqpThroughQpsolvers(ThroughQpsolvers):
-    """OSQP through qpsolvers, with sparse matrices, as it wants them."""
-
-    name = "OSQP (qpsolvers)"
-    solver = "osqp"
-    settings = {"eps_abs": TOL, "eps_rel": 0.0, "polishing": True, "max_iter": 20_000}  # noqa: RUF012
-
-    def convert(self, qp: QP) -> qpsolvers.Problem:
-        dense = qp.to_qpsolvers()
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return qpsolvers.Problem(
-                spa.csc_matrix(dense.P),
-                dense.q,
-                None if dense.G is None else spa.csc_matrix(dense.G),
-                dense.h,
-                None if dense.A is None else spa.csc_matrix(dense.A),
-                dense.b,
-                dense.lb,
-                dense.ub,
-            )
-
-
-PEERS: tuple[type[Peer], ...] = (
-    Network,
-    Daqp,
-    DaqpModel,
-    Quadprog,
-    Piqp,
-    Proxqp,
-    Osqp,
-    ProxqpThroughQpsolvers,
-    OsqpThroughQpsolvers,
-)
+PEERS: tuple[type[Peer], ...] = (Network, Daqp, Quadprog, Piqp, Proxqp, Osqp)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import mink
 import mujoco
-from serve import Loop, Task, by_frame, serve
+from serve import Loop, Task, serve
 
 # MuJoCo merges bodies without a joint, the tip among them, unless told not to.
 _COMPILER = '<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco></robot>'
@@ -20,8 +20,7 @@ def make(task: Task, variant: str) -> Loop:
     model.jnt_range[:, 1] = task["upper"]
     configuration = mink.Configuration(model, q=task["q0"].copy())
     dt = float(task["dt"])
-    tips, poses = by_frame(task)
-    frames = [mink.FrameTask(tip, "body", position_cost=1.0, orientation_cost=1.0) for tip in tips]
+    frame = mink.FrameTask(str(task["tip"]), "body", position_cost=1.0, orientation_cost=1.0)
     posture = mink.PostureTask(model, cost=1e-3)
     posture.set_target(task["q0"])
     names = [str(name) for name in task["names"]]
@@ -37,12 +36,11 @@ def make(task: Task, variant: str) -> Loop:
             collision_detection_distance=near + 0.2,
         )
         limits.append(avoid)
-    tasks = [*frames, posture]
-    wanted = [[mink.SE3.from_matrix(pose) for pose in at] for at in poses]
+    tasks = [frame, posture]
+    wanted = [mink.SE3.from_matrix(pose) for pose in task["poses"]]
 
     def step(k: int) -> None:
-        for frame, pose in zip(frames, wanted[k + 1], strict=True):
-            frame.set_target(pose)
+        frame.set_target(wanted[k + 1])
         velocity = mink.solve_ik(configuration, tasks, dt, solver=variant, limits=limits)
         configuration.integrate_inplace(velocity, dt)
 

@@ -11,15 +11,13 @@ import numpy as np
 import pink
 import pinocchio as pin
 from pink.barriers import SelfCollisionBarrier
-from pink.limits import AccelerationLimit, ConfigurationLimit, VelocityLimit
-from serve import Loop, Task, by_frame, serve
+from serve import Loop, Task, serve
 
 
 def make(task: Task, variant: str) -> Loop:
-    """Make the loop; a variant names a solver of qpsolvers, then ``ahead``, ``acceleration``."""
+    """Make the loop; a variant names a solver of qpsolvers, then ``ahead``."""
     solver, *words = variant.split(", ")
-    ahead = "ahead" in words
-    limited = "acceleration" in words
+    later = len(words)
     options = {"eps_abs": 1e-9, "eps_rel": 0.0} if solver == "proxqp" else {}
     model = pin.buildModelFromUrdf(str(task["urdf"]))
     dt = float(task["dt"])
@@ -36,27 +34,17 @@ def make(task: Task, variant: str) -> Loop:
         barriers = [SelfCollisionBarrier(count, gain=20.0, d_min=distance)]
         scene = {"collision_model": geometry, "collision_data": geometry.createData()}
     configuration = pink.Configuration(model, model.createData(), q0, **scene)
-    names, poses = by_frame(task)
-    frames = [pink.FrameTask(name, position_cost=1.0, orientation_cost=1.0) for name in names]
+    frame = pink.FrameTask(str(task["tip"]), position_cost=1.0, orientation_cost=1.0)
     posture = pink.PostureTask(cost=1e-3)
     posture.set_target(task["q0"])
-    tasks = [*frames, posture]
-    later = bool(ahead)
-    wanted = [[pin.SE3(pose) for pose in at] for at in poses]
-
-    limits = None
-    if limited:
-        rates = AccelerationLimit(model, task["acceleration"])
-        limits = [ConfigurationLimit(model), VelocityLimit(model), rates]
+    tasks = [frame, posture]
+    wanted = [pin.SE3(pose) for pose in task["poses"]]
 
     def step(k: int) -> None:
-        for frame, pose in zip(frames, wanted[k + later], strict=True):
-            frame.set_target(pose)
+        frame.set_target(wanted[k + later])
         velocity = pink.solve_ik(
-            configuration, tasks, dt, solver=solver, limits=limits, barriers=barriers, **options
+            configuration, tasks, dt, solver=solver, barriers=barriers, **options
         )
-        if limited:
-            rates.set_last_integration(velocity, dt)
         configuration.integrate_inplace(velocity, dt)
 
     return step, lambda: configuration.q

@@ -1,11 +1,11 @@
-"""PlaCo's loop: hard or soft frame tasks, a weak joints task, joint and velocity limits."""
+"""PlaCo's loop: a hard frame task, a weak joints task, joint and velocity limits."""
 
 import tempfile
 from pathlib import Path
 
 import placo
 from balls import write_scene
-from serve import Loop, Task, by_frame, serve
+from serve import Loop, Task, serve
 
 
 def make(task: Task, variant: str) -> Loop:
@@ -24,14 +24,13 @@ def make(task: Task, variant: str) -> Loop:
         robot.set_velocity_limit(name, float(task["velocity"][i]))
     robot.update_kinematics()
     solver = placo.KinematicsSolver(robot)
-    (tips, poses) = by_frame(task)
     solver.mask_fbase(True)
-    frames = [solver.add_frame_task(tip, pose) for tip, pose in zip(tips, poses[0], strict=True)]
-    for tip, frame in zip(tips, frames, strict=True):
-        frame.configure(tip, "soft" if "soft" in task else "hard", 1.0, 1.0)
+    tip = str(task["tip"])
+    frame = solver.add_frame_task(tip, task["poses"][0])
+    frame.configure(tip, "hard", 1.0, 1.0)
     joints = solver.add_joints_task()
     joints.set_joints(dict(zip(names, task["q0"].tolist(), strict=True)))
-    joints.configure("posture", "soft", 1e-6 if "soft" in task else 1e-3)
+    joints.configure("posture", "soft", 1e-3)
     solver.enable_joint_limits(True)
     solver.enable_velocity_limits(True)
     if "balls" in task:
@@ -42,8 +41,7 @@ def make(task: Task, variant: str) -> Loop:
     solver.dt = float(task["dt"])
 
     def step(k: int) -> None:
-        for frame, pose in zip(frames, poses[k + 1], strict=True):
-            frame.T_world_frame = pose
+        frame.T_world_frame = task["poses"][k + 1]
         solver.solve(True)
         robot.update_kinematics()
 

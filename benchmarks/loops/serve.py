@@ -15,19 +15,11 @@ from typing import Any
 import numpy as np
 
 Task = Mapping[str, Any]
-"""urdf, tip or f tips, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4) or
-(steps + 1, f, 4, 4), dt apart; `soft` where the tasks of frames are not to be hard; `hold`, the
-number of steps after which the loop begins anew, at q0."""
+"""urdf, tip, names, q0, lower, upper, velocity, dt, and poses (steps + 1, 4, 4), dt apart; with
+balls also links, a, b, radii, balls, ball_radii and distance, see `benchmarks.loop.make_scene`."""
 
 Loop = tuple[Callable[[int], object], Callable[[], Any]]
 """``step(k)``, which is timed, and ``posture()``, the joint positions (n,) [rad] after it."""
-
-
-def by_frame(task: Task) -> tuple[list[str], Any]:
-    """Return the names of the f frames that are moved, and their poses, (steps + 1, f, 4, 4)."""
-    names = [str(name) for name in np.atleast_1d(task["tip"])]
-    poses = task["poses"]
-    return names, poses.reshape(len(poses), len(names), 4, 4)
 
 
 def serve(make: Callable[[Task, str], Loop]) -> None:
@@ -41,15 +33,12 @@ def serve(make: Callable[[Task, str], Loop]) -> None:
     for k in range(20):
         step(k)
         posture()
-    hold = int(task.get("hold", 0))
     step, posture = make(task, sys.argv[2])
     for line in sys.stdin:
         first, last = map(int, line.split())
         times = []
         q = []
         for k in range(first, last):
-            if hold and k % hold == 0:
-                step, posture = make(task, sys.argv[2])
             began = time.perf_counter_ns()
             step(k)
             times.append(1e-3 * (time.perf_counter_ns() - began))

@@ -1,22 +1,20 @@
 """Time of a step of `Controller` by what it has to do, beside the stalls of the machine.
 
-    python -m benchmarks.rates [steps of each kind]
-
 The iiwa 7 at 1 ms, after `Controller.warm_up`, every step in closed loop. Joints at 0.02 rad/s are
-too slow for the heart. The last line is a loop that only reads the clock, for as long as the
-longest kind takes: its longest reading is a stall of the machine, not of a step.
+too slow for the heart. The last line is a loop that only reads the clock: its longest reading is a
+stall of the machine, not of a step.
 """
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import iiwa_dnn
+from benchmarks.report import show
 from iiwa_dnn import (
     AccelerationLimits,
     CollisionAvoidance,
@@ -30,7 +28,6 @@ from iiwa_dnn import (
     Target,
 )
 from iiwa_dnn.control.policies import Action, Policy
-from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.schemes import PoseTask
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
@@ -38,7 +35,6 @@ from tests.export_settings import BALLS, DISTANCE, RADII
 from tests.targets import STREAMS
 
 DT = 1e-3
-STEPS = 20_000
 SLOW = 0.02  # velocity limit [rad/s]
 EVERY = 33  # steps between two poses of a moving target
 
@@ -66,7 +62,7 @@ class Case(NamedTuple):
 
 
 def stream(robot: Robot, kind: str) -> Targets:
-    """Return the targets of a kind of `benchmarks.targets`, in turn."""
+    """Return the targets of a kind of `tests.targets`, in turn."""
     poses = STREAMS[kind](robot, np.random.default_rng(1), 10**9, DT)
 
     def target(k: int) -> Target:
@@ -122,7 +118,7 @@ def cases() -> dict[str, Case]:
     for policy in policies:
         found[f"no solution, `{policy}`"] = Case(slow, plain, heart, policy=policy)
     for kind in ("jumps", "out of reach", "singular", "reversals"):
-        found[f"{kind}"] = Case(robot, plain, None, stream(robot, kind))
+        found[kind] = Case(robot, plain, None, stream(robot, kind))
         found[f"{kind}, acceleration and jerk"] = Case(
             robot, scheme(*both), None, stream(robot, kind)
         )
@@ -130,6 +126,16 @@ def cases() -> dict[str, Case]:
             robot, scheme(acceleration, avoidance), None, stream(robot, kind)
         )
     return found
+
+
+_COLUMNS = {
+    "step": "{name}",
+    "yielding %": "{yielding:.1f}",
+    "median µs": "{median:.1f}",
+    "p99 µs": "{p99:.1f}",
+    "p99.9 µs": "{p999:.1f}",
+    "longest µs": "{longest:.1f}",
+}
 
 
 def times(case: Case, steps: int) -> tuple[np.ndarray, float]:
@@ -150,35 +156,21 @@ def times(case: Case, steps: int) -> tuple[np.ndarray, float]:
     return 1e-3 * taken, yielded / steps
 
 
-def stalls(seconds: float) -> np.ndarray:
-    """Return the times between readings of the clock [us], (k,)."""
-    taken = []
-    until = time.perf_counter_ns() + 1e9 * seconds
-    now = 0.0
-    while now < until:
-        began = time.perf_counter_ns()
-        now = time.perf_counter_ns()
-        taken.append(now - began)
-    return 1e-3 * np.array(taken)
-
-
-def percentiles(taken: np.ndarray) -> list[str]:
-    """Return median, p99, p99.9 and longest of times, in words."""
-    return [f"{value:.1f}" for value in np.percentile(taken, [50.0, 99.0, 99.9, 100.0])]
-
-
-def main(steps: int = STEPS) -> None:
-    """Print the table."""
-    rows = []
-    longest = 0.0
+def rows(steps: int) -> Iterator[dict[str, Any]]:
+    """Measure each kind, and in the end two readings of the clock with nothing in between."""
     for name, case in cases().items():
-        taken, share = times(case, steps)
-        longest = max(longest, 1e-6 * taken.sum())
-        rows.append((name, f"{100.0 * share:.1f}", *percentiles(taken)))
-    rows.append(("only the clock", "", *percentiles(stalls(longest))))
-    head = ("step", "yielding %", "median µs", "p99 µs", "p99.9 µs", "longest µs")
-    print(markdown_table(head, rows))
+        yield row(name, *times(case, steps))
+    ticks = np.array([time.perf_counter_ns() for _ in range(100 * steps)])
+    yield row("only the clock", 1e-3 * np.diff(ticks), 0.0)
 
 
-if __name__ == "__main__":
-    main(*map(int, sys.argv[1:]))
+def row(name: str, taken: np.ndarray, yielded: float) -> dict[str, Any]:
+    """Return a row of the table."""
+    names = ("median", "p99", "p999", "longest")
+    values = np.percentile(taken, [50.0, 99.0, 99.9, 100.0])
+    return {"name": name, "yielding": 100.0 * yielded, **dict(zip(names, values, strict=True))}
+
+
+def report(steps: int) -> None:
+    """Print the table."""
+    show(f"A step of every kind, {steps} of each", _COLUMNS, rows(steps))

@@ -1,0 +1,159 @@
+"""The network as a QP solver beside its peers: programs of control steps, and random ones.
+
+The clock runs over the Python call, and each peer has the program in its own layout before. They
+take turns, so that noise of the machine falls on all alike. The same residuals judge all answers.
+"""
+
+import gc
+from collections.abc import Iterator
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import iiwa_dnn
+from benchmarks.peers import PEERS, Peer
+from benchmarks.report import show
+from iiwa_dnn.qp import QP
+from iiwa_dnn.studies import paper
+from iiwa_dnn.studies.runs import paper_robot
+from tests.programs import strictly_convex
+
+FAILED = 1e-8
+"""An answer whose largest residual is above this has failed, whatever its solver says."""
+
+CHUNK = 50
+"""Programs that one peer solves before the next has its turn."""
+
+_COLUMNS = {
+    "solver": "{name}",
+    "median µs": "{median:.2f}",
+    "p99 µs": "{p99:.1f}",
+    "worst residual": "{worst:.1e}",
+    "failed": "{failed} of {programs}",
+}
+
+
+class Stream(NamedTuple):
+    """Programs to be solved one after the other.
+
+    Attributes:
+        name: Title in the report.
+        programs: The programs, all of one shape if `warm`.
+        warm: Whether a solver may start from its last answer.
+    """
+
+    name: str
+    programs: list[QP]
+    warm: bool
+
+
+def heart(count: int, dt: float, scale: float) -> list[QP]:
+    """Return the programs of consecutive control steps, dt [s] apart, of a heart of a scale [m]."""
+    robot = paper_robot()
+    reference = iiwa_dnn.Heart(scale).anchored(iiwa_dnn.Configuration(robot, paper.START))
+    scheme = iiwa_dnn.DoubleIndicator(orientation="so3", home=paper.START)
+    record = iiwa_dnn.simulate(
+        robot,
+        scheme,
+        reference,
+        paper.START,
+        dt=dt,
+        duration=count * dt,
+        check=iiwa_dnn.CrossCheck(()),
+    )
+    return [
+        scheme.build_qp(iiwa_dnn.Configuration(robot, q), reference.at(float(t)))
+        for q, t in zip(record.q[:count], record.t[:count], strict=True)
+    ]
+
+
+def drifting(count: int) -> list[QP]:
+    """Return programs of 7 variables, 3 equalities and 3 to 5 active bounds that vary slowly.
+
+    Smooth signals are cut off at the bounds: what is left is x, what was cut is the multiplier.
+    """
+    rng = np.random.default_rng([8, 0])
+    root = rng.standard_normal((7, 7))
+    P = root @ root.T / 7.0 + 0.3 * np.eye(7)
+    centre = np.array([1.8, -1.8, 1.8, 1.0, -1.0, 0.0, 0.0])
+    swing = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.8, 0.8])
+    phase = rng.uniform(0.0, 2.0 * np.pi, (2, 7))
+    rate = rng.uniform(0.004, 0.012, (2, 7))
+    rows = rng.standard_normal((2, 3, 7))
+    slow = rng.uniform(0.002, 0.006, 3)
+    programs = []
+    for k in range(count):
+        signal = centre + swing * 0.5 * np.sin(rate * k + phase).sum(axis=0)
+        x = np.clip(signal, -1.0, 1.0)
+        A = rows[0] + 0.3 * np.sin(slow * k)[:, np.newaxis] * rows[1]
+        q = -(P @ x + A.T @ np.sin(slow * k + 1.0) + (signal - x))
+        programs.append(QP(P, q, A=A, b=A @ x, lb=np.full(7, -1.0), ub=np.ones(7)))
+    return programs
+
+
+def streams(steps: int) -> Iterator[Stream]:
+    """Make the streams; of random programs there is one for ten steps."""
+    idle = f"The first {steps} control steps of the heart, 1e-4 s apart, limits idle"
+    yield Stream(idle, heart(steps, 1e-4, 3.45e-3), True)
+    limit = f"A heart of scale 0.008 in {steps} steps: joint 1 lies at its limit for a third of it"
+    yield Stream(limit, heart(steps, 10.0 / steps, 8e-3), True)
+    yield Stream("Drifting programs, 7 variables, 3 to 5 bounds active", drifting(steps), True)
+    for n in (7, 14, 30, 50):
+        made = [
+            strictly_convex(np.random.default_rng([9, 0, n, k]), n, 1e4, False)[0]
+            for k in range(steps // 10)
+        ]
+        yield Stream(f"Random programs of {n} variables, each from a cold start", made, False)
+
+
+def measure(stream: Stream) -> list[dict[str, Any]]:
+    """Solve a stream with each peer, taking turns; return a row for each."""
+    peers = [peer(stream.warm) for peer in PEERS]
+    times = np.empty((len(peers), len(stream.programs)))
+    residuals = np.empty(times.shape)
+    for begin in range(0, len(stream.programs), CHUNK):
+        chunk = stream.programs[begin : begin + CHUNK]
+        turn = begin // CHUNK % len(peers)
+        for i in [*range(turn, len(peers)), *range(turn)]:
+            converted = [peers[i].convert(qp) for qp in chunk]
+            gc.disable()
+            for k, (qp, given) in enumerate(zip(chunk, converted, strict=True), begin):
+                times[i, k], residuals[i, k] = solve_once(peers[i], qp, given)
+            gc.enable()
+    rows = []
+    for peer, taken, found in zip(peers, 1e6 * times[:, 1:], residuals, strict=True):
+        good = found <= FAILED
+        rows.append(
+            {
+                "name": peer.name,
+                "median": np.median(taken),
+                "p99": np.quantile(taken, 0.99),
+                "worst": found[good].max(initial=0.0),
+                "failed": int((~good).sum()),
+                "programs": found.size,
+            }
+        )
+    return rows
+
+
+def solve_once(peer: Peer, qp: QP, given: Any) -> tuple[float, float]:
+    """Return the time of a solve [s], and the largest residual of its answer; inf without one."""
+    start = perf_counter()
+    try:
+        answer = peer.solve(given)
+    except (ValueError, RuntimeError):  # quadprog, if it finds none
+        peer.ready = False
+        return perf_counter() - start, np.inf
+    seconds = perf_counter() - start
+    x, *multipliers = peer.point(qp, answer)
+    if x is None:
+        return seconds, np.inf
+    largest = qp.residuals(x, *multipliers).largest
+    return seconds, largest if np.isfinite(largest) else np.inf
+
+
+def report(steps: int) -> None:
+    """Print a table for each stream."""
+    for stream in streams(steps):
+        show(stream.name, _COLUMNS, measure(stream))
