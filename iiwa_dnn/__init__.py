@@ -6,6 +6,7 @@ from iiwa_dnn import export as export
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.posing import PoseSolution, solve_pose
+from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import (
     FileError,
     IiwaDnnError,
@@ -100,9 +101,9 @@ __all__ = [
     "MujocoPlant", "Network", "NoSolutionError", "NotFoundError", "OneLayerNetwork",
     "OrientationTask", "PoseSolution", "PoseTask", "PositionTask", "PostureTask",
     "PrimalDualNetwork", "ProjectionNetwork", "Proof", "PseudoInverse", "Record", "Reference",
-    "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "SimplifiedDualNetwork",
-    "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task", "Tilting",
-    "TipSpeedLimit", "TrackingSolver", "Waypoints", "ZeroingNetwork",
+    "RelativePoseTask", "RemoteCenterTask", "Residuals", "Robot", "Scheme", "Shield",
+    "SimplifiedDualNetwork", "Solution", "Sphere", "Status", "Step", "Still", "Target", "Task",
+    "Tilting", "TipSpeedLimit", "TrackingSolver", "Waypoints", "ZeroingNetwork",
     "available_robots", "compute_metrics", "failures", "load_robot", "prove",
     "robot_from_dh", "simulate", "solve_batch", "solve_pose", "solve_problem",
 ]  # fmt: skip

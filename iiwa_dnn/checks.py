@@ -96,22 +96,28 @@ def finite_array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Arr
 
     An entry of -1 in ``shape`` leaves that length open.
     """
+    numbers = array(argument, value, shape)
+    if not np.isfinite(numbers).all():
+        raise InvalidInputError(argument, "must be finite", value)
+    return numbers
+
+
+def array(argument: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return a read-only copy of numbers of this shape, as `finite_array`; they may be NaN."""
     masked: bool = np.ma.is_masked(value)  # type: ignore[no-untyped-call]
     if masked or np.iscomplexobj(value):
         raise InvalidInputError(argument, "must be real numbers, none of them masked", value)
     try:
-        array = np.array(value, dtype=np.float64)
+        numbers = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError(argument, "must be numbers", value) from error
-    lengths = zip(shape, array.shape, strict=False)
-    fits = array.shape == shape or all(n in (-1, m) for n, m in lengths)
-    if not fits or array.ndim != len(shape):
+    lengths = zip(shape, numbers.shape, strict=False)
+    fits = numbers.shape == shape or all(n in (-1, m) for n, m in lengths)
+    if not fits or numbers.ndim != len(shape):
         wanted = str(shape).replace("-1", "m")
-        raise InvalidInputError(argument, f"must have shape {wanted}, not {array.shape}", value)
-    if not np.isfinite(array).all():
-        raise InvalidInputError(argument, "must be finite", value)
-    array.setflags(write=False)
-    return array
+        raise InvalidInputError(argument, f"must have shape {wanted}, not {numbers.shape}", value)
+    numbers.setflags(write=False)
+    return numbers
 
 
 def rotation(argument: str, value: ArrayLike) -> Array:

@@ -25,6 +25,9 @@ BOUNDS = 2
 PAST = 3
 """Rows of what a program was built at: joint positions, last command and the one before."""
 
+ACTIVE = 1e-9
+"""Multiplier above which a bound or row counts as active."""
+
 STATUSES = tuple(Status)
 """Statuses by their number in a row."""
 SOLVED, ADVANCED, NOT_SETTLED, NOT_FINITE, *_ = range(len(STATUSES))
@@ -241,6 +244,18 @@ class Command:
         if names is not None:
             against = tuple(names.in_words(self.bounds, sides, rows, self.past))
         return Resolution(self.action, self.qp, self.solution, self.fraction, sides, rows, against)
+
+    @property
+    def against(self) -> tuple[str, ...]:
+        """Bounds and rows that keep the command from what the tasks and the cost ask, in words."""
+        found = self.resolution
+        if found is not None:
+            return found.against
+        if self._layout.names is None:
+            return ()
+        sides = self._layout.bound_multipliers(self.row, ACTIVE)
+        rows = self._layout.row_multipliers(self.row, ACTIVE)
+        return tuple(self._layout.names.in_words(self.bounds, sides, rows, self.past))
 
     @property
     def qp(self) -> QP:

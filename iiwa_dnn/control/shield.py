@@ -1,0 +1,392 @@
+r"""A shield: any wish for a motion in, the nearest safe command out.
+
+The wish is a joint velocity w, a twist v of a frame, or joint positions to reach. The command
+answers the program of a `Controller` whose task is soft,
+
+.. math::
+
+    \min_x \; \tfrac12 \|x - w\|^2 \qquad \text{or} \qquad
+    \min_x \; \tfrac12 \|J x - v\|^2 + \tfrac12 \lambda^2 \|x\|^2 ,
+
+within the bounds and rows of its limits, and everything else is the controller's: the motion to
+rest that is always in hand, and what is done where the limits leave no answer. A wish that the
+limits admit, and from which the arm can stop, is the answer to the last bit. A wish for positions
+is one for the quickest velocity from which each joint can still rest there. An arm without a wish
+has one to rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from iiwa_dnn import checks
+from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.control.command import Command
+from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, KeptStates
+from iiwa_dnn.control.stopping import least_periods
+from iiwa_dnn.errors import InvalidInputError
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.references import Target
+from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot.obstacles import Obstacle
+from iiwa_dnn.schemes.base import Scheme
+from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.costs import KineticEnergy
+from iiwa_dnn.schemes.limits import JointLimits
+from iiwa_dnn.schemes.motion_limits import (
+    AccelerationLimits,
+    JerkLimits,
+    MotionLimits,
+    braking,
+    joint_bounds,
+)
+from iiwa_dnn.schemes.parts import Limit, Task
+from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
+from iiwa_dnn.schemes.tasks import PoseTask
+
+DAMPING = 0.02
+"""Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
+
+JOINTS = ""
+"""Frame of wishes for all joints."""
+
+
+@compiled
+def wished_velocity(
+    step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector
+) -> None:
+    """Write A = I and b = w; the first numbers of the target (18,) are the velocity w (n,)."""
+    for i in range(b.size):
+        A[i, i] = 1.0
+        b[i] = target[i]
+
+
+@dataclass(frozen=True)
+class JointVelocityTask(Task):
+    """Joint velocities, a row each, which a step's target holds in place of a pose."""
+
+    kernel = staticmethod(wished_velocity)
+    weight = 1.0
+
+    def row_count(self, robot: Robot) -> int:
+        """Return the number of joints, at most as many as a target has numbers."""
+        if robot.dof > TARGET_SIZE:
+            raise InvalidInputError("robot", f"has more than {TARGET_SIZE} joints", robot.dof)
+        return robot.dof
+
+
+@compiled
+def approach_positions(
+    q: Vector, past: Matrix, goal: Vector, limits: Vector, dt: float, dq: Vector
+) -> None:
+    """Write the quickest velocities dq (n,) from which all joints can still rest at a goal (n,).
+
+    Args:
+        q: Joint positions [rad], (n,).
+        past: `ControllerState.past`, (5, n).
+        goal: Joint positions to reach [rad], (n,).
+        limits: `MotionLimits.constants`, (6 n,).
+        dt: Control period [s].
+        dq: The velocities [rad/s], overwritten.
+    """
+    n = q.size
+    for i in range(n):
+        left = goal[i] - q[i]
+        above = left if left >= 0.0 else np.inf
+        below = -left if left < 0.0 else np.inf
+        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
+        dq[i] = upper if left >= 0.0 else lower
+        if not abs(dq[i]) < np.inf:
+            dq[i] = left / dt
+
+
+@compiled
+def approach_velocities(past: Matrix, aim: Vector, limits: Vector, dt: float, dq: Vector) -> None:
+    """Write the next velocities dq (n,) on the quickest way to others (n,) that passes none.
+
+    The other arguments are those of `approach_positions`.
+    """
+    n = aim.size
+    for i in range(n):
+        behind = past[LAST, i] - aim[i]
+        dq[i] = aim[i] + braking(behind, -np.inf, np.inf, limits[4 * n + i], dt)
+
+
+class Wish(NamedTuple):
+    """What the arm is asked for.
+
+    Attributes:
+        kind: ``dq``, ``twist`` or ``position``.
+        value: Joint velocity [rad/s], twist [m/s, rad/s] or joint positions [rad].
+        frame: Name of the twist's frame, else `JOINTS`.
+        since: Time when it came [s].
+        reason: Reason why it is one to rest, if it is not the given one.
+    """
+
+    kind: str
+    value: Vector
+    frame: str
+    since: float
+    reason: str = ""
+
+
+class Margin(NamedTuple):
+    """Distances to what the shield keeps away from.
+
+    Attributes:
+        joint: Least distance of a joint from its position limits [rad].
+        distance: Least distance of a link from an obstacle or another link, less the promised
+            one [m]; inf where none is watched.
+    """
+
+    joint: float
+    distance: float
+
+
+class ShieldCommand(NamedTuple):
+    """Decision of one step of a shield.
+
+    Attributes:
+        dq: Joint velocity [rad/s], (n,), within the limits.
+        clipped: Whether it is another one than the given wish.
+        reasons: Reasons for that beside the limits.
+        stopping_time: Time of the motion to rest from it [s].
+        command: The controller's command, with the program that was answered.
+        shield: The shield.
+        t: Time of the shield's clock [s].
+    """
+
+    dq: Vector
+    clipped: bool
+    reasons: tuple[str, ...]
+    stopping_time: float
+    command: Command
+    shield: Shield
+    t: float
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """What keeps the command from the given wish: reasons, bounds and rows, in words."""
+        return (*self.reasons, *self.command.against) if self.clipped else ()
+
+    @property
+    def margin(self) -> Margin:
+        """Distances at the joint positions that the command starts from, computed when asked."""
+        q = self.command.past[0]
+        robot = self.shield.robot
+        joint = float(np.minimum(q - robot.q_lower, robot.q_upper - q).min())
+        avoidance = self.shield.avoidance
+        if avoidance is None:
+            return Margin(joint, math.inf)
+        nearest, _ = avoidance.scene(robot).nearest(q[np.newaxis], np.array([self.t]))
+        return Margin(joint, float(nearest[0]) - avoidance.distance)
+
+
+class Shield:
+    """The limits of a robot, kept for whoever drives it.
+
+    The shield integrates its own commands; measured positions that are no further than
+    `tracking_error` from them do not change them.
+
+    Attributes:
+        robot: The robot, n joints, whose limits hold.
+        dt: Control period [s].
+        avoidance: Obstacles and links that are kept apart; None: none.
+        timeout: Time for which a wish counts [s].
+        tracking_error: Difference of measured and commanded positions [rad] above which the
+            measured ones are taken over.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        dt: float = 1e-3,
+        obstacles: Sequence[Obstacle] | None = None,
+        distance: float = 0.02,
+        timeout: float = 0.1,
+        tracking_error: float = 0.02,
+    ) -> None:
+        """Take a robot, and what is to be kept clear of.
+
+        Args:
+            robot: The robot, with limits on position and velocity; those on acceleration and jerk
+                hold where it has them.
+            dt: Control period [s].
+            obstacles: Obstacles to keep away from, beside the arm's own links; None: neither.
+            distance: Least distance from them [m].
+            timeout: Time for which a wish counts [s]; inf: until the next one.
+            tracking_error: Difference of measured and commanded positions [rad] above which the
+                measured ones are taken over.
+
+        Raises:
+            InvalidInputError: An argument is out of range; the message names it.
+        """
+        self.robot = checks.instance("robot", robot, Robot)
+        self.dt = checks.positive("dt", dt)
+        self.timeout = math.inf if timeout == math.inf else checks.positive("timeout", timeout)
+        self.tracking_error = checks.not_negative("tracking_error", tracking_error)
+        self.avoidance: CollisionAvoidance | None = None
+        if obstacles is not None:
+            self.avoidance = CollisionAvoidance(obstacles, distance=distance)
+        self._controllers: dict[str, Controller] = {}
+        self._kept = KeptStates(ControllerState.at_rest(robot.dof))
+        self._motion = MotionLimits(tuple(_rate_limits(robot))).constants(robot)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""
+        self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
+        self._q: Vector | None = None
+        self._t = 0.0
+        self._halted = False
+        self._wish = self._rest("no wish")
+
+    def halt(self) -> None:
+        """Brake from now on, whatever is wished for, until `reset`."""
+        self._halted = True
+
+    def step(
+        self,
+        q: ArrayLike,
+        dq: ArrayLike | None = None,
+        *,
+        twist: ArrayLike | None = None,
+        position: ArrayLike | None = None,
+        frame: str | None = None,
+    ) -> ShieldCommand:
+        """Compute the command that is nearest to a wish.
+
+        Without a wish the last one counts, until it is older than `timeout`.
+
+        Args:
+            q: Measured joint positions [rad], (n,).
+            dq: Joint velocity that is wished for [rad/s], (n,).
+            twist: Or linear [m/s] and angular [rad/s] velocity of a frame along the base's axes,
+                (6,).
+            position: Or joint positions to reach [rad], (n,).
+            frame: Name of the twist's frame; None stands for the tip.
+
+        Raises:
+            InvalidInputError: `q` or a wish has a wrong shape, `q` is not finite, or there are
+                several wishes.
+            NotFoundError: The robot has no frame of that name.
+        """
+        measured = checks.finite_array("q", q, (self.robot.dof,))
+        given = {"dq": dq, "twist": twist, "position": position}
+        wish = self._take({name: x for name, x in given.items() if x is not None}, frame)
+        reasons = [wish.reason] if wish.reason else []
+        if self._q is None:
+            self._q = measured
+        elif not np.abs(measured - self._q).max() <= self.tracking_error:
+            self._q = measured
+            reasons.append("measured positions taken over")
+        controller = self._controller(wish.frame)
+        target = self._target(controller, wish, self._q)
+        command = controller.step(self._q, self._t, target)
+        # A wish that can be had again is had at once.
+        self._kept.now = self._kept.now._replace(yields=False)
+        clipped = bool(reasons)
+        if wish.kind == "dq":
+            clipped = clipped or bool((command.dq != wish.value).any())
+        else:
+            clipped = clipped or bool(command.against)
+        decision = ShieldCommand(
+            command.dq,
+            clipped,
+            tuple(reasons),
+            self._stopping_time(command),
+            command,
+            self,
+            self._t,
+        )
+        self._wish = wish
+        self._q = self._q + self.dt * command.dq
+        self._t += self.dt
+        return decision
+
+    def _rest(self, reason: str) -> Wish:
+        """Return the wish to rest, for a reason."""
+        return Wish("dq", np.zeros(self.robot.dof), JOINTS, self._t, reason)
+
+    def _take(self, given: dict[str, ArrayLike], frame: str | None) -> Wish:
+        """Return the wish that counts, which is one to rest if there is no other."""
+        if len(given) > 1:
+            raise InvalidInputError(" and ".join(given), "are several wishes")
+        wish = self._wish
+        for name, values in given.items():
+            value = checks.array(name, values, (6 if name == "twist" else self.robot.dof,))
+            seen = JOINTS if name != "twist" else frame or self.robot.tip
+            wish = Wish(name, value, seen, self._t)
+        if self._halted:
+            return self._rest("halted")
+        if not np.isfinite(wish.value).all():
+            return self._rest("wish not finite")
+        if not wish.reason and self._t - wish.since > self.timeout + 0.5 * self.dt:
+            return self._rest("wish too old")
+        return wish
+
+    def _controller(self, frame: str) -> Controller:
+        """Return the controller for wishes of a frame, or of all joints; they share one state."""
+        found = self._controllers.get(frame)
+        if found is None:
+            limits: list[Limit] = [JointLimits(), *_rate_limits(self.robot)]
+            if self.avoidance is not None:
+                limits.append(self.avoidance)
+            scheme = Scheme([], [JointVelocityTask()], limits)
+            if frame != JOINTS:
+                task = PoseTask(frame=frame, gain=0.0, weight=1.0)
+                scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], limits)
+            found = Controller(self.robot, scheme, dt=self.dt, policy="relax")
+            found._kept = self._kept
+            self._controllers[frame] = found
+        return found
+
+    def _target(self, controller: Controller, wish: Wish, q: Vector) -> dict[str, Target]:
+        """Return what a step at joint positions q (n,) is to answer, in the form of its target."""
+        target = np.zeros(TARGET_SIZE)
+        if wish.kind == "twist":
+            target[3:12:4] = 1.0
+            target[12:] = wish.value
+            return {wish.frame: Target.from_data(target)}
+        aim = target[: q.size]
+        aim[:] = wish.value
+        past = self._kept.now.past
+        before = self._wish
+        if wish.kind == "position":
+            approach_positions(q, past, wish.value, self._motion, self.dt, aim)
+        elif wish.kind == before.kind and (wish.value == before.value).all():
+            approach_velocities(past, wish.value, self._motion, self.dt, aim)
+        # From here a network that has nothing to do hands the aim out as it is.
+        sizes = controller.layout.sizes
+        state = controller.solver.warm_state(sizes)
+        if state is None:
+            state = controller.solver.cold_state(sizes)
+        state[:] = 0.0
+        state[: q.size] = aim
+        return {self.robot.tip: Target.from_data(target)}
+
+    def _stopping_time(self, command: Command) -> float:
+        """Compute the time of the motion to rest from a command [s]."""
+        rest = self._kept.now.past[REST, 0]
+        if rest == 0.0:
+            moves = float(command.dq.any())
+            rest = max(moves, least_periods(command.dq, command.past[1], self._motion, self.dt))
+        return float(self.dt * rest)
+
+
+def _rate_limits(robot: Robot) -> list[AccelerationLimits | JerkLimits]:
+    """Return the limits on acceleration and jerk that a robot has."""
+    limits: list[AccelerationLimits | JerkLimits] = []
+    if np.isfinite(robot.ddq_max).any():
+        limits.append(AccelerationLimits())
+    if np.isfinite(robot.dddq_max).any():
+        limits.append(JerkLimits())
+    return limits

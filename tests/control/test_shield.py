@@ -1,0 +1,234 @@
+"""A shield gives the wish itself where the limits admit it, and the nearest safe command else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+import qpsolvers
+
+import shielding
+from iiwa_dnn import (
+    Configuration,
+    InvalidInputError,
+    NotFoundError,
+    Robot,
+    Shield,
+    Sphere,
+    load_robot,
+)
+from iiwa_dnn.control.shield import ShieldCommand
+from judge_limits import breaches
+
+DT = 1e-3
+START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+PLAIN = load_robot("iiwa7")
+ROBOT = PLAIN.with_limits(acceleration=10.0)
+SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
+BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+
+
+def drive(
+    shield: Shield, steps: int, q: np.ndarray = START, **wish: Any
+) -> tuple[np.ndarray, list[ShieldCommand]]:
+    """Follow every command from q; return the joint positions (steps + 1, n) and the commands."""
+    path = [q]
+    commands = []
+    for _ in range(steps):
+        commands.append(shield.step(path[-1], **wish))
+        path.append(path[-1] + shield.dt * commands[-1].dq)
+    return np.array(path), commands
+
+
+def limits_broken(path: np.ndarray, robot: Robot) -> list[Any]:
+    kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
+    return breaches(path, DT, *kinds)
+
+
+@pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
+@pytest.mark.parametrize("obstacles", [None, [BALL]])
+def test_an_admissible_wish_goes_through_to_the_last_bit(
+    robot: Robot, obstacles: list[Sphere] | None
+) -> None:
+    """A slow sum of sines from rest breaks no limit, and stays away from all of them."""
+    shield = Shield(robot, DT, obstacles)
+    random = np.random.default_rng(0)
+    speed = random.uniform(-0.1, 0.1, 7)
+    rate = random.uniform(0.5, 3.0, 7)
+    q = START
+    for k in range(2000):
+        wish = speed * np.sin(rate * k * DT) ** 3
+        command = shield.step(q, wish)
+        np.testing.assert_array_equal(command.dq, wish)
+        assert not command.clipped
+        assert command.limits == ()
+        q = q + DT * command.dq
+
+
+@pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
+def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: Robot) -> None:
+    """Where the arm can stop from the program's answer, that is the command, by ProxQP too."""
+    shield = Shield(robot, DT, [BALL])
+    random = np.random.default_rng(1)
+    q = START
+    compared = 0
+    for _ in range(600):
+        wish = 2.0 * robot.dq_max * random.standard_normal(7)
+        command = shield.step(q, wish)
+        if command.command.ok:
+            qp = command.command.limits
+            np.testing.assert_array_equal(qp.q, -wish)
+            nearest = qpsolvers.solve_problem(
+                qp.to_qpsolvers(), "proxqp", eps_abs=1e-11, eps_rel=0.0, max_iter=10_000
+            )
+            if not nearest.found:  # ProxQP gives a few of them up
+                continue
+            np.testing.assert_allclose(command.dq, nearest.x, atol=1e-6)
+            compared += command.clipped
+        q = q + DT * command.dq
+    assert compared > 300
+
+
+@pytest.mark.parametrize("seed", [5, 8, 15, 36, 37])
+def test_hostile_wishes_break_no_limit(seed: int) -> None:
+    case = shielding.drawn(seed)
+    case = case._replace(hostile=min(case.hostile, 1500))
+    _, limits, distances, _ = shielding.judged(case, seed)
+    assert limits == []
+    assert distances == 0
+
+
+def test_a_wish_that_is_held_is_reached_and_not_passed() -> None:
+    wish = np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.1])
+    shield = Shield(SMOOTH, DT)
+    path, commands = drive(shield, 400, dq=wish)
+    dq = np.diff(path, axis=0) / DT
+    assert (np.abs(dq) <= np.abs(wish) + 1e-9).all()
+    np.testing.assert_array_equal(commands[-1].dq, wish)
+    assert commands[0].clipped
+    assert any("jerk" in name for name in commands[0].limits)
+    assert limits_broken(path, SMOOTH) == []
+
+
+@pytest.mark.parametrize("robot", [PLAIN, ROBOT, SMOOTH])
+def test_positions_are_reached_and_not_passed(robot: Robot) -> None:
+    """From a single wish, as a chunk of a policy brings it."""
+    goal = START + np.array([0.4, 0.2, -0.3, -0.5, 0.1, 0.6, -0.2])
+    shield = Shield(robot, DT, timeout=np.inf)
+    first = shield.step(START, position=goal)
+    path, commands = drive(shield, 3000, START + DT * first.dq)
+    np.testing.assert_allclose(path[-1], goal, atol=2e-7)
+    assert not commands[-1].dq.any()
+    beyond = (path - goal) * np.sign(goal - START)
+    assert beyond.max() < 1e-9
+    assert limits_broken(np.vstack([START, path]), robot) == []
+
+
+def test_a_twist_moves_its_frame() -> None:
+    """Far from singular poses the damping costs less than a hundredth."""
+    robot = ROBOT
+    shield = Shield(robot, DT)
+    frame = robot.frame_names[len(robot.frame_names) // 2]
+    for name in (None, frame):
+        twist = np.array([0.0, 0.0, 0.05, 0.0, 0.0, 0.0])
+        J = Configuration(robot, START).frame(name or robot.tip).jacobian
+        reachable = J @ np.linalg.pinv(J) @ twist
+        shield.reset()
+        path, commands = drive(shield, 100, twist=twist, frame=name)
+        J = Configuration(robot, path[-2]).frame(name or robot.tip).jacobian
+        np.testing.assert_allclose(J @ commands[-1].dq, reachable, atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("wish", "reason"),
+    [
+        ({"dq": np.full(7, np.nan)}, "wish not finite"),
+        ({"position": np.full(7, np.inf)}, "wish not finite"),
+        ({}, "wish too old"),
+    ],
+)
+def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(
+    wish: dict[str, Any], reason: str
+) -> None:
+    shield = Shield(SMOOTH, DT, timeout=0.05)
+    speed = np.full(7, 0.2)
+    begun, _ = drive(shield, 300, dq=speed)
+    braked, commands = drive(shield, 400, begun[-1], **wish)
+    resumed, _ = drive(shield, 300, braked[-1], dq=speed)
+    path = np.vstack([begun, braked[1:], resumed[1:]])
+    assert limits_broken(path, SMOOTH) == []
+    assert commands[-1].limits == (reason,)
+    assert not commands[-1].dq.any()
+    if not wish:  # it counts for `timeout`
+        ends = [command.limits for command in commands[:51]]
+        assert ends[:50] == [()] * 50
+        assert ends[50][0] == reason
+    np.testing.assert_array_equal(np.diff(path, axis=0)[-1], np.diff(resumed, axis=0)[-1])
+    np.testing.assert_allclose((resumed[-1] - resumed[-2]) / DT, speed, atol=1e-12)
+
+
+def test_a_halt_lasts_until_the_reset() -> None:
+    shield = Shield(ROBOT, DT)
+    path, _ = drive(shield, 100, dq=np.full(7, 0.2))
+    shield.halt()
+    rest, commands = drive(shield, 100, path[-1], dq=np.full(7, 0.2))
+    assert limits_broken(np.vstack([path, rest[1:]]), ROBOT) == []
+    assert not commands[-1].dq.any()
+    assert commands[-1].limits == ("halted",)
+    shield.reset()
+    assert shield.step(rest[-1]).limits == ("no wish",)
+    assert shield.step(rest[-1], np.full(7, 1e-3)).limits == ()
+
+
+def test_measured_positions_count_only_where_they_are_far() -> None:
+    shield = Shield(ROBOT, DT, tracking_error=0.01)
+    shield.step(START, np.zeros(7))
+    near = shield.step(START + 0.009, np.zeros(7))
+    np.testing.assert_array_equal(near.command.past[0], START)
+    far = shield.step(START + 0.011, np.zeros(7))
+    np.testing.assert_array_equal(far.command.past[0], START + 0.011)
+    assert far.limits == ("measured positions taken over",)
+
+
+def test_margin_and_stopping_time_are_those_of_closed_forms() -> None:
+    """The distance of a resting arm from a ball grows with the ball's way; v / a is the time."""
+    at = Configuration(ROBOT, START).position
+    margins = []
+    for away in (0.5, 0.6):
+        ball = Sphere(at + np.array([0.0, 0.0, away]), 0.05)
+        shield = Shield(ROBOT, DT, [ball], distance=0.03)
+        margins.append(shield.step(START, np.zeros(7)).margin)
+    assert margins[0].distance <= margins[1].distance < 0.6
+    robot = ROBOT
+    room = np.minimum(START - robot.q_lower, robot.q_upper - START).min()
+    assert margins[0].joint == pytest.approx(room, abs=1e-12)
+    shield = Shield(ROBOT, DT)
+    _, commands = drive(shield, 100, dq=np.full(7, 0.5))
+    assert commands[-1].stopping_time == pytest.approx(0.05, abs=DT)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"dq": np.zeros(6)}, "dq: must have shape"),
+        ({"twist": np.zeros(7)}, "twist: must have shape"),
+        ({"position": "home"}, "position: must be numbers"),
+        ({"dq": np.zeros(7), "twist": np.zeros(6)}, "several wishes"),
+        ({"dq": np.zeros(7), "q": np.full(7, np.nan)}, "q: must be finite"),
+    ],
+)
+def test_wrong_wishes_are_refused_and_change_nothing(arguments: dict[str, Any], words: str) -> None:
+    shield = Shield(ROBOT, DT)
+    shield.step(START, np.full(7, 0.01))
+    with pytest.raises(InvalidInputError, match=words):
+        shield.step(**{"q": START} | arguments)
+    np.testing.assert_array_equal(shield.step(START, np.full(7, 0.02)).dq, np.full(7, 0.02))
+
+
+def test_wrong_settings_are_refused() -> None:
+    for arguments in ({"dt": 0.0}, {"timeout": -1.0}, {"tracking_error": np.nan}):
+        with pytest.raises(InvalidInputError, match=next(iter(arguments))):
+            Shield(ROBOT, **arguments)
+    with pytest.raises(NotFoundError):
+        Shield(ROBOT).step(START, twist=np.zeros(6), frame="nose")
