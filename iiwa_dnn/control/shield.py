@@ -94,7 +94,7 @@ def approach_positions(
         goal: Joint positions to reach [rad], (n,).
         limits: `MotionLimits.constants`, (6 n,).
         dt: Control period [s].
-        dq: The velocities [rad/s], overwritten.
+        dq: The velocities [rad/s], (n,), overwritten.
     """
     n = q.size
     for i in range(n):
@@ -110,9 +110,9 @@ def approach_positions(
 
 @compiled
 def approach_velocities(past: Matrix, aim: Vector, limits: Vector, dt: float, dq: Vector) -> None:
-    """Write the next velocities dq (n,) on the quickest way to others (n,) that passes none.
+    """Write the next velocities dq (n,) [rad/s] on the quickest way to `aim` that passes none.
 
-    The other arguments are those of `approach_positions`.
+    The aim (n,) [rad/s] is held; the other arguments are those of `approach_positions`.
     """
     n = aim.size
     for i in range(n):
@@ -125,7 +125,7 @@ class Wish(NamedTuple):
 
     Attributes:
         kind: ``dq``, ``twist`` or ``position``.
-        value: Joint velocity [rad/s], twist [m/s, rad/s] or joint positions [rad].
+        value: Joint velocity [rad/s] or positions [rad], (n,), or twist [m/s, rad/s], (6,).
         frame: Name of the twist's frame, else `JOINTS`.
         since: Time when it came [s].
         reason: Reason why it is one to rest, if it is not the given one.
