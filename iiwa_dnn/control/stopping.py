@@ -21,7 +21,7 @@ joints' way :math:`\Delta q`, still has at least
 
 .. math::  d + g \cdot \Delta q - \tfrac12 B - v_o T
 
-by inequality (1) of docs/collisions.md. Along the motion :math:`g \cdot \Delta q` has its least
+by inequality (1) of docs/theory.md. Along the motion :math:`g \cdot \Delta q` has its least
 value at rest, or where the sum of its terms changes sign. Where the joints go straight on, their
 way up to any time is :math:`\lambda \Delta q` with :math:`0 \le \lambda \le 1`, and B at most
 :math:`\lambda^2 B`: the difference, concave in :math:`\lambda`, is least at an end.

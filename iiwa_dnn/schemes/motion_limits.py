@@ -31,7 +31,7 @@ room to brake at a deceleration B below that of the ramp, D, to a point before t
 
 Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
 control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
-third order is derived in docs/limits.md.
+third order is derived in docs/theory.md.
 """
 
 import math
