@@ -5,7 +5,7 @@
 
 Both networks as ODEs beside the arm's, as the authors' published programs have them: no feedback of
 the tool's position, bounds of 0.5 rad/s, gains of 1e3, constant noise of 5 in both networks' rates.
-docs/noise_suppressing.md has the figures, and what the programs say otherwise than the paper.
+docs/papers.md has the figures, and what the programs say otherwise than the paper.
 """
 
 import sys

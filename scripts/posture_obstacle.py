@@ -1,6 +1,6 @@
 r"""A second paper: a six-joint arm keeps its tool's tilt and avoids a point, four programs.
 
-One sees the table of docs/posture_obstacle.md and its figure, the programs beside the authors' own
+One sees the table of docs/papers.md and its figure, the programs beside the authors' own
 runs. With the folder of the authors' files QALL1.mat to QALL4.mat as fourth argument, their joint
 angles are compared one by one as well.
 
@@ -8,7 +8,7 @@ angles are compared one by one as well.
 
 Source: "End-Effector Posture-Maintaining and Obstacle-Limits Avoidance Schemes for Redundant Robot
 Manipulators", IEEE Transactions on Industrial Informatics, document 8737741, and its authors'
-files, which docs/posture_obstacle.md names. The programs have no cost: the network moves x within
+files, which docs/papers.md names. The programs have no cost: the network moves x within
 the range of the rows alone, and so takes the velocity nearest to the last one.
 """
 
@@ -142,7 +142,7 @@ class PointAvoidance(Limit):
     Idle rows are 0 <= 0 and stand last, so that a link's rows move when another one comes near.
 
     Source: JObstacleN.m. Its J of links 3 to 6 is wrong: that of a point on the axis of their own
-    joint, which therefore does not move it (docs/posture_obstacle.md).
+    joint, which therefore does not move it (docs/papers.md).
     """
 
     rows: int = field(default=18, init=False)

@@ -49,7 +49,7 @@ zeroing network with the gains :math:`\gamma + \eta` and :math:`\gamma\,\eta`.
 Source: L. Wei, L. Jin et al., "Noise-suppressing neural dynamics for time-dependent constrained
 nonlinear optimization with applications", IEEE Transactions on Systems, Man, and Cybernetics:
 Systems, equation (12); the form above was read out of the authors' published programs
-(docs/noise_suppressing.md), not of the text.
+(docs/papers.md), not of the text.
 """
 
 from dataclasses import dataclass, field

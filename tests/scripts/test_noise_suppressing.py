@@ -1,4 +1,4 @@
-"""The third paper's programs: their claims, and each slip in docs/noise_suppressing.md."""
+"""The third paper's programs: their claims, and each slip in docs/papers.md."""
 
 import os
 import subprocess
