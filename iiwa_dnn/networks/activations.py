@@ -30,13 +30,12 @@ for every network here.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, fields
-from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import Flow, Network, settings_of
+from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.dual import DualNetwork
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -228,8 +227,3 @@ class ActivatedNetwork(Network):
         if not 0.0 < size < np.inf:
             return 1.0
         return float(self.activation(size)) / float(size)
-
-    def settings(self) -> dict[str, Any]:
-        """Return name and parameters, as values that JSON can hold."""
-        parts = {"network": self.network.settings(), "activation": settings_of(self.activation)}
-        return {**settings_of(self), **parts}

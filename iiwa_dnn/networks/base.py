@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -92,30 +92,6 @@ def evaluate_rates(
     enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
 
 
-class CompiledRates:
-    """Rates of a compiled function for one program, which explicit steps enter by its address.
-
-    Attributes:
-        address: Address of the function.
-        constants: Its constants, (k,).
-    """
-
-    def __init__(self, qp: QP, function: Rates, constants: Vector, size: int) -> None:
-        """Take a function for states (size,) with its constants (k,)."""
-        self.address = enter_rates.address(function)
-        self.constants = constants
-        self._qp = qp
-        self._size = size
-
-    def __call__(self, state: Vector) -> Vector:
-        """Evaluate at a state (size,)."""
-        qp = self._qp
-        check_size("state", state, self._size)
-        result = np.empty(self._size)
-        evaluate_rates(qp.data, qp.sizes, self.address, self.constants, state, result)
-        return result
-
-
 @dataclass(frozen=True, kw_only=True)
 class Network:
     """A dynamic neural network for one quadratic program after another.
@@ -160,8 +136,17 @@ class Network:
         function = type(self).compiled_rates
         if function is None:
             raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
+        address = enter_rates.address(function)
         constants = self.constants(qp.sizes)
-        return Flow(CompiledRates(qp, function, constants, self.state_size(qp)))
+        size = self.state_size(qp)
+
+        def rates(state: Vector) -> Vector:
+            check_size("state", state, size)
+            result = np.empty(size)
+            evaluate_rates(qp.data, qp.sizes, address, constants, state, result)
+            return result
+
+        return Flow(rates)
 
     def rates(self, qp: QP, state: Vector) -> Vector:
         """Evaluate the right-hand side, rho ds/dt, of shape (state_size,)."""
@@ -203,5 +188,11 @@ def kkt_product(sizes: Sizes) -> float:
 
 def settings_of(part: Any) -> dict[str, Any]:
     """Name a network or an integrator, a dataclass, and its fields as values of JSON types."""
-    fields = {name: np.asarray(value).tolist() for name, value in asdict(part).items()}
-    return {"name": type(part).__name__, **fields}
+    values = {each.name: getattr(part, each.name) for each in fields(part)}
+    return {
+        "name": type(part).__name__,
+        **{
+            name: settings_of(value) if is_dataclass(value) else np.asarray(value).tolist()
+            for name, value in values.items()
+        },
+    }

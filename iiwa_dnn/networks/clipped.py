@@ -1,20 +1,15 @@
-r"""Networks that are affine but for one projection, of which one compiled function evaluates all.
+r"""Networks that are affine but for one projection.
 
 .. math::  \rho\,\dot s = O\,\bigl\{\Pi_{[l,\,u]}(A s + k) - s - \kappa\,(A s + k)\bigr\}
 
 The primal-dual, one-layer and dual networks differ in the matrices.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.networks.base import CompiledRates, Flow
-from iiwa_dnn.qp.dense import dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Vector
-from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.layout import Matrix, Vector
 
 
 class Clipped(NamedTuple):
@@ -36,6 +31,13 @@ class Clipped(NamedTuple):
     outer: Matrix
     kappa: float = 0.0
 
+    def rates(self, state: Vector) -> Vector:
+        """Evaluate the rates at a state, (k,) both."""
+        aim = self.matrix @ state + self.offset
+        clipped = np.minimum(np.maximum(aim, self.lower), self.upper)
+        result: Vector = self.outer @ (clipped - state - self.kappa * aim)
+        return result
+
     def jacobian(self, state: Vector) -> Matrix:
         """Differentiate the rates at a state (k,), (k, k)."""
         aim = self.matrix @ state + self.offset
@@ -43,27 +45,3 @@ class Clipped(NamedTuple):
         inner = (inside - self.kappa)[:, np.newaxis] * self.matrix - np.eye(state.size)
         result: Matrix = self.outer @ inner
         return result
-
-    def flow(self, qp: QP, step: float, unknowns: Callable[[Vector], Vector] | None = None) -> Flow:
-        """Make the flow, with one bound on its stable steps [rho]."""
-        constants = np.concatenate(self, axis=None)
-        rates = CompiledRates(qp, clipped_rates, constants, self.offset.size)
-        return Flow(rates, self.jacobian, unknowns, lambda state: step)
-
-
-@compiled
-def clipped_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vector) -> None:
-    """Write the rates (k,); the constants are the numbers of `Clipped` one after the other."""
-    size = state.size
-    at_offset = size * size
-    at_lower = at_offset + size
-    at_upper = at_lower + size
-    at_outer = at_upper + size
-    kappa = constants[constants.size - 1]
-    inner = np.empty(size)
-    for i in range(size):
-        aim = dot(constants, i * size, state, size) + constants[at_offset + i]
-        clipped = min(max(aim, constants[at_lower + i]), constants[at_upper + i])
-        inner[i] = clipped - state[i] - kappa * aim
-    for i in range(size):
-        rates[i] = dot(constants, at_outer + i * size, inner, size)

@@ -105,7 +105,7 @@ class DualNetwork(Network):
         eye = np.eye(len(gram))
         program = Clipped(gram - eye, rows @ offset, lower, upper, eye, 1.0)
         step = 2.0 / max(float(np.linalg.eigvalsh(gram)[-1]), 1.0)
-        return program.flow(qp, step, unknowns)
+        return Flow(program.rates, program.jacobian, unknowns, lambda state: step)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,11 +14,11 @@ Source of the second: C. Kanzow, "Some noninterior continuation methods for line
 problems", SIAM Journal on Matrix Analysis and Applications 17 (1996).
 """
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.qp.layout import Matrix, Vector, check_size
+from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
 
 Form = Literal["projected", "smooth"]
@@ -37,80 +37,72 @@ def system_size(qp: QP, form: Form) -> int:
     return n + p + m + (2 * n if form == "smooth" else 0)
 
 
-class KktSystem:
-    """The system of one program.
+class KktResidual(NamedTuple):
+    """The system at one point.
 
     Attributes:
-        qp: The program.
-        size: Number of unknowns.
-        matrix: Derivative of the residual at the last point, (size, size).
+        error: Residual E, (size,).
+        drift: Its rate at a point that stays, (size,).
+        matrix: Its derivative in s, (size, size).
     """
 
+    error: Vector
+    drift: Vector
     matrix: Matrix
 
-    def __init__(self, qp: QP, form: Form, rate: QP | None = None) -> None:
-        """Take a program and, where it moves, its rate of change (zero where it is infinite)."""
-        self.qp = qp
-        self.size = system_size(qp, form)
-        self._form = form
-        self._rate = QP.from_data(np.zeros(qp.data.size), qp.sizes) if rate is None else rate
-        self._linear, self._offset = _linear_part(qp, form, 1.0)
-        self._moving, self._moved = _linear_part(self._rate, form, 0.0)
 
-    def evaluate(self, s: Vector) -> tuple[Vector, Vector]:
-        """Compute the residual at a point, and its drift: its rate at a point that stays.
+def evaluate(qp: QP, form: Form, s: Vector, rate: QP | None = None) -> KktResidual:
+    """Compute the residual at a point s (size,), its drift and its derivative.
 
-        Args:
-            s: The point, (size,).
+    The rate of change of a program that moves is zero where a field is infinite.
+    """
+    if rate is None:
+        rate = QP.from_data(np.zeros(qp.data.size), qp.sizes)
+    n, _, p = qp.sizes
+    matrix, offset = _linear_part(qp, form, 1.0)
+    moving, moved = _linear_part(rate, form, 0.0)
+    system = KktResidual(matrix @ s + offset, moving @ s + moved, matrix)
+    matrix[range(n, s.size), range(n, s.size)] = -REGULAR
+    if form == "smooth":
+        _smooth(system, s, n + p)
+    else:
+        _project(system, s, qp, rate)
+    return system
 
-        Returns:
-            Residual and drift, (size,) both; `matrix` becomes the residual's derivative.
-        """
-        check_size("state", s, self.size)
-        n = self.qp.q.size
-        error = self._linear @ s + self._offset
-        drift = self._moving @ s + self._moved
-        self.matrix = self._linear.copy()
-        self.matrix[range(n, s.size), range(n, s.size)] = -REGULAR
-        if self._form == "smooth":
-            self._smooth(s, error, drift)
-        else:
-            self._project(s, error, drift)
-        return error, drift
 
-    def _smooth(self, s: Vector, error: Vector, drift: Vector) -> None:
-        """Put the complementarity in place of the rows of C x - d; arrays (size,)."""
-        n, _, p = self.qp.sizes
-        rows = np.arange(n + p, s.size)
-        limited = np.isfinite(error[rows])
-        w = s[rows]
-        slack = np.where(limited, -error[rows], 0.0)
-        root = np.sqrt(w**2 + slack**2 + EPSILON**2)
-        slope = np.where(limited, slack / root - 1.0, 0.0)
-        error[rows] = np.where(limited, w + slack - root, w)
-        drift[rows] *= slope
-        self.matrix[rows] *= slope[:, np.newaxis]
-        self.matrix[rows, rows] = np.where(limited, 1.0 - w / root, 1.0)
+def _smooth(system: KktResidual, s: Vector, first: int) -> None:
+    """Put the complementarity in place of the rows of C x - d, from the `first` on."""
+    error, drift, matrix = system
+    rows = np.arange(first, s.size)
+    limited = np.isfinite(error[rows])
+    w = s[rows]
+    slack = np.where(limited, -error[rows], 0.0)
+    root = np.sqrt(w**2 + slack**2 + EPSILON**2)
+    slope = np.where(limited, slack / root - 1.0, 0.0)
+    error[rows] = np.where(limited, w + slack - root, w)
+    drift[rows] *= slope
+    matrix[rows] *= slope[:, np.newaxis]
+    matrix[rows, rows] = np.where(limited, 1.0 - w / root, 1.0)
 
-    def _project(self, s: Vector, error: Vector, drift: Vector) -> None:
-        """Put projections in place of rows at a bound and of idle rows; arrays (size,)."""
-        n, m, p = self.qp.sizes
-        x = s[:n]
-        z = s[n + p :]
-        at_lower = x - error[:n] <= self.qp.lb
-        at_upper = x - error[:n] >= self.qp.ub
-        idle = ~(z + error[n + p :] > 0.0)
-        for at_bound, bound, rate in (
-            (at_lower, self.qp.lb, self._rate.lb),
-            (at_upper, self.qp.ub, self._rate.ub),
-        ):
-            error[:n] = np.where(at_bound, x - bound, error[:n])
-            drift[:n] = np.where(at_bound, -rate, drift[:n])
-        error[n + p :] = np.where(idle, -z, error[n + p :])
-        drift[n + p :] = np.where(idle, 0.0, drift[n + p :])
-        replaced = np.concatenate([at_lower | at_upper, np.zeros(p, dtype=bool), idle])
-        slopes = np.diag(np.concatenate([np.ones(n + p), -np.ones(m)]))
-        self.matrix[replaced] = slopes[replaced]
+
+def _project(system: KktResidual, s: Vector, qp: QP, rate: QP) -> None:
+    """Put projections in place of rows at a bound and of idle rows."""
+    error, drift, matrix = system
+    n, _, p = qp.sizes
+    eye = np.eye(s.size)
+    aim = s[:n] - error[:n]
+    idle = n + p + np.flatnonzero(~(s[n + p :] + error[n + p :] > 0.0))
+    for reached, bound, moved in (
+        (aim <= qp.lb, qp.lb, rate.lb),
+        (aim >= qp.ub, qp.ub, rate.ub),
+    ):
+        at = np.flatnonzero(reached)
+        error[at] = s[at] - bound[at]
+        drift[at] = -moved[at]
+        matrix[at] = eye[at]
+    error[idle] = -s[idle]
+    drift[idle] = 0.0
+    matrix[idle] = -eye[idle]
 
 
 def _linear_part(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:

@@ -63,7 +63,8 @@ class PrimalDualNetwork(Network):
         H, c, lower, upper = variational(qp)
         eye = np.eye(c.size)
         step = 2.0 / float(np.linalg.norm(eye + H, 2)) ** 2
-        return Clipped(eye - H, -c, lower, upper, eye + H.T).flow(qp, step)
+        program = Clipped(eye - H, -c, lower, upper, eye + H.T)
+        return Flow(program.rates, program.jacobian, step=lambda state: step)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,7 +98,8 @@ class OneLayerNetwork(PrimalDualNetwork):
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye
         step = 2.0 * (1.0 - self.share) / (1.0 + self.share) ** 2
-        return Clipped(matrix, -alpha * c, lower, upper, outer).flow(qp, step)
+        program = Clipped(matrix, -alpha * c, lower, upper, outer)
+        return Flow(program.rates, program.jacobian, step=lambda state: step)
 
 
 def variational(qp: QP) -> tuple[Matrix, Vector, Vector, Vector]:

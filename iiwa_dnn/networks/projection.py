@@ -25,7 +25,7 @@ from typing import TypeGuard
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.networks.base import CompiledRates, Flow, Network, kkt_product
+from iiwa_dnn.networks.base import Flow, Network, kkt_product
 from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger, qp_views
 from iiwa_dnn.qp.program import QP
@@ -76,14 +76,15 @@ def _inequality_rate(multiplier: float, slack: float) -> float:
 
 
 @compiled
-def mark_active(s: Vector, rates: Vector, active: Vector) -> None:
-    """Mark the inequalities [G; I; -I] with mu + Omega x - chi > 0 by 1, others by 0, (m + 2n,).
+def mark_active(qp: QPViews, s: Vector, rates: Vector, active: Vector) -> None:
+    """Mark the rows [A; G; I; -I] that are active by 1, others by 0, (p + m + 2n,).
 
-    A multiplier that is not active decays: it and its rate add up to zero exactly.
+    Equalities are active, inequalities where mu + Omega x - chi > 0. A multiplier that is not
+    active decays: it and its rate add up to zero exactly.
     """
-    first = s.size - active.size
+    n = qp.q.size
     for k in range(active.size):
-        active[k] = 1.0 if s[first + k] + rates[first + k] > 0.0 else 0.0
+        active[k] = 1.0 if k < qp.b.size or s[n + k] + rates[n + k] > 0.0 else 0.0
 
 
 @compiled
@@ -97,19 +98,19 @@ def projection_rates(qp: QPViews, constants: Vector, state: Vector, rates: Vecto
 
 @compiled
 def stable_step(qp: QPViews, active: Vector) -> float:
-    """Compute the bound of `ProjectionNetwork.stable_step` for an active set (m + 2n,)."""
+    """Compute the bound of `ProjectionNetwork.stable_step` for an active set (p + m + 2n,)."""
     n = qp.q.size
-    m = qp.h.size
+    p = qp.b.size
+    first = p + qp.h.size
     K = np.zeros((n, n))
-    for j in range(qp.b.size):
-        add_outer(K, 1.0, qp.A, j)
-    for j in range(m):
-        if active[j] != 0.0:
-            add_outer(K, 1.0, qp.G, j)
+    for j in range(p):
+        add_outer(K, active[j], qp.A, j)
+    for j in range(qp.h.size):
+        add_outer(K, active[p + j], qp.G, j)
     for i in range(n):
-        K[i, i] += active[m + i] + active[m + n + i]
+        K[i, i] += active[first + i] + active[first + n + i]
         for k in range(i):
-            K[k, i] = K[i, k]
+            K[i, k] = K[k, i]
     _, coupling = extreme_eigenvalues(K)
     for i in range(n):
         for k in range(n):
@@ -122,7 +123,7 @@ def stable_step(qp: QPViews, active: Vector) -> float:
 
 @compiled
 def stable_step_of(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
-    """Compute `stable_step` of an active set (m + 2n,), for a program's flat array, `QP.data`."""
+    """Compute `stable_step` of an active set (p + m + 2n,), for `QP.data`."""
     return stable_step(qp_views(data, n, m, p), active)
 
 
@@ -156,7 +157,7 @@ class ProjectionNetwork(Network):
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up; the rate of a program that moves has no effect."""
-        rates = CompiledRates(qp, projection_rates, self.constants(qp.sizes), self.state_size(qp))
+        rates = super().flow(qp).rates
 
         def jacobian(state: Vector) -> Matrix:
             n, _, p = qp.sizes
@@ -199,9 +200,10 @@ class ProjectionNetwork(Network):
         if moved is None:
             # Both bounds of one variable are active together only if they coincide.
             bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
-            active = np.concatenate([np.ones(m), bounded, qp.lb == qp.ub])
+            active = np.concatenate([np.ones(p + m), bounded, qp.lb == qp.ub])
         else:
-            active = np.where(moved[n + p :] > 0.0, 1.0, 0.0)
+            active = np.where(moved[n:] > 0.0, 1.0, 0.0)
+            active[:p] = 1.0
         return stable_step_of(qp.data, n, m, p, active)
 
 

@@ -53,15 +53,14 @@ Systems, equation (12); the form above was read out of the authors' published pr
 """
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
-from iiwa_dnn.networks.base import Flow, Network, kkt_product, settings_of
-from iiwa_dnn.networks.kkt_system import FORMS, Form, KktSystem, system_size
+from iiwa_dnn.networks.base import Flow, Network, kkt_product
+from iiwa_dnn.networks.kkt_system import FORMS, Form, evaluate, system_size
 from iiwa_dnn.networks.primal_dual import variational
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
@@ -106,18 +105,17 @@ class ZeroingNetwork(Network):
 
         Its rates raise NoSolutionError where the KKT conditions' derivative is singular.
         """
-        system = KktSystem(qp, self.form, rate)
-        size = system.size
+        size = system_size(qp, self.form)
         linear = isinstance(self.activation, Linear) and not (self.growth or self.integral)
 
         def rates(state: Vector) -> Vector:
-            error, drift = system.evaluate(state[:size])
+            error, drift, matrix = evaluate(qp, self.form, state[:size], rate)
             wanted = self.removal(error, state) + drift
             result = np.ones(state.size)
             if self.integral:
                 result[size : 2 * size] = error
             try:
-                result[:size] = -np.linalg.solve(system.matrix, wanted)
+                result[:size] = -np.linalg.solve(matrix, wanted)
             except np.linalg.LinAlgError:
                 raise NoSolutionError("the derivative of the KKT conditions is singular") from None
             return result
@@ -144,10 +142,6 @@ class ZeroingNetwork(Network):
             return 0.0
         return min(2.0, 1.0 / self.integral) if self.integral else 2.0
 
-    def settings(self) -> dict[str, Any]:
-        """Return name and parameters, as values that JSON can hold."""
-        return {**settings_of(self), "activation": settings_of(self.activation)}
-
 
 @dataclass(frozen=True, kw_only=True)
 class GradientNetwork(ZeroingNetwork):
@@ -163,23 +157,21 @@ class GradientNetwork(ZeroingNetwork):
         Steps of explicit Euler are stable below 2 / ||W||^2, if the activation is linear. Over all
         active sets of the projected form, W has the rows of the whole KKT matrix or the identity's.
         """
-        system = KktSystem(qp, self.form)
 
         def rates(state: Vector) -> Vector:
-            error, _ = system.evaluate(state)
-            result: Vector = -system.matrix.T @ self.activation(error)
+            error, _, matrix = evaluate(qp, self.form, state)
+            result: Vector = -matrix.T @ self.activation(error)
             return result
 
         def jacobian(state: Vector) -> Matrix:
-            system.evaluate(state)
-            result: Matrix = -system.matrix.T @ system.matrix
-            return result
+            matrix = evaluate(qp, self.form, state).matrix
+            return -matrix.T @ matrix
 
         def step(state: Vector | None) -> float:
             if state is None:
                 return 2.0 / (float(np.linalg.norm(variational(qp)[0], 2)) ** 2 + 1.0)
-            system.evaluate(state)
-            return 2.0 / max(float(np.linalg.norm(system.matrix, 2)) ** 2, 1.0)
+            matrix = evaluate(qp, self.form, state).matrix
+            return 2.0 / max(float(np.linalg.norm(matrix, 2)) ** 2, 1.0)
 
         # W is constant on an active set of the projected form.
         exact = self.form == "projected" and isinstance(self.activation, Linear)

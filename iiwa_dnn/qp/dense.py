@@ -1,6 +1,7 @@
 """Compiled linear algebra on small dense matrices.
 
-Of a symmetric matrix the lower half is read and written.
+Of a symmetric matrix the upper half is read and written, along its rows: their entries are
+neighbours, and sums that do not wait for each other need no particular order.
 """
 
 import numpy as np
@@ -14,94 +15,48 @@ matrix that was computed in single precision has them. The answer is a KKT point
 
 
 @compiled
-def dot(a: Vector, at_a: int, b: Vector, n: int) -> float:
-    """Sum a[at_a + i] b[i] over i < n, the arrays being of any size."""
-    start = at_a
-    value = 0.0
-    for i in range(n):
-        value += a[start + i] * b[i]
-    return value
-
-
-@compiled
 def row_dot(rows: Matrix, j: int, x: Vector) -> float:
     """Compute the product of row j of a matrix (k, n) and the first n entries of x."""
-    row = j
     value = 0.0
     for k in range(rows.shape[1]):
-        value += rows[row, k] * x[k]
+        value += rows[j, k] * x[k]
     return value
 
 
 @compiled
 def add_row(out: Vector, factor: float, rows: Matrix, j: int) -> None:
     """Add a multiple of row j of a matrix (k, n) to the first n entries of `out`."""
-    row = j
     for k in range(rows.shape[1]):
-        out[k] += factor * rows[row, k]
-
-
-@compiled
-def rows_dot(rows: Matrix, x: Vector, out: Vector, start: int) -> None:
-    """Write the product of a matrix (k, n) and the first n entries of x into `out` from `start`."""
-    first = start
-    for j in range(rows.shape[0]):
-        value = 0.0
-        for k in range(rows.shape[1]):
-            value += rows[j, k] * x[k]
-        out[first + j] = value
+        out[k] += factor * rows[j, k]
 
 
 @compiled
 def add_outer(out: Matrix, factor: float, rows: Matrix, j: int) -> None:
-    """Add factor v v^T to the lower half of `out` (n, n), v being row j of a matrix (k, n)."""
-    row = j
+    """Add factor v v^T to the upper half of `out` (n, n), v being row j of a matrix (k, n)."""
     for i in range(rows.shape[1]):
-        scaled = factor * rows[row, i]
-        for k in range(i + 1):
-            out[i, k] += scaled * rows[row, k]
+        scaled = factor * rows[j, i]
+        for k in range(i, rows.shape[1]):
+            out[i, k] += scaled * rows[j, k]
 
 
 @compiled
 def cholesky_factor(K: Matrix) -> bool:
-    """Overwrite the lower half of K (n, n) by its Cholesky factor, with inverted diagonal.
+    """Overwrite the upper half of K (n, n) by R with K = R^T R, its diagonal inverted.
 
     Returns:
         False if K is not positive definite to working precision; its content is then meaningless.
     """
     size = K.shape[0]
-    for j in range(size):
-        value = 0.0
-        for k in range(j):
-            value += K[j, k] * K[j, k]
-        pivot = K[j, j] - value
-        if not pivot > 0.0:
+    for i in range(size):
+        for j in range(i):
+            factor = K[j, i]
+            for k in range(i, size):
+                K[i, k] -= factor * K[j, k]
+        if not K[i, i] > 0.0:
             return False
-        inverse = 1.0 / np.sqrt(pivot)  # a division costs many products
-        K[j, j] = inverse
-        i = j + 1
-        while i + 3 < size:  # four rows at once: fewer loads for each product
-            value = 0.0
-            second = 0.0
-            third = 0.0
-            fourth = 0.0
-            for k in range(j):
-                factor = K[j, k]
-                value += K[i, k] * factor
-                second += K[i + 1, k] * factor
-                third += K[i + 2, k] * factor
-                fourth += K[i + 3, k] * factor
-            K[i, j] = (K[i, j] - value) * inverse
-            K[i + 1, j] = (K[i + 1, j] - second) * inverse
-            K[i + 2, j] = (K[i + 2, j] - third) * inverse
-            K[i + 3, j] = (K[i + 3, j] - fourth) * inverse
-            i += 4
-        while i < size:
-            value = 0.0
-            for k in range(j):
-                value += K[i, k] * K[j, k]
-            K[i, j] = (K[i, j] - value) * inverse
-            i += 1
+        K[i, i] = 1.0 / np.sqrt(K[i, i])  # a division costs many products
+        for k in range(i + 1, size):
+            K[i, k] *= K[i, i]
     return True
 
 
@@ -110,16 +65,16 @@ def factor_solve(K: Matrix, rhs: Vector, out: Vector) -> None:
     """Solve with the factor that `cholesky_factor` left in K (n, n), into the first n of `out`."""
     size = K.shape[0]
     for i in range(size):
-        value = 0.0
-        for k in range(i):
-            value += K[i, k] * out[k]
-        out[i] = (rhs[i] - value) * K[i, i]
+        out[i] = rhs[i]
+    for i in range(size):
+        out[i] *= K[i, i]
+        for k in range(i + 1, size):
+            out[k] -= out[i] * K[i, k]
     for back in range(size):
         row = size - 1 - back
-        value = out[row] * K[row, row]
-        out[row] = value
-        for k in range(row):
-            out[k] -= value * K[row, k]
+        for k in range(row + 1, size):
+            out[row] -= K[row, k] * out[k]
+        out[row] *= K[row, row]
 
 
 @compiled
@@ -130,19 +85,11 @@ def extreme_eigenvalues(K: Matrix) -> tuple[float, float]:
     both halves of K: for seven joints one call of LAPACK costs more than all of them.
     """
     n = K.shape[0]
-    for _ in range(50):
-        off = 0.0
-        size = 0.0
-        for i in range(n):
-            size += K[i, i] * K[i, i]
-            for k in range(i):
-                off += K[i, k] * K[i, k]
-        # Second order: an off-diagonal of eps moves an eigenvalue by eps^2 over their distance.
-        if not off > 1e-26 * (size + off):
-            break
+    for _ in range(20):
         for i in range(1, n):
             for k in range(i):
-                if K[i, k] != 0.0:
+                # An entry of that size moves an eigenvalue in second order.
+                if abs(K[i, k]) > 1e-13 * (abs(K[i, i]) + abs(K[k, k])):
                     _rotate(K, i, k)
     smallest = K[0, 0]
     largest = K[0, 0]
@@ -155,25 +102,18 @@ def extreme_eigenvalues(K: Matrix) -> tuple[float, float]:
 @compiled
 def _rotate(K: Matrix, i: int, k: int) -> None:
     """Make the entries (i, k) and (k, i) of a symmetric matrix zero by a Jacobi rotation."""
-    below = K[i, k]
-    theta = 0.5 * (K[i, i] - K[k, k]) / below
-    t = 1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0))
-    if theta < 0.0:
-        t = -t
+    theta = 0.5 * (K[i, i] - K[k, k]) / K[i, k]
+    t = np.copysign(1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0)), theta)
     c = 1.0 / np.sqrt(t * t + 1.0)
     s = t * c
-    K[i, i] += t * below
-    K[k, k] -= t * below
-    K[i, k] = 0.0
-    K[k, i] = 0.0
     for j in range(K.shape[0]):
-        if j != i and j != k:
-            one = K[k, j]
-            other = K[i, j]
-            K[k, j] = c * one - s * other
-            K[j, k] = K[k, j]
-            K[i, j] = s * one + c * other
-            K[j, i] = K[i, j]
+        one = K[j, k]
+        K[j, k] = c * one - s * K[j, i]
+        K[j, i] = s * one + c * K[j, i]
+    for j in range(K.shape[0]):
+        one = K[k, j]
+        K[k, j] = c * one - s * K[i, j]
+        K[i, j] = s * one + c * K[i, j]
 
 
 @compiled
@@ -182,22 +122,18 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
 
     K (n, n) is scratch.
     """
-    size = P.shape[0]
-    scale = 0.0
+    largest = 0.0
     asymmetry = 0.0
-    for i in range(size):  # of a matrix that is positive semidefinite, the largest are here
-        scale = larger(scale, P[i, i])
-    for i in range(size):
-        for k in range(i):
-            asymmetry = larger(asymmetry, abs(P[i, k] - P[k, i]))
+    for i in range(P.shape[0]):
+        for k in range(P.shape[0]):
             K[i, k] = P[i, k]
-        K[i, i] = P[i, i] + ROUNDING * scale
-    if scale == 0.0:  # no cost matrix at all, or none that is semidefinite
-        for i in range(size):
-            for k in range(size):
-                asymmetry = larger(asymmetry, abs(P[i, k]))
-        return asymmetry == 0.0
-    return asymmetry <= ROUNDING * scale and cholesky_factor(K)
+            largest = larger(largest, abs(P[i, k]))
+            asymmetry = larger(asymmetry, abs(P[i, k] - P[k, i]))
+    if largest == 0.0:
+        return True
+    for i in range(P.shape[0]):
+        K[i, i] += ROUNDING * largest
+    return asymmetry <= ROUNDING * largest and cholesky_factor(K)
 
 
 @compiled

@@ -16,7 +16,7 @@ from iiwa_dnn.networks.activations import (
     PredefinedTime,
     SignBiPower,
 )
-from iiwa_dnn.networks.kkt_system import KktSystem
+from iiwa_dnn.networks.kkt_system import evaluate, system_size
 from iiwa_dnn.networks.tracking import EULER, FIFD, TAYLOR3, TAYLOR4, TAYLOR5, TrackingSolver
 
 SETTLING = [
@@ -89,15 +89,13 @@ def test_derivatives_and_drift_by_finite_differences(form: str) -> None:
         qp.lb[0], other.lb[0] = -np.inf, -np.inf
         move = np.nan_to_num(other.data, neginf=0.0) - np.nan_to_num(qp.data, neginf=0.0)
         rate = QP.from_data(move, qp.sizes)
-        system = KktSystem(qp, form, rate)
-        state = rng.standard_normal(system.size)
-        _, drift = system.evaluate(state)
-        matrix, step = system.matrix.copy(), 1e-6
-        for i, unit in enumerate(np.eye(system.size)):
-            ahead, behind = (system.evaluate(state + s * unit)[0] for s in (step, -step))
+        state, step = rng.standard_normal(system_size(qp, form)), 1e-6
+        _, drift, matrix = evaluate(qp, form, state, rate)
+        for i, unit in enumerate(np.eye(state.size)):
+            ahead, behind = (evaluate(qp, form, state + s * unit).error for s in (step, -step))
             np.testing.assert_allclose(matrix[:, i], (ahead - behind) / (2 * step), atol=1e-5)
         ahead, behind = (
-            KktSystem(QP.from_data(qp.data + s * move, qp.sizes), form).evaluate(state)[0]
+            evaluate(QP.from_data(qp.data + s * move, qp.sizes), form, state).error
             for s in (step, -step)
         )
         np.testing.assert_allclose(drift, (ahead - behind) / (2 * step), atol=1e-5)

@@ -9,10 +9,10 @@ import numpy as np
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.base import CompiledRates, Network, enter_rates
+from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators.base import DURATION, NETWORK, SUBSTEPS, Integrator, Settled
 from iiwa_dnn.networks.projection import mark_active, stable_step
-from iiwa_dnn.qp.layout import QPViews, Sizes, Vector, check_size, qp_views
+from iiwa_dnn.qp.layout import QPViews, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import kkt_point
 
@@ -60,48 +60,10 @@ class ExplicitEuler(Integrator):
                 raise InvalidInputError("P", f"{problem}; integrate implicitly")
             count = max(1, math.ceil(duration / stable))
         step = duration / count
-        rates = flow.rates
-        if isinstance(rates, CompiledRates):
-            explicit_program(qp.data, qp.sizes, rates.address, rates.constants, state, step, count)
-        else:
+        with np.errstate(over="ignore", invalid="ignore"):  # the caller judges the state
             for _ in range(count):
-                state += step * rates(state)
+                state += step * flow.rates(state)
         return count
-
-
-@compiled
-def explicit_program(
-    data: Vector,
-    sizes: Sizes,
-    rates: int,
-    constants: Vector,
-    state: Vector,
-    step: float,
-    count: int,
-) -> None:
-    """Take explicit Euler steps for a program's flat array, `QP.data` (size,).
-
-    The constants (k,) and the state (size,), advanced in place, are those of `explicit_euler`.
-    """
-    n, m, p = sizes
-    qp = qp_views(data, n, m, p)
-    explicit_euler(qp, rates, constants, state, step, count)
-
-
-@compiled
-def explicit_euler(
-    qp: QPViews, rates: int, constants: Vector, state: Vector, step: float, count: int
-) -> None:
-    """Advance the state in place by `count` explicit Euler steps of one length [rho].
-
-    `rates` is the address of the network's compiled function, which takes the state (size,), and
-    `constants` (k,) are its own.
-    """
-    values = np.empty(state.size)
-    for _ in range(count):
-        enter_rates(rates, qp, constants, state, values)
-        for i in range(state.size):
-            state[i] += step * values[i]
 
 
 @compiled
@@ -116,15 +78,19 @@ def follow(qp: QPViews, rates: int, constants: Vector, state: Vector, point: Vec
     duration = constants[DURATION]
     count = int(constants[SUBSTEPS])
     own = constants[NETWORK:]
+    values = np.empty(state.size)
     if count == 0:
-        values = np.empty(state.size)
-        active = np.empty(qp.h.size + 2 * qp.q.size)
+        active = np.empty(state.size - qp.q.size)
         enter_rates(rates, qp, own, state, values)
-        mark_active(state, values, active)
+        mark_active(qp, state, values, active)
         stable = SAFETY * stable_step(qp, active)
         if not stable > 0.0:
             return 0, 0.0, np.inf, np.inf, np.inf
         count = max(1, int(np.ceil(duration / stable)))
-    explicit_euler(qp, rates, own, state, duration / count, count)
+    step = duration / count
+    for _ in range(count):
+        enter_rates(rates, qp, own, state, values)
+        for i in range(state.size):
+            state[i] += step * values[i]
     primal, dual, gap = kkt_point(qp, state, point)
     return count, duration, primal, dual, gap

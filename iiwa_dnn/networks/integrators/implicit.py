@@ -38,9 +38,8 @@ from iiwa_dnn.networks.integrators.base import (
     enter_answer,
 )
 from iiwa_dnn.networks.integrators.implicit_steps import (
+    Condensed,
     backward_euler,
-    condensed,
-    condensed_size,
     copy_into,
     linear_step,
 )
@@ -123,7 +122,10 @@ def advance_implicit(
         Linear systems solved, or -1 if one could not be.
     """
     qp = qp_views(data, n, m, p)
-    matrix = condensed(qp, np.empty(condensed_size(qp)))
+    rows = s.size - n
+    matrix = Condensed(
+        np.empty(rows), np.zeros(p + m), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
+    )
     new = np.empty(s.size)
     total = 0
     for _ in range(count):
@@ -147,11 +149,17 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     """
     tol = constants[TOLERANCE]
     budget = int(constants[BUDGET])
-    work = np.empty(3 * s.size + condensed_size(qp))  # several take as long as some rows
-    now = work[: s.size]
-    then = work[s.size : 2 * s.size]
-    new = work[2 * s.size : 3 * s.size]
-    matrix = condensed(qp, work[3 * s.size :])
+    n = qp.q.size
+    rows = s.size - n
+    active = np.empty(rows)
+    counted = np.zeros(rows - 2 * n)
+    gram = np.zeros((n, n))
+    K = np.empty((n, n))
+    values = np.empty(rows)
+    matrix = Condensed(active, counted, gram, K, values)
+    now = np.empty(s.size)
+    then = np.empty(s.size)
+    new = np.empty(s.size)
     step = SHORTEST
     systems = 0
     time = 0.0
@@ -167,13 +175,13 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
             primal, dual, gap = kkt_point(qp, s, point)
             if within(primal, dual, gap, tol):
                 return systems, time, primal, dual, gap
-        mark_active(s, now, matrix.active)
+        mark_active(qp, s, now, matrix.active)
         systems += 1
         if linear_step(qp, s, now, LONGEST, matrix, new):
             new_rate = field(qp, new, then)
             if new_rate < 0.5 * rate:
                 copy_into(s, new)
-                now, then = then, now
+                copy_into(now, then)
                 rate = new_rate
                 time += LONGEST
                 continue

@@ -34,14 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled, inlined
-from iiwa_dnn.qp.dense import (
-    add_outer,
-    add_row,
-    cholesky_factor,
-    factor_solve,
-    row_dot,
-    rows_dot,
-)
+from iiwa_dnn.qp.dense import add_outer, add_row, cholesky_factor, factor_solve, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
 
 SLOPE = 0.3
@@ -49,14 +42,14 @@ SLOPE = 0.3
 
 
 class Condensed(NamedTuple):
-    """Condensed matrix of a program, and scratch of the steps that solve with it.
+    """Condensed matrix of a program with R = p + m + 2n rows [A; G; I; -I], and scratch.
 
     Attributes:
-        active: 1 for each inequality of [G; I; -I] that is active, else 0, (m + 2n,).
-        counted: 1 for each row of G whose product is in `gram`, (m,).
-        gram: A^T A and the products of the counted rows, (n, n).
-        K: Lower half of the condensed matrix, or its factor, (n, n).
-        values: Values of all rows [A; G; I; -I], (p + m + 2n,).
+        active: 1 for each row that is active, as equalities are, else 0, (R,).
+        counted: 1 for each row of [A; G] whose product is in `gram`, (p + m,).
+        gram: Products of the counted rows, (n, n).
+        K: Upper half of the condensed matrix, or its factor, (n, n).
+        values: Values of all rows, (R,).
     """
 
     active: Vector
@@ -67,56 +60,27 @@ class Condensed(NamedTuple):
 
 
 @compiled
-def condensed_size(qp: QPViews) -> int:
-    """Count the numbers of a `Condensed`."""
+def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
+    """Write the condensed matrix of the active set for a step [rho] into `matrix.K`."""
     n = qp.q.size
-    m = qp.h.size
-    return 2 * n * n + 2 * m + 2 * n + qp.b.size + m + 2 * n
-
-
-@inlined
-def condensed(qp: QPViews, work: Vector) -> Condensed:
-    """Lay the arrays of a program out in `work` (condensed_size,), with A^T A in `gram`."""
-    n = qp.q.size
-    m = qp.h.size
-    at_K = n * n
-    at_counted = 2 * n * n
-    at_active = at_counted + m
-    at_values = at_active + m + 2 * n
-    matrix = Condensed(
-        work[at_active:at_values],
-        work[at_counted:at_active],
-        work[:at_K].reshape(n, n),
-        work[at_K:at_counted].reshape(n, n),
-        work[at_values:],
-    )
-    for k in range(at_K):
-        work[k] = 0.0
-    for j in range(m):
-        matrix.counted[j] = 0.0
-    for j in range(qp.b.size):
-        add_outer(matrix.gram, 1.0, qp.A, j)
-    return matrix
+    first = matrix.counted.size
+    _count_rows(matrix, qp.A, 0)
+    _count_rows(matrix, qp.G, qp.b.size)
+    for i in range(n):
+        for k in range(i, n):
+            matrix.K[i, k] = qp.P[i, k] + step * matrix.gram[i, k]
+        bounds = matrix.active[first + i] + matrix.active[first + n + i]
+        matrix.K[i, i] += 1.0 / step + step * bounds
 
 
 @compiled
-def build_condensed(qp: QPViews, step: float, matrix: Condensed) -> None:
-    """Write the condensed matrix of the active set for a step [rho] into `matrix.K`.
-
-    Between two steps few rows become active or cease to be, so `gram` is kept from call to call.
-    """
-    n = qp.q.size
-    m = qp.h.size
-    for j in range(m):
-        if matrix.active[j] != matrix.counted[j]:
-            add_outer(matrix.gram, matrix.active[j] - matrix.counted[j], qp.G, j)
-            matrix.counted[j] = matrix.active[j]
-    for i in range(n):
-        for k in range(i + 1):
-            matrix.K[i, k] = qp.P[i, k] + step * matrix.gram[i, k]
-    for i in range(n):
-        bounds = matrix.active[m + i] + matrix.active[m + n + i]
-        matrix.K[i, i] += 1.0 / step + step * bounds
+def _count_rows(matrix: Condensed, rows: Matrix, first: int) -> None:
+    """Add active rows (k, n) to `gram`, and take off others: few change between two steps."""
+    for j in range(rows.shape[0]):
+        change = matrix.active[first + j] - matrix.counted[first + j]
+        if change != 0.0:
+            add_outer(matrix.gram, change, rows, j)
+            matrix.counted[first + j] += change
 
 
 @inlined
@@ -131,7 +95,6 @@ def linear_step(
         False if K is not positive definite to working precision; `new` is then meaningless.
     """
     n = qp.q.size
-    p = qp.b.size
     active = matrix.active
     values = matrix.values
     build_condensed(qp, step, matrix)
@@ -141,17 +104,13 @@ def linear_step(
     decay = step / (1.0 + step)
     for i in range(n):
         values[i] = rates[i]
-    for j in range(p):
-        new[n + j] = step * rates[n + j]
     for k in range(active.size):
-        new[n + p + k] = rates[n + p + k] * (step if active[k] != 0.0 else decay)
+        new[n + k] = rates[n + k] * (step if active[k] != 0.0 else decay)
     add_transposed(qp, -1.0, new, values)
     factor_solve(matrix.K, values, new)
     rows_times(qp, new, values)
-    for j in range(p):
-        new[n + j] += step * values[j]
     for k in range(active.size):
-        new[n + p + k] += step * active[k] * values[p + k]
+        new[n + k] += step * active[k] * values[k]
     for k in range(s.size):
         new[k] += s[k]
     return True
@@ -165,7 +124,8 @@ def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
     first = p + qp.h.size
     for j in range(p):
         values[j] = row_dot(qp.A, j, x)
-    rows_dot(qp.G, x, values, p)
+    for j in range(qp.h.size):
+        values[p + j] = row_dot(qp.G, j, x)
     for i in range(n):
         values[first + i] = x[i]
         values[first + n + i] = -x[i]
@@ -273,25 +233,19 @@ def _multipliers(
     n = qp.q.size
     p = qp.b.size
     keep = 1.0 / (1.0 + step)
-    for j in range(p):
-        new[n + j] = s[n + j] + step * slacks[j]
-    shift = n + p
-    rows = p
     for k in range(active.size):  # no branch: several at once
-        old = s[shift + k]
-        moving = old + step * slacks[rows + k]
-        kept = old * keep
-        is_active = moving > kept
+        moving = s[n + k] + step * slacks[k]
+        kept = s[n + k] * keep
+        is_active = k < p or moving > kept
         active[k] = 1.0 if is_active else 0.0
-        new[shift + k] = moving if is_active else kept
+        new[n + k] = moving if is_active else kept
 
 
 @compiled
 def _gradient(qp: QPViews, s: Vector, step: float, new: Vector, gradient: Vector) -> float:
     """Write the gradient of the step's convex function; returns its largest entry."""
-    rows_dot(qp.P, new, gradient, 0)
     for i in range(qp.q.size):
-        gradient[i] += qp.q[i] + (new[i] - s[i]) / step
+        gradient[i] = row_dot(qp.P, i, new) + qp.q[i] + (new[i] - s[i]) / step
     add_transposed(qp, 1.0, new, gradient)
     size = 0.0
     for i in range(qp.q.size):
@@ -352,12 +306,10 @@ def _slope(
     keep = 1.0 / (1.0 + step)
     slope = 0.0
     second = 0.0
-    shift = n
     for k in range(p, slacks.size):
-        old = s[shift + k]
         rate = change[k]
-        moving = old + step * (slacks[k] + length * rate)
-        kept = old * keep
+        moving = s[n + k] + step * (slacks[k] + length * rate)
+        kept = s[n + k] * keep
         is_active = moving > kept  # no branch: several rows at once
         slope += (moving if is_active else kept) * rate
         second += step * rate * rate if is_active else 0.0
