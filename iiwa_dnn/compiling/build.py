@@ -17,7 +17,7 @@ from pathlib import Path
 from .binding import extension
 from .translator import Translator
 
-FLAGS = ("-std=gnu11", "-O2", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC")
+FLAGS = ("-std=gnu11", "-O3", "-ffp-contract=off", "-fno-strict-aliasing", "-shared", "-fPIC")
 """Without contraction a result is that of Python's own arithmetic, to the last bit."""
 
 
