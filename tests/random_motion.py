@@ -161,7 +161,8 @@ def wander(
     )
     coals = np.array([judge.distance(q, t) for q, t in zip(record.q, record.t, strict=True)])
     own, _ = scene.nearest(record.q, record.t)
-    lipschitz = float(scene.speeds.max())
+    speeds = [obstacle.speed for obstacle in avoidance.obstacles]
+    lipschitz = 1.5 * float(robot.dq_max.sum()) + max(speeds)  # no link is 1.5 m from an axis
     nearest = np.argsort(np.minimum(coals[1:], coals[:-1]))[:sampled]
     between = [
         judge.between(record.q[k : k + 2], record.t[k : k + 2], 0.02 - SLACK, lipschitz)

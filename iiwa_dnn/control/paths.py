@@ -15,7 +15,7 @@ from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
 from iiwa_dnn.schemes.collisions import unwatched_by
-from iiwa_dnn.schemes.motion_limits import largest_gain
+from iiwa_dnn.schemes.limits import largest_gain
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
 from iiwa_dnn.schemes.tasks import GainTask

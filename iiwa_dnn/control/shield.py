@@ -40,7 +40,7 @@ from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
 from iiwa_dnn.schemes.limits import JointLimits
-from iiwa_dnn.schemes.motion_limits import (
+from iiwa_dnn.schemes.limits import (
     AccelerationLimits,
     JerkLimits,
     MotionLimits,

@@ -33,7 +33,7 @@ from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.schemes.limit_names import LimitNames
-from iiwa_dnn.schemes.motion_limits import check_ranges
+from iiwa_dnn.schemes.limits import check_ranges
 from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
 
 FEASIBLE_BUDGET = 60.0

@@ -36,9 +36,16 @@ from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.control.relaxed import Yielding
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
-from iiwa_dnn.schemes.distances import difference, dot
+from iiwa_dnn.references.rotations import combined, dot
+from iiwa_dnn.schemes.distances import (
+    SECOND,
+    SPEED,
+    contact_of,
+    ends_of,
+    place_bodies,
+    scene_views,
+)
 from iiwa_dnn.schemes.motion_bounds import second_order
-from iiwa_dnn.schemes.scene import contact_of, ends_of, pair_of, place_bodies, scene_views
 from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6
@@ -347,24 +354,23 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
         travel[i] = dt * (abs(motion.first[i]) * of_first + abs(motion.bend[i]) * of_bend)
     rates = np.empty(n)
     for k in range(len(scene.pairs)):
-        pair = pair_of(scene.pairs, k)
-        contact = contact_of(scene, pair, placed)
-        left = contact.distance - pair.obstacle_speed * dt * motion.periods
+        contact = contact_of(scene, k, placed)
+        left = contact.distance - scene.pairs[k, SPEED] * dt * motion.periods
         way = 0.0
         for i in range(n):
             way += abs(scene.radii[k, i]) * travel[i]
-        if left - way >= scene.damper.least:
+        if left - way >= scene.least:
             continue
         normal = contact.normal
         change = np.inf
         lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
-        a, b = ends_of(scene, placed, int(pair.second))
+        a, b = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
         for end in (a, b):
             _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
             # No end is below the nearest point, but rounding would hold an arm that is too near.
-            height = max(0.0, dot(difference(end, contact.second), normal))
+            height = max(0.0, dot(combined(1.0, end, -1.0, contact.second), normal))
             change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
-        if left + change < min(scene.damper.least, left):
+        if left + change < min(scene.least, left):
             return False
     return True
 

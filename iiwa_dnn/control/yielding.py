@@ -45,7 +45,7 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import QPViews, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
-from iiwa_dnn.schemes.motion_limits import braking
+from iiwa_dnn.schemes.limits import braking
 from iiwa_dnn.schemes.program import ProgramArrays
 
 ATTEMPTS = 13

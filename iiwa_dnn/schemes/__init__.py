@@ -24,10 +24,10 @@ from iiwa_dnn.schemes.joint_tasks import (
     JointCouplingTask as JointCouplingTask,
     PostureTask as PostureTask,
 )
-from iiwa_dnn.schemes.limits import JointLimits as JointLimits
-from iiwa_dnn.schemes.motion_limits import (
+from iiwa_dnn.schemes.limits import (
     AccelerationLimits as AccelerationLimits,
     JerkLimits as JerkLimits,
+    JointLimits as JointLimits,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.step import Step as Step

@@ -19,8 +19,8 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
+from functools import lru_cache, partial
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -32,18 +32,10 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
+from iiwa_dnn.schemes.distances import SPEED, Contact, contact_of, place_bodies, scene_views
 from iiwa_dnn.schemes.motion_bounds import second_order
-from iiwa_dnn.schemes.parts import Limit
-from iiwa_dnn.schemes.scene import (
-    Contact,
-    Damper,
-    Scene,
-    contact_of,
-    make_scene,
-    pair_of,
-    place_bodies,
-    scene_views,
-)
+from iiwa_dnn.schemes.parts import Checks, Limit
+from iiwa_dnn.schemes.scene import Scene, make_scene
 from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 
 
@@ -64,16 +56,15 @@ def collision_rows(
     slacks = np.empty(pairs)
     placed = np.empty((len(scene.bodies), 12))
     place_bodies(scene, step.placements, placed)
-    gain = min(scene.damper.gain, step.rate)
+    gain = min(scene.gain, step.rate)
     travel = np.empty(dof)
     for j in range(dof):
         travel[j] = abs(step.last[j]) / step.rate
     for k in range(pairs):
-        pair = pair_of(scene.pairs, k)
-        contact = contact_of(scene, pair, placed)
+        contact = contact_of(scene, k, placed)
         fastest = _write_gradient(scene.moves, contact, step.jacobian, scene.dq_max, k, gradients)
-        left = contact.distance - scene.damper.least
-        limits[k] = gain * left - pair.obstacle_speed
+        left = contact.distance - scene.least
+        limits[k] = gain * left - scene.pairs[k, SPEED]
         slacks[k] = limits[k] - fastest
         if slacks[k] < 0.0:
             eps = second_order(scene.moves, scene.radii, k, travel)
@@ -118,6 +109,17 @@ def _write_gradient(
     return fastest
 
 
+def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
+    """Return obstacles, or the one that is given alone, as a tuple; refuse any other value."""
+    one = isinstance(value, Obstacle) or not isinstance(value, Iterable)
+    obstacles: tuple[Any, ...] = (value,) if one else tuple(value)
+    for number, obstacle in enumerate(obstacles, 1):
+        if not isinstance(obstacle, Obstacle):
+            problem = f"number {number} must be a Sphere, Capsule, Box or HalfSpace"
+            raise InvalidInputError(argument, f"{problem}, not {obstacle!r}", obstacle)
+    return obstacles
+
+
 @dataclass(frozen=True, eq=False)
 class CollisionAvoidance(Limit):
     """Rows that keep the links away from obstacles and from each other.
@@ -136,23 +138,17 @@ class CollisionAvoidance(Limit):
     """
 
     kernel = staticmethod(collision_rows)
+    _checks: ClassVar[Checks] = {
+        "obstacles": tuple_of_obstacles,
+        "distance": checks.positive,
+        "gain": checks.positive,
+        "nearest": partial(checks.integer, least=1),
+    }
     obstacles: Sequence[Obstacle] = ()
     self_collision: bool = True
     distance: float = 0.02
     gain: float = 20.0
     nearest: int = 24
-
-    def __post_init__(self) -> None:
-        one = isinstance(self.obstacles, Obstacle) or not isinstance(self.obstacles, Iterable)
-        obstacles: tuple[object, ...] = (self.obstacles,) if one else tuple(self.obstacles)
-        for number, obstacle in enumerate(obstacles, 1):
-            if not isinstance(obstacle, Obstacle):
-                problem = f"number {number} must be a Sphere, Capsule, Box or HalfSpace"
-                raise InvalidInputError("obstacles", f"{problem}, not {obstacle!r}", obstacle)
-        self._set(obstacles=obstacles)
-        checks.positive("distance", self.distance)
-        checks.positive("gain", self.gain)
-        checks.integer("nearest", self.nearest, 1)
 
     @classmethod
     def from_toml(cls, path: str | os.PathLike[str]) -> CollisionAvoidance:
@@ -172,8 +168,7 @@ class CollisionAvoidance(Limit):
     @lru_cache(maxsize=8)  # noqa: B019  few parts, few robots
     def scene(self, robot: Robot) -> Scene:
         """Return bodies and pairs for a robot; raises what `make_scene` does."""
-        damper = Damper(self.distance, self.gain)
-        return make_scene(robot, self.obstacles, self.self_collision, damper)
+        return make_scene(robot, self.obstacles, self.self_collision, self.distance, self.gain)
 
     def row_count(self, robot: Robot) -> int:
         """Return the number of rows: that of the pairs, at most `nearest`."""

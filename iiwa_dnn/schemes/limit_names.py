@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.schemes.motion_limits import SHARE, MotionLimits, approach
+from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach
 from iiwa_dnn.schemes.program import StepProgram
 
 Signs = NDArray[Any]

@@ -1,17 +1,77 @@
-"""Limits: bounds and inequality rows that no policy ever relaxes."""
+r"""Limits of the joints: bounds on their velocities that no policy ever relaxes.
+
+With acceleration or jerk limits, a bound comes from the last commands and a way to stop.
+
+A command v_k moves a joint to q_{k+1} = q_k + dt v_k, with acceleration a_k = (v_k - v_{k-1}) / dt
+and jerk (a_k - a_{k-1}) / dt. The bounds of v_k hold the commands after which the joint can still
+come to rest within all of its limits, one step after the other, so that a next command exists
+whenever one did: they are never empty.
+
+**Velocity.** After a_k > 0 the velocity grows on, by a_k - J dt, a_k - 2 J dt, ... times dt, until
+the acceleration is gone; v_k has to leave room for that sum (`approach`). With the acceleration
+limit alone, the same sum is the way that a braking joint still goes, and leaves room to the
+position limit: the exact discrete viability kernel.
+
+**Position, with a jerk limit.** The positions are the control points of a cubic B-spline whose
+third derivative is the jerk, constant in each step:
+
+.. math::
+
+    \tilde q_k = q_k + \tfrac16 dt^2 a_k, \qquad \tilde v_k = \tfrac12 (v_k + v_{k-1})
+
+It comes to rest at :math:`\tilde q_k + \Delta(\tilde v_k, a_k)` where the jerk is -J, the
+acceleration held at -A', and the jerk J (`stopping_distance`; mirrored where the joint is about to
+turn round), and its highest point on the way there, `highest`, grows with v_k: the upper bound is
+its root. In one step of the true limits that point can always be kept, since -J over a whole step
+brakes no less: for that, A' = A - J' dt leaves room for one step of jerk, and J' is at most
+A / (8 dt) and dq_max / (8 dt^2). Samples are above that way by `MARGIN` at most, which is kept free
+at either end. A joint needs a range to turn round in, with J' too (`check_ranges`).
+
+**Ramps.** Where velocity limits shrink towards position limits (`Robot.ramps`), a command leaves
+room to brake at a deceleration B below that of the ramp, D, to a point before the position limit
+(`braking_room`). It can, since it may brake harder.
+
+Sources: A. Del Prete, "Joint position and velocity bounds in discrete-time acceleration/torque
+control of robot arms", IEEE Robotics and Automation Letters 3(1), 2018, for the second order. The
+third order is derived in docs/theory.md.
+"""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.step import StepViews
+
+MARGIN = 0.2
+"""Margin that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
+
+ROUNDING = 2e-14
+"""Room for what positions are rounded by while a joint brakes at constant deceleration [rad]."""
+
+EASE = 0.5
+"""Share of its way to a position limit that a joint all but at rest may cover in a period."""
+
+REST = 0.25
+"""Where a joint that is pressed against a limit comes to rest, like `MARGIN`, and just inside."""
+
+TANGENT = 1.0
+"""Speed at which the parabola of braking touches a ramp [rad/s]."""
+
+SHARE = 8.0
+"""Steps of jerk at least that braking takes to its full deceleration."""
+
+HALVINGS = 20
+"""Halvings of the range of a command that is to end at a position limit."""
 
 
 @compiled
@@ -76,3 +136,369 @@ class JointLimits(Limit):
     def constants(self, robot: Robot) -> Vector:
         """Return the gain and the first rows of `Robot.limits`, and `Robot.ramps`, (1 + 5 n,)."""
         return np.concatenate([[self.gain], robot.limits[:3].ravel(), robot.ramps.ravel()])
+
+
+def positive_rates(argument: str, value: ArrayLike) -> float | tuple[float, ...]:
+    """Return one number above 0, or several as a tuple; refuse any other value but inf."""
+    given = np.ravel(value).tolist()
+    rates = [rate if rate == np.inf else checks.positive(argument, rate) for rate in given]
+    return tuple(rates) if np.ndim(value) else rates[0]
+
+
+@dataclass(frozen=True)
+class _RateLimits(Limit):
+    """A limit of each joint on a derivative of its velocity.
+
+    Attributes:
+        limit: The limit, one number or one a joint, above 0; None takes the robot's.
+    """
+
+    _checks: ClassVar[Checks] = {"limit": positive_rates}
+    limit: ArrayLike | None = None
+    quantity: ClassVar[str]
+    row: ClassVar[int]
+
+    def of(self, robot: Robot) -> Vector:
+        """Return the limit of each joint, (n,).
+
+        Raises:
+            InvalidInputError: It is not one number or n, not above 0, or None and the robot has
+                none.
+        """
+        given: dict[str, Any] = {self.quantity: self.limit}
+        values: Vector = robot.with_limits(**given).limits[self.row]
+        if self.limit is None and np.isinf(values).all():
+            problem = f"is needed: robot {robot.name} has no limit of its own"
+            raise InvalidInputError(self.quantity, problem)
+        return values
+
+
+@dataclass(frozen=True)
+class AccelerationLimits(_RateLimits):
+    """Bounds on the change of the joint velocities from one command to the next.
+
+    A joint can always stop before its position limit. Where a row of a task or another limit
+    conflicts with the bounds, the task yields (`iiwa_dnn.control.policies`), the bounds never do.
+
+    Attributes:
+        limit: Largest acceleration [rad/s^2], one number or (n,); None takes `Robot.ddq_max`.
+    """
+
+    quantity = "acceleration"
+    row = 3
+
+
+@dataclass(frozen=True)
+class JerkLimits(_RateLimits):
+    """Bounds on the change of the joint accelerations from one command to the next.
+
+    Attributes:
+        limit: Largest jerk [rad/s^3], one number or (n,); None takes `Robot.dddq_max`.
+    """
+
+    quantity = "jerk"
+    row = 4
+
+
+@compiled
+def motion_limits(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Put the bounds of the joints inside those of `MotionLimits`, whose constants these are.
+
+    Bounds of other limits give way where they contradict: the position and velocity limits are
+    kept by these bounds too. Without a control period there are none.
+    """
+    if not step.rate < np.inf:
+        return
+    limits = constants.reshape(6, step.q.size)
+    dt = 1.0 / step.rate
+    for i in range(step.q.size):
+        above = limits[1, i] - step.q[i]
+        below = step.q[i] - limits[0, i]
+        rates = (limits[2, i], limits[3, i], limits[4, i], limits[5, i])
+        lower, upper = joint_bounds(step.last[i], step.before[i], above, below, rates, dt)
+        lb[i] = min(max(lb[i], lower), upper)
+        ub[i] = min(max(ub[i], lower), upper)
+
+
+@dataclass(frozen=True)
+class MotionLimits(Limit):
+    """All acceleration and jerk limits of a scheme, as the one block that is compiled.
+
+    Attributes:
+        limits: The scheme's `AccelerationLimits` and `JerkLimits`; the tightest of each counts.
+    """
+
+    kernel = staticmethod(motion_limits)
+    limits: tuple[_RateLimits, ...] = ()
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return position, velocity, acceleration and jerk limits, and decelerations, (6 n,).
+
+        The positions are those at which a joint that brakes at the deceleration has to rest.
+
+        Raises:
+            InvalidInputError: A limit does not fit the robot, or a joint's range is too short to
+                turn round in.
+        """
+        rates = np.full((2, robot.dof), np.inf)
+        for limit in self.limits:
+            row = rates[limit.row - 3]
+            np.minimum(row, limit.of(robot), out=row)
+        braking, room = braking_room(robot.ramps, rates[0])
+        lower, upper, fastest = robot.limits[:3]
+        rows = [lower + room, upper - room, fastest, *rates, braking]
+        constants: Vector = np.concatenate(rows)
+        check_ranges(constants, np.inf)
+        return constants
+
+
+def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
+    r"""Compute the deceleration and the distance before a position limit that keep a ramp.
+
+    A joint that rests at the distance K before the limit, from the velocity v at the deceleration
+    B, has the distance :math:`K + v^2 / (2 B)` from it. The ramp asks for
+    :math:`(v + o)^2 / (2 D)`, which is at most that for every v where
+    :math:`K = o^2 / (2 (D - B))`.
+
+    Args:
+        ramps: `Robot.ramps`: offset o [rad/s] and deceleration D [rad/s^2], (2, n).
+        acceleration: Largest acceleration [rad/s^2], (n,).
+
+    Returns:
+        B [rad/s^2], (n,); it is the ramp's tangent at `TANGENT` if the acceleration allows that.
+        K [rad], (n,).
+    """
+    offset, deceleration = ramps
+    has_ramp = deceleration < np.inf
+    tangent = np.where(has_ramp, deceleration, 0.0) * TANGENT / (offset + TANGENT)
+    braking = np.where(has_ramp, np.minimum(acceleration, tangent), acceleration)
+    room = np.zeros(braking.size)
+    spare = deceleration[has_ramp] - braking[has_ramp]
+    # Without an offset the ramp is a parabola itself.
+    room[has_ramp] = offset[has_ramp] ** 2 / np.maximum(2.0 * spare, np.finfo(float).tiny)
+    return braking, room
+
+
+def check_ranges(constants: Vector, rate: float) -> None:
+    """Raise InvalidInputError if a joint's range is too short to turn round in.
+
+    Args:
+        constants: `MotionLimits.constants`, (6 n,).
+        rate: Control periods a second [1/s]; inf for a jerk limit that braking may use in full.
+    """
+    lower, upper, fastest, _, jerk, braking = constants.reshape(6, -1)
+    usable = np.minimum(jerk, rate * np.minimum(braking, rate * fastest) / SHARE)
+    steepest = np.minimum(braking, np.sqrt(2.0 * usable * fastest))
+    short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
+    if short.any():
+        i = int(np.flatnonzero(short)[0])
+        problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range"
+        if rate < np.inf:
+            problem += f", and more cannot be used at {1.0 / rate:g} s a step"
+        raise InvalidInputError("jerk", problem, jerk)
+
+
+def largest_gain(constants: Vector, rate: float) -> float:
+    """Compute the feedback gain up to which a loop with these limits is stable [1/s].
+
+    It is one over the loop's delay: a period, and the mean time that an acceleration takes to turn
+    from one limit to the other (docs/limits.md).
+
+    Args:
+        constants: `MotionLimits.constants`, (6 n,).
+        rate: Control periods a second [1/s].
+    """
+    _, _, fastest, acceleration, jerk, _ = constants.reshape(6, -1)
+    with np.errstate(invalid="ignore"):  # a joint without limits
+        delay = np.fmin(acceleration / jerk, np.sqrt(fastest / jerk))
+    return float(1.0 / (delay.max() + 1.0 / rate))
+
+
+def merged(limits: Sequence[Limit]) -> list[Limit]:
+    """Return the limits with those on acceleration and jerk as one block, the last."""
+    rates = tuple(limit for limit in limits if isinstance(limit, _RateLimits))
+    others = [limit for limit in limits if not isinstance(limit, _RateLimits)]
+    return [*others, MotionLimits(rates)] if rates else others
+
+
+@compiled
+def joint_bounds(
+    last: float,
+    before: float,
+    above: float,
+    below: float,
+    rates: tuple[float, float, float, float],
+    dt: float,
+) -> tuple[float, float]:
+    """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
+
+    Jerk and acceleration are within their limits at both, whatever the state is.
+
+    Args:
+        last: Last command [rad/s].
+        before: Command before it [rad/s].
+        above: Distance to the upper position limit [rad].
+        below: Distance to the lower position limit [rad].
+        rates: Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3], inf for none;
+            and the deceleration for which there is room before the position limits [rad/s^2].
+        dt: Control period [s].
+    """
+    _, accel, jerk, _ = rates
+    if jerk < np.inf:
+        lower, upper = _jerk_bounds(last, before, above, below, rates, dt)
+    elif accel < np.inf:
+        lower, upper = _acceleration_bounds(last, above, below, rates, dt)
+    else:
+        return -np.inf, np.inf
+    if lower <= upper:
+        return lower, upper
+    # By rounding, or at a position that no command led to: the way back into the range may take
+    # longer, but not end beyond its other side.
+    command = 0.5 * (lower + upper)
+    if above < 0.0:
+        command = lower
+    elif below < 0.0:
+        command = upper
+    return command, command
+
+
+@compiled
+def _acceleration_bounds(
+    last: float, above: float, below: float, rates: tuple[float, float, float, float], dt: float
+) -> tuple[float, float]:
+    """Compute `joint_bounds` where no jerk is limited."""
+    fastest, accel, _, deceleration = rates
+    first = last - accel * dt
+    final = last + accel * dt
+    unit = deceleration * dt
+    above -= min(max(above, 0.0), ROUNDING)
+    below -= min(max(below, 0.0), ROUNDING)
+    # Outside of the range the way back is no quicker than the velocity limit.
+    upper = min(max(unit * approach(above / (unit * dt)), -fastest), fastest)
+    lower = min(max(-unit * approach(below / (unit * dt)), -fastest), fastest)
+    return min(max(lower, first), final), min(max(upper, first), final)
+
+
+@compiled
+def _jerk_bounds(
+    last: float,
+    before: float,
+    above: float,
+    below: float,
+    rates: tuple[float, float, float, float],
+    dt: float,
+) -> tuple[float, float]:
+    """Compute `joint_bounds` where the jerk is limited."""
+    fastest, accel, jerk, deceleration = rates
+    # Jerk before acceleration: an acceleration beyond its limit is taken back as jerk allows.
+    middle = 2.0 * last - before
+    change = jerk * dt * dt
+    first = min(max(last - accel * dt, middle - change), middle + change)
+    final = min(max(last + accel * dt, middle - change), middle + change)
+    jerk = min(jerk, min(deceleration / dt, fastest / (dt * dt)) / SHARE)
+    unit = jerk * dt * dt
+    lb = min(max(last - unit * approach((last + fastest) / unit), first), final)
+    ub = min(max(last + unit * approach((fastest - last) / unit), first), final)
+    if lb > ub:
+        lb = 0.5 * (lb + ub)
+        ub = lb
+    margin = MARGIN * unit * dt
+    limit = deceleration - jerk * dt
+    upper = _ceiling(lb, ub, above - margin, last, dt, (jerk, limit))
+    lower = -_ceiling(-ub, -lb, below - margin, -last, dt, (jerk, limit))
+    if lower < upper and max(abs(last), abs(last - before)) < unit:
+        # Held at that bound, a joint at its margin would swing by it, 2 + sqrt(3) times as far in
+        # each period (the zeros of a sampled triple integrator): all but at rest, it comes to rest.
+        rest = REST * unit * dt
+        eased = max(min(upper, max(_easing(above - rest, dt), lb)), lower)
+        lower = min(max(lower, min(-_easing(below - rest, dt), ub)), eased)
+        upper = eased
+    return lower, upper
+
+
+@compiled
+def _easing(room: float, dt: float) -> float:
+    """Compute the velocity [rad/s] of the way over `room` [rad]; what is rounding is not gone."""
+    if abs(room) <= ROUNDING:
+        return 0.0
+    return EASE * room / dt
+
+
+@compiled
+def braking(last: float, lb: float, ub: float, jerk: float, dt: float) -> float:
+    """Compute the command in [lb, ub] that comes to rest quickest, without turning round."""
+    wanted = 0.0
+    unit = jerk * dt * dt
+    if jerk < np.inf and last != 0.0:
+        wanted = last - math.copysign(unit * approach(abs(last) / unit), last)
+    return min(max(wanted, lb), ub)
+
+
+@compiled
+def approach(room: float) -> float:
+    """Compute the largest x for which x + (x - 1) + (x - 2) + ... down to 0 is within `room`."""
+    if not room > 0.0 or room == np.inf:
+        return room
+    m = math.floor(0.5 * (math.sqrt(1.0 + 8.0 * room) - 1.0))
+    return room / (m + 1.0) + 0.5 * m
+
+
+@compiled
+def stopping_distance(v: float, a: float, J: float, A: float) -> float:
+    """Compute the way of a spline from velocity v and acceleration a to rest.
+
+    The joint does not turn round: v >= -a |a| / (2 J). It brakes at A, or at -a where that is more.
+    """
+    deepest = max(A, -a)
+    square = max(J * v + 0.5 * a * a, 0.0)
+    d = min(math.sqrt(square), deepest)
+    T = (a + d) / J
+    way = T * (v + T * (0.5 * a - J * T / 6.0)) + d * d * d / (6.0 * J * J)
+    if square > d * d:
+        v += 0.5 * (a * a - d * d) / J
+        h = 0.5 * d * d / J
+        way += (v - h) * (v + h) / (2.0 * d)
+    return way
+
+
+@compiled
+def highest(v: float, last: float, dt: float, J: float, A: float) -> float:
+    """Compute the highest position of the way to rest after command v, from that before it."""
+    a = (v - last) / dt
+    mean = 0.5 * (v + last)
+    start = dt * dt * a / 6.0
+    if mean + 0.5 * a * abs(a) / J >= 0.0:
+        return start + max(0.0, stopping_distance(mean, a, J, A))
+    if mean <= 0.0:
+        return start
+    T = -(a + math.sqrt(max(a * a - 2.0 * J * mean, 0.0))) / J
+    return start + T * (mean + T * (0.5 * a + J * T / 6.0))
+
+
+@compiled
+def _ceiling(
+    lb: float,
+    ub: float,
+    distance: float,
+    last: float,
+    dt: float,
+    braking_limits: tuple[float, float],
+) -> float:
+    """Compute the largest command in [lb, ub] whose highest position is within `distance`, else lb.
+
+    The limits are those of jerk [rad/s^3] and acceleration [rad/s^2] on the way to rest.
+    """
+    J, A = braking_limits
+    if highest(ub, last, dt, J, A) <= distance:
+        return ub
+    bottom = lb
+    top = ub
+    for _ in range(HALVINGS):
+        middle = 0.5 * (bottom + top)
+        if highest(middle, last, dt, J, A) <= distance:
+            bottom = middle
+        else:
+            top = middle
+    return bottom

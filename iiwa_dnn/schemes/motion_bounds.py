@@ -43,15 +43,26 @@ def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> M
     """
     model = robot.model
     above = [set(list(model.supports[joint])[1:]) for joint in (first, second)]
-    up = sorted(above[0] - above[1], reverse=True)
-    path = [*up, *sorted(above[1] - above[0])]
     moves = np.zeros(robot.dof)
     radii = np.zeros(robot.dof)
-    for index, joint in enumerate(path):
-        at = model.idx_vs[joint]
-        moves[at] = -1.0 if joint in up else 1.0
-        slides = _slides(robot, joint)
-        radii[at] = -1.0 if slides else _largest_radius(robot, path[index:], up, points)
+    # From the second link to the base, and up to the first: nothing is farther than `reach` from
+    # the joint in turn, and `offsets` lead from the joint before it.
+    reach = float(np.linalg.norm(points, axis=1).max())
+    offsets = points
+    for joint in sorted(above[1] - above[0], reverse=True):
+        # The axis may be met anywhere along itself: only what is across it counts.
+        across = np.linalg.norm(np.cross(_axis(robot, joint), offsets), axis=1).max()
+        moves[model.idx_vs[joint]] = 1.0
+        radii[model.idx_vs[joint]] = reach - np.linalg.norm(offsets, axis=1).max() + across
+        offsets = model.jointPlacements[joint].translation[np.newaxis]
+        reach += _length(robot, joint)
+    for joint in sorted(above[0] - above[1]):
+        reach += _length(robot, joint)  # on the way up a joint's own offset lies ahead of it
+        moves[model.idx_vs[joint]] = -1.0
+        radii[model.idx_vs[joint]] = reach
+    for joint in above[0] ^ above[1]:
+        if _slides(robot, joint):
+            radii[model.idx_vs[joint]] = -1.0
     return MotionBounds(moves, radii)
 
 
@@ -80,27 +91,6 @@ def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
     return B
 
 
-def _largest_radius(robot: Robot, path: list[int], up: list[int], points: Matrix) -> float:
-    """Bound the distance of points (k, 3) from a joint's axis [m].
-
-    The path leads from the joint to the points' link; its joints in `up` are passed from the link
-    to the base.
-    """
-    joint, *later = path
-    to_link = sum(_length(robot, other) for other in later if other not in up)
-    radius = to_link + float(np.linalg.norm(points, axis=1).max())
-    if joint in up:  # on the way up a joint's own offset lies ahead of it
-        return radius + sum(_length(robot, other) for other in path if other in up)
-    # The axis may be met anywhere along itself: only what is across it counts.
-    axis = _axis(robot, joint)
-    if not later:
-        return max(_across(axis, point) for point in points)
-    if not _slides(robot, later[0]):
-        offset = robot.model.jointPlacements[later[0]].translation
-        radius += _across(axis, offset) - _length(robot, later[0])
-    return radius
-
-
 def _axis(robot: Robot, joint: int) -> Vector:
     """Direction of a joint's axis in its own frame, (3,)."""
     data = robot.model.joints[joint].createData()
@@ -120,7 +110,3 @@ def _length(robot: Robot, joint: int) -> float:
         at = robot.model.idx_vs[joint]
         length += float(np.abs([robot.q_lower[at], robot.q_upper[at]]).max())
     return length
-
-
-def _across(axis: Vector, point: Vector) -> float:
-    return float(np.linalg.norm(np.cross(axis, point)))

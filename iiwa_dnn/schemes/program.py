@@ -20,7 +20,7 @@ from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.joint_tasks import couplings
-from iiwa_dnn.schemes.motion_limits import MotionLimits, merged
+from iiwa_dnn.schemes.limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import (
     Limit,
     Part,

@@ -15,8 +15,8 @@ from helpers_simulation import rows_of
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
+from iiwa_dnn.schemes.distances import write_distances
 from iiwa_dnn.schemes.motion_bounds import bounds_of_motion, second_order
-from iiwa_dnn.schemes.scene import pair_distances
 from random_motion import SLACK, Judge, obstacles_for, wander
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
@@ -40,7 +40,9 @@ def pair_distances_at(
     scene = avoidance.scene(robot)
     kinematics = Kinematics(robot, scene.frames)
     kinematics.update(q)
-    return pair_distances(scene.constants, robot.dof, kinematics.placements)
+    distances = np.empty(len(scene.pairs))
+    write_distances(scene.constants, robot.dof, kinematics.placements, distances)
+    return distances
 
 
 @pytest.mark.parametrize("name", ["iiwa7", "panda"])

@@ -23,7 +23,7 @@ from iiwa_dnn import (
     load_robot,
 )
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.schemes.motion_limits import (
+from iiwa_dnn.schemes.limits import (
     MARGIN,
     approach,
     braking,
@@ -354,8 +354,8 @@ def test_limits_of_robots_and_of_ones_own() -> None:
 
 @pytest.mark.parametrize("limit", [0.0, -1.0, math.nan, "fast", [1.0, -2.0], [1.0] * 6 + [-2.0]])
 def test_bad_limits_are_refused_by_name(limit: Any) -> None:
-    with pytest.raises(InvalidInputError, match=r"^acceleration: "):
-        AccelerationLimits(limit).of(paper_robot())
+    with pytest.raises(InvalidInputError, match=r"^limit: must be a finite number above 0"):
+        AccelerationLimits(limit)
 
 
 def test_limits_that_do_not_fit_the_robot_are_refused() -> None:
