@@ -75,7 +75,7 @@ class Track:
     overwrite: Flag = False  # write over a folder that holds another run
     plots: Flag = True  # draw no figures, pictures or video
     quiet: Quiet = False  # print nothing but the reasons of a failure
-    robot: Name = None  # iiwa7, panda, ... or a file, URDF or xacro (iiwa7)
+    robot: Name = None  # iiwa7, panda, ... or a URDF file (iiwa7)
     tip: Annotated[str | None, shown("FRAME")] = None  # frame that follows the path
     lock: Annotated[tuple[str, ...], shown("JOINT ...")] = ()  # joints held still
     q0: Annotated[tuple[float, ...], shown("X ...")] = ()  # joint positions at the start [rad]

@@ -85,7 +85,3 @@ class Target:
 
     def __getitem__(self, i: int) -> Target:
         return Target.from_data(self.data[i])
-
-    def __repr__(self) -> str:
-        position = np.array2string(self.position, precision=4, separator=", ")
-        return f"<Target at {position} m>"

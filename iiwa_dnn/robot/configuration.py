@@ -1,6 +1,5 @@
 """A configuration: joint positions together with the kinematics that belong to them."""
 
-import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
@@ -101,10 +100,6 @@ class Configuration(FrameState):
         """
         index = self._robot.frame_id(name)
         return FrameState(*_kinematics(self._robot, self._q, index))
-
-    def __repr__(self) -> str:
-        q = np.array2string(self._q, precision=4, separator=", ")
-        return f"<Configuration of {self._robot.name}: q = {q} rad>"
 
 
 def _kinematics(robot: Robot, q: Array, index: int) -> tuple[Array, Array]:

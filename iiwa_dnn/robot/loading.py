@@ -15,7 +15,7 @@ from iiwa_dnn.checks import Array
 from iiwa_dnn.errors import InvalidInputError, MissingDependencyError, NotFoundError
 from iiwa_dnn.robot import urdf
 from iiwa_dnn.robot.arms import ARMS, RATES, TIPS
-from iiwa_dnn.robot.robot import Mimic, Robot, frame_id
+from iiwa_dnn.robot.robot import Robot, frame_id
 
 _Joints = dict[str, ET.Element]
 
@@ -37,7 +37,7 @@ def load_robot(
     tool: pin.SE3 | ArrayLike | None = None,
     frames: Iterable[str] = (),
 ) -> Robot:
-    """Load a robot by its name, from a file, URDF or xacro, or from a Pinocchio model.
+    """Load a robot by its name, from a URDF file or from a Pinocchio model.
 
     Limits are the source's. A joint of a file whose ``<limit>`` gives neither ``lower`` nor
     ``upper`` has no position limit, and a ``velocity`` of 0 stands for "not given": no velocity
@@ -46,8 +46,8 @@ def load_robot(
 
     Args:
         source: A name out of `available_robots`, the path of a file (a `Path`, or a string that
-            ends in ``.urdf`` or ``.xacro`` or has a separator in it), or a Pinocchio model, which
-            has no shapes, collisions and physics.
+            ends in ``.urdf`` or has a separator in it), or a Pinocchio model, which has no shapes,
+            collisions and physics.
         tip: Frame that follows references. Default: that of the name (`iiwa_dnn.robot.arms`), or
             the link at the end of the chain, for a robot that has only one end.
         locked: Names of joints to freeze, each at its zero position or at the limit nearest to it.
@@ -60,7 +60,7 @@ def load_robot(
         NotFoundError: If there is no such robot, frame or joint; the error lists those that exist.
         FileError: If the file cannot be read, is not a URDF, or its limits make no sense.
         InvalidInputError: If the robot has several ends and no ``tip`` is given, or a joint that is
-            left free has more or less than one coordinate, or follows one that is locked.
+            left free has more or less than one coordinate, or follows another.
         MissingDependencyError: If the arm of that name is in a package that is not installed.
     """
     path, tips = _find(source)
@@ -77,15 +77,12 @@ def load_robot(
     if tip is None:
         tip = tips[0] if tips else _only_end(full)
     others = tips if len(tips) > 1 else ()
-    mimics = _mimics(joints)
-    idle = _idle_joints(full, mimics, (tip, *others, *frames))
+    idle = _idle_joints(full, (tip, *others, *frames))
     chosen = _chosen_joints(full, locked)
     model, held = _lock(full, dict.fromkeys([*idle, *chosen]))
-    following = _following(model, mimics, held)
     limits, ramps = _limits(name, model, joints)
-    positions = tuple(held.values())
-    robot = Robot(name, model, tip, limits, ramps, tuple(held), positions, following, path, text)
-    expected = {*chosen, *(_idle_joints(full, mimics, tips) if tips else ())}
+    robot = Robot(name, model, tip, limits, ramps, tuple(held), tuple(held.values()), path, text)
+    expected = {*chosen, *(_idle_joints(full, tips) if tips else ())}
     still = [f"{joint} at {held[joint]:g}" for joint in idle if joint not in expected]
     if still:
         message = f"held still, since they do not move {tip}: {', '.join(still)}"
@@ -109,7 +106,7 @@ def _find(source: object) -> tuple[Path | None, tuple[str, ...]]:
         raise InvalidInputError("source", problem, source)
     name = os.fspath(source)
     is_file = isinstance(source, os.PathLike) or name.endswith((".urdf", ".xacro"))
-    if is_file or "/" in name or os.sep in name:
+    if is_file or os.sep in name:
         return Path(name), ()
     if name in ARMS:
         return ARMS[name].path, (ARMS[name].tip,)
@@ -139,33 +136,10 @@ def _chosen_joints(model: pin.Model, locked: str | Iterable[str]) -> list[str]:
     return chosen
 
 
-def _mimics(joints: _Joints) -> dict[str, Mimic]:
-    """Find the joints of a file that follow another, by their names."""
-    found = {}
-    for name, joint in joints.items():
-        for mimic in joint.findall("mimic"):
-            values = [float(mimic.get("multiplier", 1.0)), float(mimic.get("offset", 0.0))]
-            found[name] = Mimic(name, mimic.get("joint", ""), *values)
-    return found
-
-
-def _following(
-    model: pin.Model, mimics: dict[str, Mimic], held: dict[str, float]
-) -> tuple[Mimic, ...]:
-    """Select the joints of a model that follow another; that one must not be held."""
-    found = tuple(mimics[joint] for joint in model.names if joint in mimics)
-    for joint, leader, *_ in found:
-        if leader in held:
-            problem = f"joint {joint!r} follows {leader!r}, which is locked: lock it too"
-            raise InvalidInputError("locked", problem, joint)
-    return found
-
-
-def _idle_joints(model: pin.Model, mimics: dict[str, Mimic], frames: Iterable[str]) -> list[str]:
-    """List the joints that move none of the frames, and lead no joint that does."""
+def _idle_joints(model: pin.Model, frames: Iterable[str]) -> list[str]:
+    """List the joints that move none of the frames."""
     carriers = [model.frames[frame_id(model, frame)].parentJoint for frame in frames]
     moving = {model.names[joint] for carrier in carriers for joint in model.supports[carrier]}
-    moving |= {mimics[name].leader for name in moving if name in mimics}
     return [str(name) for name in model.names if name not in moving]
 
 
@@ -199,6 +173,11 @@ def _limits(name: str, model: pin.Model, joints: _Joints) -> tuple[Array, Array]
         limit = element.find("limit")
         if limit is not None and not {"lower", "upper"} & set(limit.keys()):
             limits[:2, i] = [-np.inf, np.inf]
+        mimic = element.find("mimic")
+        if mimic is not None:
+            problem = f"joint {joint!r} follows {mimic.get('joint')!r}: lock it, or take its"
+            remedy = "<mimic> out of the file and hold it by a JointCouplingTask"
+            raise InvalidInputError("locked", f"{problem} {remedy}", joint)
         ramp = element.find("position_based_velocity_limits")
         if ramp is not None:
             keys = ("velocity_offset", "deceleration_limit")

@@ -208,11 +208,29 @@ def make_obstacle(table: dict[str, Any]) -> Obstacle:
     name = str(values.pop("shape", "")).replace("_", "").lower()
     kind = next((kind for shape, kind in SHAPES.items() if shape.lower() == name), None)
     if kind is None:
-        raise InvalidInputError("shape", f"must be one of {', '.join(SHAPES)}, not {name!r}")
+        problem = f"must be one of {', '.join(SHAPES)}, not {table.get('shape')!r}"
+        raise InvalidInputError("shape", problem, table)
     try:
         return kind(**values)
     except TypeError as error:
         raise InvalidInputError(kind.__name__, one_line(error).partition(" ")[2]) from error
+
+
+def make_obstacles(tables: object) -> list[Obstacle]:
+    """Make the obstacles of a file from its tables ``[[obstacle]]``.
+
+    Raises:
+        InvalidInputError: They are no tables, or as of `make_obstacle`, with the table's number.
+    """
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InvalidInputError("obstacle", f"must be tables [[obstacle]], not {tables!r}", tables)
+    found = []
+    for number, table in enumerate(tables, 1):
+        try:
+            found.append(make_obstacle(table))
+        except InvalidInputError as error:
+            raise InvalidInputError(f"obstacle {number}", str(error), table) from error
+    return found
 
 
 def outline(obstacle: Obstacle) -> tuple[checks.Array, NDArray[np.int32]]:

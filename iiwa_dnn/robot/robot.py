@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -20,15 +19,6 @@ _LIMITS = ("lower", "upper", "velocity", "acceleration", "jerk")
 
 _BENT = 0.15
 """Distance of an unknown arm's start from the middle of its joints, in ranges of the joints."""
-
-
-class Mimic(NamedTuple):
-    """A joint that follows another: q = multiplier q_leader + offset [rad]; see URDF's <mimic>."""
-
-    joint: str
-    leader: str
-    multiplier: float
-    offset: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -49,9 +39,8 @@ class Robot:
             has none.
         locked: Names of the URDF's joints that were frozen on loading.
         q_locked: Positions at which the joints of ``locked`` are frozen [rad], one each.
-        mimics: Joints between base and tip that follow others; schemes hold them to it.
         path: The URDF file, where the robot came from one; it is read once, on loading.
-        urdf: Text of the URDF as it was read: xacro expanded.
+        urdf: Text of the URDF as it was read.
         tip_id: Pinocchio's index of the tip frame.
 
     Raises:
@@ -66,7 +55,6 @@ class Robot:
     ramps: checks.Array
     locked: tuple[str, ...] = ()
     q_locked: tuple[float, ...] = ()
-    mimics: tuple[Mimic, ...] = ()
     path: Path | None = None
     urdf: str | None = None
     tip_id: int = field(init=False)
@@ -214,7 +202,7 @@ class Robot:
     @property
     def has_known_start(self) -> bool:
         """True if `start_posture` is known of the robot's name and number of joints."""
-        return len(STARTS.get(self.name, ())) == self.dof and not self.mimics
+        return len(STARTS.get(self.name, ())) == self.dof
 
     def start_posture(self) -> checks.Array:
         """Return joint positions (n,) [rad] to start from, inside the limits.
@@ -237,7 +225,7 @@ class Robot:
         return self._inside(random.uniform(0.0, 1.0, (count, self.dof)))
 
     def _inside(self, ratios: checks.Array) -> checks.Array:
-        """Return postures (..., n) [rad] at ratios (..., n) of the ranges, mimics at their leaders.
+        """Return postures (..., n) [rad] at ratios (..., n) of the ranges.
 
         In place of an infinite limit there is one 2 pi from 0, or from the other limit.
         """
@@ -245,10 +233,6 @@ class Robot:
         lower = np.maximum(self.q_lower, nearest - 2.0 * np.pi)
         upper = np.minimum(self.q_upper, nearest + 2.0 * np.pi)
         postures: checks.Array = lower + (upper - lower) * ratios
-        for joint, leader, multiplier, offset in self.mimics:
-            j = self.joint_names.index(joint)
-            position = multiplier * postures[..., self.joint_names.index(leader)] + offset
-            postures[..., j] = np.clip(position, lower[j], upper[j])
         return postures
 
     def __repr__(self) -> str:

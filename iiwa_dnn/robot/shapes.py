@@ -8,13 +8,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from iiwa_dnn.checks import vector3
 from iiwa_dnn.robot import urdf
-from iiwa_dnn.robot.obstacles import Capsule, outline
 from iiwa_dnn.robot.robot import Robot, source_of
 
-_STICK_RADIUS = 0.02  # [m]
-_STICK_COLOR = (0.6, 0.6, 0.6)
 _GLASS = 0.5  # shapes less opaque are marks for programs, not parts of the robot
 
 
@@ -52,7 +48,7 @@ def read_shapes(robot: Robot, kind: pin.GeometryType, text: str) -> list[pin.Geo
 
 @lru_cache(maxsize=4)  # a robot of 100,000 triangles takes seconds
 def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
-    """List the meshes of a robot's <visual>s, or sticks from joint to joint if it has no shape.
+    """List the meshes of a robot's <visual>s.
 
     Meshes in the URDF's folder or above it are read; where one is missing, none is.
 
@@ -76,15 +72,4 @@ def visual_meshes(robot: Robot) -> tuple[Mesh, ...]:
             triangles = map(body.tri_indices, range(body.num_tris))
             faces = np.array([(at[0], at[1], at[2]) for at in triangles], dtype=np.int32)
             meshes.append(Mesh(int(shape.parentJoint), corners, faces, tuple(color)))
-    return tuple(meshes if shapes else _sticks(robot))
-
-
-def _sticks(robot: Robot) -> list[Mesh]:
-    """Make a stick from each joint to the next, and to the tip."""
-    tip = robot.model.frames[robot.tip_id]
-    ends = list(zip(robot.model.parents, robot.model.jointPlacements, strict=True))[1:]
-    sticks = []
-    for joint, pose in [*ends, (tip.parentJoint, tip.placement)]:
-        stick = Capsule((0.0, 0.0, 0.0), vector3("end", pose.translation), _STICK_RADIUS)
-        sticks.append(Mesh(int(joint), *outline(stick), _STICK_COLOR))
-    return sticks
+    return tuple(meshes)

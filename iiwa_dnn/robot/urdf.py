@@ -1,18 +1,15 @@
 """URDF files: read with care, then made into a Pinocchio model.
 
-The XML has facts that Pinocchio's model does not keep: limits that were not given, joints that
-follow others.
+The XML has a fact that Pinocchio's model does not keep: limits that were not given.
 """
 
-import io
 import xml.etree.ElementTree as ET
-from contextlib import redirect_stderr
 from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 
-from iiwa_dnn.errors import FileError, import_extra
+from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import one_line
 from iiwa_dnn.robot.robot import Robot
 
@@ -22,16 +19,16 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 def read(path: Path) -> ET.Element:
     """Read a URDF file as XML; return the element ``<robot>``, which has joints.
 
-    A file that ends in ``.xacro`` goes through xacro. A continuous joint becomes a revolute one
-    without position limits: one coordinate, like all others.
+    A continuous joint becomes a revolute one without position limits: one coordinate, like all
+    others.
 
     Raises:
         FileError: If the file cannot be read, is not XML or is not a robot with joints.
-        MissingDependencyError: If xacro is needed and not installed.
     """
+    if path.suffix == ".xacro":
+        raise FileError(path, f"make a URDF of it: xacro {path.name} -o {path.stem}.urdf")
     try:
-        content = _expanded(path) if path.suffix == ".xacro" else path.read_bytes()
-        root = ET.fromstring(content)
+        root = ET.fromstring(path.read_bytes())
         text_of(root)  # elements nested too deeply can be read, but not written
     except OSError as error:
         raise FileError(path, one_line(error)) from error
@@ -49,18 +46,6 @@ def read(path: Path) -> ET.Element:
         for key in ("lower", "upper"):
             limit.attrib.pop(key, None)
     return root
-
-
-def _expanded(path: Path) -> bytes:
-    """Expand a xacro file."""
-    xacro = import_extra("xacro", "pip install 'iiwa-dnn[xacro]'")
-    try:
-        with redirect_stderr(io.StringIO()):
-            return bytes(xacro.process_file(str(path)).toxml(encoding="utf-8"))
-    except OSError:
-        raise
-    except Exception as error:  # whatever an expression in the file raises
-        raise FileError(path, f"xacro cannot expand it: {one_line(error)}") from error
 
 
 def text_of(root: ET.Element) -> str:
@@ -104,12 +89,11 @@ def drop_meshes(root: ET.Element) -> None:
 
 
 def weld(root: ET.Element, robot: Robot) -> None:
-    """Fix the locked joints of a robot where they are; none of them follows or leads another."""
+    """Fix the locked joints of a robot where they are; joints that follow others are among them."""
     held = dict(zip(robot.locked, robot.q_locked, strict=True))
     for joint in root.findall("joint"):
         name = joint.get("name", "")
-        mimic = joint.find("mimic")
-        if mimic is not None and {name, mimic.get("joint")} & held.keys():
+        for mimic in joint.findall("mimic"):
             joint.remove(mimic)
         if held.get(name):
             # In Pinocchio's model both links have become frames of one joint.

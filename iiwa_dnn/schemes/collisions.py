@@ -31,7 +31,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
-from iiwa_dnn.robot.obstacles import Obstacle, make_obstacle
+from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
 from iiwa_dnn.schemes.distances import SPEED, Contact, contact_of, place_bodies, scene_views
 from iiwa_dnn.schemes.motion_bounds import second_order
 from iiwa_dnn.schemes.parts import Checks, Limit
@@ -159,8 +159,7 @@ class CollisionAvoidance(Limit):
         """
         tables = read_toml(path)
         try:
-            obstacles = [make_obstacle(table) for table in tables.pop("obstacle", [])]
-            return cls(obstacles, **tables)
+            return cls(make_obstacles(tables.pop("obstacle", [])), **tables)
         except (IiwaDnnError, TypeError, ValueError, AttributeError) as error:
             text = one_line(error).replace(f"{cls.__name__}.__init__() ", "")
             raise FileError(path, text) from error

@@ -89,7 +89,7 @@ class PostureTask(JointTask):
 
 @dataclass(frozen=True)
 class JointCouplingTask(JointTask):
-    r"""One linear relation between joints, as of a gear or a mimic joint.
+    r"""One linear relation between joints, as of a gear or of a joint that follows another.
 
     .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
 
@@ -107,11 +107,3 @@ class JointCouplingTask(JointTask):
 
     def _relations(self) -> list[tuple[Mapping[str, float], float]]:
         return [(self.coefficients, self.offset)]
-
-
-def couplings(robot: Robot) -> list[JointCouplingTask]:
-    """Return the tasks that hold a robot's mimic joints to those they follow."""
-    return [
-        JointCouplingTask({joint: 1.0, leader: -multiplier}, offset)
-        for joint, leader, multiplier, offset in robot.mimics
-    ]

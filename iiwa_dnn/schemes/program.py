@@ -19,7 +19,6 @@ from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.joint_tasks import couplings
 from iiwa_dnn.schemes.limits import MotionLimits, merged
 from iiwa_dnn.schemes.parts import (
     Limit,
@@ -113,7 +112,7 @@ class StepProgram:
         """
         self.robot = robot
         self.scheme = scheme
-        tasks = [*scheme.tasks, *couplings(robot)]
+        tasks = list(scheme.tasks)
         limits = merged(scheme.limits)
         last = limits[-1] if limits else None
         self.rate_limits = last if isinstance(last, MotionLimits) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from itertools import product
 from pathlib import Path
 from xml.etree import ElementTree
@@ -9,20 +10,22 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from helpers_kinematics import example_urdf
+from helpers_kinematics import PAPER_Q0, Array, example_urdf
 from iiwa_dnn import (
     Configuration,
     DoubleIndicator,
     Heart,
     MissingDependencyError,
+    Robot,
     available_robots,
     compute_metrics,
     failures,
     load_robot,
+    robot_from_dh,
     simulate,
 )
 from iiwa_dnn.robot import arms
-from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn.robot.arms import ARMS, TIPS
 
 JOINTS = {
     "baxter_left": 7, "baxter_right": 7, "kinova": 6, "panda": 7, "talos_left": 9, "talos_right": 9,
@@ -62,10 +65,42 @@ def test_an_arm_by_its_name_is_the_file_without_the_gripper(name: str) -> None:
         (Configuration(robot, q).pose, Configuration(by_hand, q).pose),
     ):
         np.testing.assert_array_equal(one, other)
-    # The start is inside the limits and not singular: all six directions of the tip can be moved.
-    assert (q > robot.q_lower).all()
-    assert (q < robot.q_upper).all()
-    assert np.linalg.svd(Configuration(robot, q).jacobian, compute_uv=False)[5] > 0.02
+    np.testing.assert_array_equal(q, arm.start)
+
+
+def is_inside(robot: Robot, q: Array) -> bool:
+    return bool((q > robot.q_lower).all() and (q < robot.q_upper).all())
+
+
+@pytest.mark.parametrize("name", [*TIPS, *ARMS])
+def test_every_arm_starts_inside_its_limits_and_not_singular(name: str) -> None:
+    robot = load_robot(name)
+    # Of another name, or with a joint locked, its joints begin bent, where no arm is singular.
+    other = dataclasses.replace(robot, name="some")
+    locked = load_robot(name, locked=robot.joint_names[0])
+    assert (robot.has_known_start, locked.has_known_start) == (True, False)
+    for start, least in ((robot, 0.1), (other, 0.03), (locked, 0.0)):
+        q = start.start_posture()
+        assert is_inside(start, q)
+        assert np.linalg.svd(Configuration(start, q).jacobian, compute_uv=False)[-1] >= least
+
+
+def test_the_iiwa_starts_where_the_paper_does_or_as_near_as_its_limits_let_it() -> None:
+    robot = load_robot("iiwa7")
+    np.testing.assert_array_equal(robot.start_posture(), PAPER_Q0)
+    tight = robot.with_limits(lower=-2.0, upper=2.0)
+    expected = [-1.8, *PAPER_Q0[1:]]  # the first joint's -2.357 is outside
+    np.testing.assert_allclose(tight.start_posture(), expected, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper"),
+    [(-np.inf, np.inf), (1.0, np.inf), (-np.inf, -1.0), ([-1, -np.inf, 4], [np.inf, 2, 5])],
+)
+def test_a_start_where_limits_are_on_one_side_or_on_none(lower: object, upper: object) -> None:
+    robot = robot_from_dh(np.full((3, 4), 0.3), lower=lower, upper=upper)
+    assert is_inside(robot, robot.start_posture())
+    assert np.abs(robot.start_posture()).max() < 3.0 * np.pi
 
 
 def test_locked_and_tip_can_be_chosen_besides() -> None:

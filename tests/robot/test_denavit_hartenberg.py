@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
-
 import numpy as np
 import pytest
 
@@ -56,11 +54,9 @@ def test_the_iiwa_7_of_its_table_is_that_of_its_urdf() -> None:
         np.testing.assert_allclose(conf.position, dh_pose(q)[0], atol=1e-14)
 
 
-def test_limits_names_and_pickling() -> None:
+def test_limits_and_names() -> None:
     robot = robot_from_dh(TABLE, upper=[1, 2, 3, 4, 5, 6], velocity=0.5, name="six")
     assert (robot.name, robot.tip, robot.dof) == ("six", "link_6", 6)
     assert robot.frame_names[:2] == ("base", "link_1")
     assert robot.joint_names[-1] == "joint_6"
     np.testing.assert_array_equal(robot.limits[:3], [[-np.inf] * 6, [1, 2, 3, 4, 5, 6], [0.5] * 6])
-    again, q = pickle.loads(pickle.dumps(robot)), np.arange(6.0)
-    np.testing.assert_array_equal(Configuration(again, q).pose, Configuration(robot, q).pose)

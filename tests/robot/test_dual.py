@@ -8,8 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from helpers_kinematics import dh_pose
-from iiwa_dnn.references import Heart, Line
-from iiwa_dnn.results.failures import failures
+from iiwa_dnn.references import Line
 from iiwa_dnn.robot import Configuration, load_robot
 from iiwa_dnn.robot.mujoco_model import compile_model
 from iiwa_dnn.schemes import (
@@ -17,9 +16,7 @@ from iiwa_dnn.schemes import (
     CyclicMotion,
     JointLimits,
     KineticEnergy,
-    OrientationTask,
     PositionTask,
-    RelativePoseTask,
     Scheme,
 )
 from iiwa_dnn.simulation import simulate
@@ -39,22 +36,6 @@ def test_each_arm_is_the_single_one_moved_aside() -> None:
         np.testing.assert_allclose(conf.frame(frame).position, position + [0, side, 0], atol=1e-12)
         np.testing.assert_allclose(conf.frame(frame).rotation, rotation, atol=1e-12)
     assert compile_model(robot, 1e-3).nq == 14
-
-
-def test_an_object_carried_by_both_arms_keeps_its_grasp() -> None:
-    robot = load_robot("iiwa7_dual")
-    start = Configuration(robot, robot.start_posture())
-    tasks = [PositionTask(), OrientationTask(), RelativePoseTask(RIGHT, LEFT)]
-    record = simulate(
-        robot, Scheme(COSTS, tasks, [JointLimits()]), Heart(scale=3e-3).anchored(start), start.q,
-        dt=1e-3, duration=1.0,
-    )  # fmt: skip
-    assert failures(record) == []
-    grasp = np.linalg.inv(start.frame(LEFT).pose) @ start.frame(RIGHT).pose
-    for q in record.q[::50]:
-        conf = Configuration(robot, q)
-        now = np.linalg.inv(conf.frame(LEFT).pose) @ conf.frame(RIGHT).pose
-        np.testing.assert_allclose(now, grasp, rtol=0, atol=1e-6)
 
 
 def test_two_arms_that_are_driven_into_each_other_do_not_touch() -> None:

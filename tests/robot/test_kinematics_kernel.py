@@ -24,11 +24,10 @@ _JOINTS = [
 
 
 def odd_robot(folder: Path) -> Robot:
-    """Write and load a robot with every kind of joint; one of them follows another."""
+    """Write and load a robot with every kind of joint."""
     joints = [
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
         f'<axis xyz="{axis}"/><origin xyz="{xyz}" rpy="{rpy}"/>'
-        + '<mimic joint="a" multiplier="0.5" offset="0.1"/>' * (name == "d")
         + '<limit lower="-3" upper="3" velocity="2" effort="1"/></joint>'
         for name, parent, child, kind, axis, xyz, rpy in _JOINTS
     ]

@@ -9,8 +9,10 @@ import pytest
 
 import iiwa_dnn as d
 from iiwa_dnn.robot.mujoco_model import JointDynamics
+from iiwa_dnn.robot.obstacles import make_obstacles
 
 ROBOT = d.load_robot("iiwa7")
+BALL = {"shape": "sphere", "center": [0.0, 0.0, 1.0], "radius": 0.1}
 
 REFUSED = [
     *[
@@ -43,6 +45,12 @@ REFUSED = [
     (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "convention": "classic"}, "convention"),
     (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "lower": 1, "upper": 0}, "lower"),
     (d.robot_from_dh, {"table": [[0, 0, 1, 0]], "velocity": [1, 2]}, "velocity"),
+    (make_obstacles, {"tables": 3}, "obstacle"),
+    (make_obstacles, {"tables": [3]}, "obstacle"),
+    (make_obstacles, {"tables": [BALL, {"radius": 1.0}]}, "obstacle 2"),
+    (make_obstacles, {"tables": [BALL, BALL | {"radius": -1.0}]}, "obstacle 2"),
+    (make_obstacles, {"tables": [BALL | {"colour": "red"}]}, "obstacle 1"),
+    (d.Box, {"center": [0, 0, 0], "half_extents": [0.1, 0.1, 0.0]}, "half_extents"),
     (JointDynamics, {"damping": -1.0}, "damping"),
     (JointDynamics, {"armature": np.nan}, "armature"),
 ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -11,8 +10,8 @@ import pytest
 import yourdfpy
 
 from helpers_kinematics import example_urdf
-from iiwa_dnn import Configuration, InvalidInputError, Robot, load_robot
-from iiwa_dnn.robot.shapes import Mesh, visual_meshes
+from iiwa_dnn import InvalidInputError, Robot, load_robot
+from iiwa_dnn.robot.shapes import visual_meshes
 
 
 def placed(robot: Robot, q: np.ndarray) -> list[np.ndarray]:
@@ -42,23 +41,6 @@ def test_meshes_are_where_yourdfpy_has_them(name: str) -> None:
 
 def test_a_robot_of_primitives_has_no_meshes() -> None:
     assert visual_meshes(load_robot("iiwa7")) == ()  # MuJoCo draws its cylinders and spheres
-
-
-@pytest.mark.parametrize("lost", ["meshes", "shapes"])
-def test_an_arm_without_its_shapes_is_drawn_with_sticks_to_its_tip(
-    lost: str, tmp_path: Path
-) -> None:
-    file = example_urdf("ur_description/urdf/ur5_robot.urdf")
-    alone = tmp_path / "ur5.urdf"
-    text = file.read_text()
-    alone.write_text(text if lost == "meshes" else text.replace("visual>", "seen>"))
-    robot = load_robot(alone, tip="tool0")
-    sticks: tuple[Mesh, ...] = visual_meshes(robot)
-    assert len(sticks) == robot.dof + 1
-    q = np.linspace(-1.0, 1.0, robot.dof)
-    last = placed(robot, q)[-1]
-    tip = Configuration(robot, q).position
-    assert np.linalg.norm(last - tip, axis=1).min() == pytest.approx(0.02, abs=1e-3)
 
 
 def test_a_robot_without_a_file_has_none() -> None:

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from helpers_kinematics import PAPER_Q0, Array, dh_pose, rotation_angle
+from helpers_kinematics import PAPER_Q0
 from iiwa_dnn.robot import Configuration, Robot, load_robot
 from iiwa_dnn.robot.arms import TIPS
 from iiwa_dnn.robot.loading import robots_folder
@@ -16,27 +16,6 @@ from iiwa_dnn.robot.loading import robots_folder
 @pytest.fixture(scope="module")
 def robot() -> Robot:
     return load_robot("iiwa7")
-
-
-@pytest.fixture(scope="module")
-def poses(robot: Robot) -> Array:
-    return np.random.default_rng(7).uniform(robot.q_lower, robot.q_upper, (300, 7))
-
-
-def largest_gap(
-    robot: Robot, poses: Array, position: Array, rotation: Array
-) -> tuple[float, float]:
-    """Largest distance [m] and angle [rad] between the robot's poses and others."""
-    confs = [Configuration(robot, q) for q in poses]
-    distances = np.linalg.norm([c.position for c in confs] - position, axis=-1)
-    angles = rotation_angle([c.rotation for c in confs], rotation)
-    return float(distances.max()), float(angles.max())
-
-
-def test_forward_kinematics_equal_the_dh_formula(robot: Robot, poses: Array) -> None:
-    distance, angle = largest_gap(robot, poses, *dh_pose(poses))
-    assert distance < 1e-12
-    assert angle < 1e-12
 
 
 def test_check_pose(robot: Robot) -> None:
