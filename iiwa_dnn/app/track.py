@@ -114,7 +114,7 @@ def _draw(options: Track, more: Tables, pictured: bool) -> int:
         save_video(robot, record, folder / "video.mp4")
     reasons = failures(metrics)
     if not options.quiet:
-        print(summary(metrics, reasons), f"written to {folder}", sep="\n")
+        print(summary(metrics), f"written to {folder}", sep="\n")
     elif reasons:
         print(*reasons, sep="\n", file=sys.stderr)
     return 1 if reasons else 0

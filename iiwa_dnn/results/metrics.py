@@ -1,16 +1,15 @@
 """The numbers that sum up a run: pure functions of its record."""
 
-from collections.abc import Callable, Mapping
-from functools import partial
-from itertools import product
-from typing import Any, NamedTuple
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
 from iiwa_dnn.files import plain
-from iiwa_dnn.naming import KINDS, bound_name, bound_words, in_the_way, joint_name
+from iiwa_dnn.naming import in_the_way, joint_name
 from iiwa_dnn.results.record import RATES, FloatArray, Record
 
 PROOF = "proof"
@@ -28,8 +27,7 @@ EXCESS_TOLERANCE = 1e-9
 BOUNDS = "bounds"
 """Name of what judges a command beside its step's own bounds and rows."""
 
-_SLOW = 2
-ACTIONS = {_SLOW: "slow", 3: "relax", 4: "stop", 5: "euler"}
+ACTIONS = {2: "slow", 3: "relax", 4: "stop", 5: "euler"}
 """Codes in `Record.action`; 0 is the network's own answer."""
 
 SETTLED_AFTER = 0.5
@@ -38,14 +36,17 @@ SETTLED_AFTER = 0.5
 FAR = 1e-3
 """Distance between tip and path at the start of a run [m] from which on it is worth a word."""
 
-RECOVERED_BELOW = 1e-3
-"""Largest distance to the path of a tip that has recovered from a push [m]."""
+JOINT_LIMITS = {
+    "position_limit_violation_rad": ("position", "rad"),
+    "velocity_limit_violation_rad_s": ("velocity", "rad/s"),
+    "acceleration_limit_violation_rad_s2": ("acceleration", "rad/s²"),
+    "jerk_limit_violation_rad_s3": ("jerk", "rad/s³"),
+}
+"""Metrics of the excess over the joints' limits: the limited quantity, and the unit."""
 
 _AT_LIMIT = 1.0 - 1e-9
-_VELOCITY = 1 + KINDS.index("velocity")
 
 BoolArray = NDArray[np.bool_]
-Codes = NDArray[Any]
 
 
 def position_error(record: Record) -> FloatArray:
@@ -99,122 +100,20 @@ def _rate_excess(record: Record, order: int) -> FloatArray:
     return excess
 
 
-class JointLimit(NamedTuple):
-    """A limit on every joint that a run is judged by.
-
-    Attributes:
-        kind: Limited quantity.
-        setting: Name of the limit in the settings of a record, which may lack it.
-        metric: Name of the largest excess among the metrics.
-        unit: Unit of the excess.
-        excess: Computes the excess at each step or sample, (N, n) or (N+1, n).
-    """
-
-    kind: str
-    setting: str
-    metric: str
-    unit: str
-    excess: Callable[[Record], FloatArray]
-
-
-JOINT_LIMITS = (
-    JointLimit(
-        "position",
-        "q_upper",
-        "position_limit_violation_rad",
-        "rad",
-        # np.maximum, unlike max(), lets a NaN through.
-        lambda record: np.maximum(
-            limits(record, "q_lower", -np.inf) - record.q, record.q - limits(record, "q_upper")
-        ),
-    ),
-    JointLimit(
-        "velocity",
-        "dq_max",
-        "velocity_limit_violation_rad_s",
-        "rad/s",
-        lambda record: np.abs(record.dq) - limits(record, "dq_max"),
-    ),
-    JointLimit(
-        "acceleration",
-        "ddq_max",
-        "acceleration_limit_violation_rad_s2",
-        "rad/s²",
-        partial(_rate_excess, order=1),
-    ),
-    JointLimit(
-        "jerk",
-        "dddq_max",
-        "jerk_limit_violation_rad_s3",
-        "rad/s³",
-        partial(_rate_excess, order=2),
-    ),
-)
-
-
-class Metric(NamedTuple):
-    """A number that sums up a run.
-
-    Attributes:
-        key: Name in metrics.json, with its unit.
-        quantity: Name in a report; empty: not in the report.
-        unit: Unit in a report.
-        compute: Computes it from the record; None if it does not exist.
-    """
-
-    key: str
-    quantity: str
-    unit: str
-    compute: Callable[[Record], Any]
-
-
-METRICS = (
-    Metric("path_completed", "path completed", "", lambda record: record.path_completed),
-    Metric("start_distance_m", "", "m", lambda record: _distance(record)[0]),
-    Metric("max_position_error_m", "largest position error", "m", lambda r: _distance(r).max()),
-    Metric(
-        "mse_position_error_m2",
-        "mean squared position error",
-        "m²",
-        lambda record: np.mean(position_error(record) ** 2),
-    ),
-    Metric(
-        "max_orientation_error_rad",
-        "largest orientation error",
-        "rad",
-        lambda record: orientation_error(record).max(),
-    ),
-    Metric(
-        "joint_drift_rad",
-        "joint drift, start to end",
-        "rad",
-        lambda record: np.abs(record.q[-1] - record.q[0]).max(),
-    ),
-    Metric(
-        "max_kinetic_index",
-        "largest kinetic index",
-        "rad²/s²",
-        lambda record: _max(record.kinetic_index),
-    ),
-    Metric("steps", "", "", lambda record: record.steps),
-    Metric("dt_s", "", "s", lambda record: record.settings["dt"]),
-    Metric("duration_s", "", "s", lambda record: float(record.t[-1] - record.t[0])),
-    Metric("wall_time_s", "wall time", "s", lambda record: record.wall_time_s),
-    Metric(
-        "realtime_factor",
-        "time simulated / wall time",
-        "",
-        lambda r: (r.t[-1] - r.t[0]) / r.wall_time_s if r.wall_time_s else None,
-    ),
-    Metric("max_kkt_residual", "largest KKT residual", "", lambda r: _max(r.kkt_residual)),
-    Metric(
-        "active_limit_steps",
-        "steps with an active bound or row",
-        "",
-        lambda record: _active(record).sum(),
-    ),
-)
-"""The numbers that every run has, but for the excess over `JOINT_LIMITS`."""
+def _excesses(record: Record) -> dict[str, FloatArray]:
+    """Compute the excess over each joint limit of the run at each step or sample, by its metric."""
+    below = limits(record, "q_lower", -np.inf) - record.q
+    above = record.q - limits(record, "q_upper")
+    found = {
+        "position_limit_violation_rad": np.maximum(
+            below, above
+        ),  # unlike max(), lets a NaN through
+        "velocity_limit_violation_rad_s": np.abs(record.dq) - limits(record, "dq_max"),
+    }
+    for order, (setting, name) in enumerate(zip(RATES, list(JOINT_LIMITS)[2:], strict=True), 1):
+        if setting in record.settings:
+            found[name] = _rate_excess(record, order)
+    return found
 
 
 def compute_metrics(record: Record) -> dict[str, Any]:
@@ -227,10 +126,10 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     likely the paper's MSE: a third of the mean squared distance. ``duration_s`` is the time
     simulated; ``settings["duration"]`` was asked for. ``violations`` says of each broken limit
     where its excess is largest, ``unsolved`` of the answers above the tolerance which is the first.
-    A run in physics also has ``physics`` (torques, settled error, recovery from a push), one that
-    tracks several frames ``frames`` (largest errors of those beside the first), a run in which a
-    bound, an inequality row, a policy or clipping acted ``incidents``, one that avoids collisions
-    ``collisions`` (the nearest pair, and by how much it came nearer than it may).
+    A run in physics also has ``physics`` (torques, settled error), one that tracks several frames
+    ``frames`` (largest errors of those beside the first), a run in which a bound, an inequality
+    row, a policy or clipping acted ``incidents``, one that avoids collisions ``collisions`` (the
+    nearest pair, and by how much it came nearer than it may).
 
     Args:
         record: The run.
@@ -241,21 +140,35 @@ def compute_metrics(record: Record) -> dict[str, Any]:
     """
     checks.instance("record", record, Record)
     settings = record.settings
-    broken = {
-        limit.metric: limit.excess(record) for limit in JOINT_LIMITS if limit.setting in settings
-    }
+    error = position_error(record)
+    distance = np.linalg.norm(error, axis=1)
+    duration = float(record.t[-1] - record.t[0])
+    excesses = _excesses(record)
     metrics: dict[str, Any] = plain(
         {
-            **{metric.key: metric.compute(record) for metric in METRICS},
-            **{name: excess.max(initial=0.0) for name, excess in broken.items()},
-            "violations": {name: _worst(record, excess) for name, excess in broken.items()},
+            "path_completed": record.path_completed,
+            "start_distance_m": distance[0],
+            "max_position_error_m": distance.max(),
+            "mse_position_error_m2": np.mean(error**2),
+            "max_orientation_error_rad": orientation_error(record).max(),
+            "joint_drift_rad": np.abs(record.q[-1] - record.q[0]).max(),
+            "max_kinetic_index": _max(record.kinetic_index),
+            "steps": record.steps,
+            "dt_s": settings["dt"],
+            "duration_s": duration,
+            "wall_time_s": record.wall_time_s,
+            "realtime_factor": duration / record.wall_time_s if record.wall_time_s else None,
+            "max_kkt_residual": _max(record.kkt_residual),
+            "active_limit_steps": _active(record).any(axis=1).sum(),
+            **{name: excess.max(initial=0.0) for name, excess in excesses.items()},
+            "violations": {name: _worst(record, excess) for name, excess in excesses.items()},
             "unsolved": _unsolved(record),
             "network_iterations": {
                 "mean": record.iterations.mean() if record.steps else None,
                 "max": _max(record.iterations),
             },
             "crosscheck": _crosscheck(record),
-            **_physics(record),
+            **_physics(record, distance),
             **_incidents(record),
             **_frames(record),
             **_collisions(record),
@@ -264,12 +177,6 @@ def compute_metrics(record: Record) -> dict[str, Any]:
         }
     )
     return metrics
-
-
-def _distance(record: Record) -> FloatArray:
-    """Compute the distance of the tip from its target [m], (N+1,)."""
-    distance: FloatArray = np.linalg.norm(position_error(record), axis=1)
-    return distance
 
 
 def _max(values: NDArray[Any]) -> Any:
@@ -296,17 +203,13 @@ def _worst(record: Record, excess: FloatArray) -> dict[str, Any] | None:
     if not excess.max(initial=0.0) > 0.0:
         return None
     step, joint = np.unravel_index(int(excess.argmax()), excess.shape)
-    return {
-        "joint": joint_name(record.settings, int(joint)),
-        "step": step,
-        "time_s": record.t[step],
-    }
+    name = joint_name(record.settings, int(joint))
+    return {"joint": name, "step": step, "time_s": record.t[step]}
 
 
-def _active(record: Record) -> BoolArray:
-    """Test for each step whether a bound or an inequality row was active, (N,)."""
-    multipliers = [record.filled(name) for name in ("bound_multiplier", "row_multiplier")]
-    return np.asarray(np.hstack(multipliers).any(axis=1))
+def _active(record: Record) -> FloatArray:
+    """Return the multipliers of the n bounds and the m inequality rows, (N, n + m)."""
+    return np.hstack([record.filled(name) for name in ("bound_multiplier", "row_multiplier")])
 
 
 def _crosscheck(record: Record) -> dict[str, Any]:
@@ -329,95 +232,61 @@ def _crosscheck(record: Record) -> dict[str, Any]:
     differs = believed & ~(gap <= check["tolerance"]) & converged
     excess = record.filled("excess")
     outside = ~(excess <= EXCESS_TOLERANCE) & (kind != _STOPPED) & converged
-    disagrees = differs.any(axis=1) | outside
+    disagrees = np.column_stack([differs, outside])
     checked = asked.all(axis=1) & (record.references > 0)
-    proofs = [name == PROOF for name in check["solvers"]]
-    first = _first(record, disagrees)
+    first = _first(record, disagrees.any(axis=1))
+    if first is not None:
+        step = first["step"]
+        gaps = np.where(disagrees[step], [*gap[step], excess[step]], -np.inf)
+        judge = int(gaps.argmax())
+        first = first | {"solver": [*check["solvers"], BOUNDS][judge], "gap": gaps[judge]}
     return {
         "solver": "+".join(check["solvers"]) or "none",
-        **({"proven": believed[:, proofs].sum()} if any(proofs) else {}),
         "steps_checked": checked.sum(),
         "kinds": {
             name: ((kind == code) & (checked | (code >= _HELD))).sum()
             for code, name in enumerate(PROGRAMS)
         },
         "judged_by": _judged_by(record, asked),
-        "disagreements": disagrees.sum(),
+        "disagreements": disagrees.any(axis=1).sum(),
         "reference_failures": (asked & ~believed).sum(),
         "max_solution_gap": _max(gap[believed]),
         "max_objective_gap": _max(record.objective_gap[believed]),
         "max_reference_residual": _max(residual[np.isfinite(residual)]),
-        "max_excess": _max(excess),
         "judged": converged and record.references > 0,
         "tolerance": check["tolerance"],
-        "first_disagreement": first and _who(record, first, differs, outside),
+        "first_disagreement": first,
     }
 
 
 def _judged_by(record: Record, asked: BoolArray) -> dict[str, int]:
     """Count the answers that each solver judged: those asked for, and the second ones."""
     check = record.settings["check"]
-    counts: dict[str, int] = {}
-    pairs = zip(check["solvers"], check.get("second", check["solvers"]), strict=True)
-    for i, pair in enumerate(pairs if len(record.judge) else ()):
+    counts: Counter[str] = Counter()
+    judges = zip(check["solvers"], check["second"], strict=True)
+    for pair, codes, was_asked in zip(judges, record.filled("judge").T, asked.T, strict=True):
         for code, solver in enumerate(pair):
-            judged = int((asked[:, i] & (record.judge[:, i] == code)).sum())
-            counts[solver] = counts.get(solver, 0) + judged
+            counts[solver] += int((was_asked & (codes == code)).sum())
     return {solver: count for solver, count in counts.items() if count}
 
 
-def _who(
-    record: Record, first: dict[str, Any], differs: BoolArray, outside: BoolArray
-) -> dict[str, Any]:
-    """Name the solver that differs most at the first step that disagrees, or its bounds."""
-    step = first["step"]
-    found = {"step": step, "time_s": first["time_s"]}
-    if outside[step]:
-        return found | {"solver": BOUNDS, "gap": record.excess[step]}
-    gap = record.solution_gap[step]
-    solver = int(np.argmax(np.where(differs[step], gap, -np.inf)))
-    return found | {"solver": record.settings["check"]["solvers"][solver], "gap": gap[solver]}
-
-
-def _physics(record: Record) -> dict[str, Any]:
-    """Sum up torques, settled error and recovery from a push."""
+def _physics(record: Record, distance: FloatArray) -> dict[str, Any]:
+    """Sum up the torques and the settled error; the distance is that to the path [m], (N+1,)."""
     if not len(record.torque):
         return {}
-    distance = _distance(record)
     torque = np.abs(record.torque)
     limit = limits(record, "torque_max")
-    reached = [_first(record, ~(torque[:, i] < limit[i])) for i in range(record.dof)]
+    reached = ~(torque < limit)
+    joints = [joint_name(record.settings, joint) for joint in np.flatnonzero(reached.any(axis=0))]
+    first = _first(record, reached.any(axis=1))
     physics = {
         "settled_after_s": SETTLED_AFTER,
         "max_position_error_settled_m": _max(distance[record.t >= record.t[0] + SETTLED_AFTER]),
         "max_torque_n_m": torque.max(axis=0),
-        "torque_limit_n_m": record.settings["torque_max"],
         "max_torque_share": (torque.max(axis=0) / limit).max(),
-        "torque_limit_reached": [
-            {"joint": joint_name(record.settings, i), "limit_n_m": limit[i], **first}
-            for i, first in enumerate(reached)
-            if first is not None
-        ],
-        "push": _push(record, distance),
+        "torque_limit_reached": first and first | {"joints": joints},
     }
     return {"physics": physics}
-
-
-def _push(record: Record, distance: FloatArray) -> dict[str, Any] | None:
-    """Measure the recovery from a push; its time is None where the tip never came back for good."""
-    push = (record.settings.get("physics") or {}).get("disturbances", {}).get("push")
-    if push is None:
-        return None
-    end = push["start"] + push["duration"]
-    far = record.t[(record.t >= end) & ~(distance <= RECOVERED_BELOW)]
-    # The first sample after the last one that is too far away.
-    recovered = record.t[(record.t >= end) & (record.t > max([*far[-1:], -np.inf]))]
-    return {
-        **push,
-        "max_position_error_m": _max(distance[record.t >= push["start"]]),
-        "recovered_below_m": RECOVERED_BELOW,
-        "recovery_s": max(0.0, recovered[0] - end) if recovered.size else None,
-    }
 
 
 def _frames(record: Record) -> dict[str, Any]:
@@ -451,116 +320,36 @@ def _collisions(record: Record) -> dict[str, Any]:
 
 
 def _incidents(record: Record) -> dict[str, Any]:
-    """Count active bounds and rows, clipped commands, and steps that a policy decided."""
-    columns = ("bound_multiplier", "row_multiplier", "clipped", "action")
-    if not any(len(getattr(record, name)) for name in columns):
-        return {}
+    """Count active limits, limits in the way, clipped commands, and a policy's steps."""
+    multipliers = _active(record)
     action = record.filled("action")
-    kinds: Codes = record.bound_kind
+    clipped = record.filled("clipped").any(axis=1)
+    if not (multipliers.any() or action.any() or clipped.any()):
+        return {}
+    kinds = np.abs(record.bound_kind)
     if not len(kinds):
         # A bound is the velocity limit itself, or the tighter one near a position limit.
         kinds = 1 + (np.abs(record.dq_solver) >= _AT_LIMIT * limits(record, "dq_max"))
-    blocking = record.filled("blocking")
-    first = _first(record, action != 0)
-    slow = action == _SLOW
+    acting = np.sign(multipliers).astype(int)
+    acting[:, : record.dof] *= kinds
+    blocking = np.hstack([record.filled(name) for name in ("blocking", "blocking_rows")])
     return {
         "incidents": {
-            "clipped_steps": record.filled("clipped").any(axis=1).sum(),
+            "clipped_steps": clipped.sum(),
             **{f"{name}_steps": (action == code).sum() for code, name in ACTIONS.items()},
             "path_time_s": record.path_time,
-            "needed": _needed(record, slow),
-            "off_path_m": _off_path(record, slow),
-            "first": first and _what(record, first, action),
-            "blocking": _bounds(record, blocking, np.abs(blocking)),
-            "blocking_rows": _rows(record, "blocking_rows"),
-            "active_bounds": _bounds(
-                record, record.filled("bound_multiplier"), np.abs(kinds), True
-            ),
-            "active_rows": _rows(record, "row_multiplier", True),
+            "first": _first(record, action != 0),
+            "blocking": _limits(record, blocking),
+            "active": _limits(record, acting),
         }
     }
 
 
-def _begins_far(record: Record) -> bool:
-    return bool(_distance(record)[0] > FAR)
-
-
-def _needed(record: Record, slow: BoolArray) -> dict[str, Any] | None:
-    """Estimate the speed that would have sufficed where velocity limits alone slowed the path.
-
-    With its velocity over the fraction of the path's speed that it had, a slowed step would have
-    followed the path at its own speed. The time is that of the path once at the mean pace. What is
-    left of an incomplete path may need more. A tip that begins far from the path was slowed on its
-    way there, which says nothing of the path.
-    """
-    acting = np.abs(record.filled("blocking")[slow])
-    by_velocity = (acting == _VELOCITY).any(axis=1) & np.isin(acting, (0, _VELOCITY)).all(axis=1)
-    if not (slow.any() and by_velocity.all()) or record.blocking_rows.any() or _begins_far(record):
-        return None
-    fraction = record.filled("fraction")[slow, np.newaxis]
-    ratio = (np.abs(record.dq_solver[slow]) / limits(record, "dq_max") / fraction).max(axis=0)
-    joint = int(ratio.argmax())
-    return {
-        "joint": joint + 1,
-        "name": joint_name(record.settings, joint),
-        "speed_ratio": ratio[joint],
-        "time_s": record.t[-1] * record.path_duration / max(record.path_time, 1e-300),
-    }
-
-
-def _off_path(record: Record, slow: BoolArray) -> float | None:
-    """Compute the largest distance [m] to the slowed target where inequality rows slowed the path.
-
-    A tip that begins far from the path, or that acceleration limits hold back, says nothing of it.
-    """
-    rows = record.filled("blocking_rows").any(axis=1)
-    slowed = rows & slow & (np.abs(record.filled("blocking")) <= _VELOCITY).all(axis=1)
-    if not slowed.any() or _begins_far(record):
-        return None
-    return float(_distance(record)[1:][slowed].max())
-
-
-def _what(record: Record, first: dict[str, Any], action: Codes) -> dict[str, Any]:
-    """Name the action at the first step that a policy decided, and the limits in its way."""
-    step = first["step"]
-    acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
-    return {
-        "step": step,
-        "time_s": first["time_s"],
-        "action": ACTIONS.get(int(action[step]), "unknown"),
-        "against": in_the_way(record.settings, *acting),
-    }
-
-
-def _bounds(
-    record: Record, values: Codes, kinds: Codes, sized: bool = False
-) -> list[dict[str, Any]]:
-    """Sum up entries (N, n) by the bound: positive ones are an upper one's, negative a lower's."""
-    words = bound_words(record.settings)
-    joints = record.settings.get("joints", ())
-    return [
-        _spell(record, bound_name(joint, sign * code, words, joints), acting, sized)
-        for joint, sign, code in product(range(record.dof), (-1, 1), range(1, 1 + len(words)))
-        if (acting := sign * values[:, joint] * (kinds[:, joint] == code)).max(initial=0.0) > 0.0
-    ]
-
-
-def _rows(record: Record, column: str, sized: bool = False) -> list[dict[str, Any]]:
-    """Sum up a column of the inequality rows by the row."""
-    rows = record.settings.get("rows") or ()
-    return [
-        _spell(record, row, values, sized)
-        for row, values in zip(rows, record.filled(column).T, strict=True)
-        if (values > 0).any()
-    ]
-
-
-def _spell(record: Record, name: Mapping[str, Any], values: Codes, sized: bool) -> dict[str, Any]:
-    """Count the steps at which a limit acted, those with an entry (N,) above zero."""
-    steps = np.flatnonzero(values > 0)
-    time = float(record.settings["dt"]) * steps.size
-    spell = {**name, "steps": steps.size, "time_s": time, "first_s": record.t[steps[0]]}
-    if sized:
-        multiplier = values[steps]
-        spell |= {"max_multiplier": multiplier.max(), "mean_multiplier": multiplier.mean()}
-    return spell
+def _limits(record: Record, codes: NDArray[Any]) -> list[Mapping[str, Any]]:
+    """Count the steps of each limit, the longest first; codes of bounds and rows (N, n + m)."""
+    found = []
+    for column, one in zip(codes.T, np.eye(codes.shape[1], dtype=int), strict=True):
+        for code in np.unique(column):
+            limit = in_the_way(record.settings, code * one[: record.dof], code * one[record.dof :])
+            found += [name | (_first(record, column == code) or {}) for name in limit]
+    return sorted(found, key=lambda limit: (-limit["steps"], "joint" in limit))

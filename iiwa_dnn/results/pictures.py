@@ -28,7 +28,6 @@ from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import visual_meshes
 
 if TYPE_CHECKING:
-    import mujoco
     from matplotlib.figure import Figure
 
 Image = NDArray[np.uint8]
@@ -39,20 +38,18 @@ MOMENTS = 5
 FRAME_RATE = 25
 """Pictures in a second of the video, which runs in real time."""
 
-WIDTH = 960  # of the video [pixel]
-HEIGHT = 540
+SIZE = (960, 540)
+"""Width and height of the video [pixel]."""
+
 OBSTACLE_COLOR = (0.25, 0.45, 0.75)
-_DESIRED = (0.2, 0.25, 0.35, 1.0)
-_DRAWN = (0.86, 0.0, 0.1, 1.0)
-_REMEDY = "pip install 'iiwa-dnn[sim]'"
 _PIECES = 400  # straight ones that a path is drawn with
-_GROUP = 2  # of the scenery
-_SHAPE: dict[str, Any] = {"group": _GROUP, "contype": 0, "conaffinity": 0}
+_SHAPE: dict[str, Any] = {"group": VISUAL_GROUP, "contype": 0, "conaffinity": 0}
 _SCENERY = f"""
 <mujoco>
   <visual>
     <headlight ambient="0.4 0.4 0.4" diffuse="0.3 0.3 0.3" specular="0.1 0.1 0.1"/>
     <quality offsamples="4" shadowsize="4096"/>
+    <global offwidth="2000" offheight="2000"/>
   </visual>
   <statistic center="0 0 0.4" extent="1.2"/>
   <asset>
@@ -64,7 +61,7 @@ _SCENERY = f"""
     <material name="floor" texture="tiles" texuniform="true" texrepeat="2 2"/>
   </asset>
   <worldbody>
-    <geom type="plane" size="1.25 1.25 0.1" material="floor" group="{_GROUP}"
+    <geom type="plane" size="1.25 1.25 0.1" material="floor" group="{VISUAL_GROUP}"
       contype="0" conaffinity="0"/>
     <light type="spot" pos="0.8 -0.6 2.6" dir="-0.25 0.2 -1" diffuse="0.55 0.55 0.55"
       cutoff="60" exponent="1"/>
@@ -90,12 +87,12 @@ def moments_figure(robot: Robot, record: Record, pixels: int = 560) -> Figure:
         MissingDependencyError: MuJoCo or an OpenGL library is not installed.
     """
     figure = new_figure(DOUBLE_COLUMN, DOUBLE_COLUMN / MOMENTS + 0.2)
-    times = np.linspace(record.t[0], record.t[-1], MOMENTS + 1)[1:]
-    with ArmRenderer(robot, record, pixels, pixels) as renderer:
-        for panel, t in zip(figure.subplots(1, MOMENTS), times, strict=True):
-            panel.imshow(renderer.draw(sample_at(record, t)), interpolation="lanczos")
+    samples = np.linspace(0, record.steps, MOMENTS + 1).astype(int)[1:]
+    with ArmRenderer(robot, record, (pixels, pixels)) as renderer:
+        for panel, sample in zip(figure.subplots(1, MOMENTS), samples, strict=True):
+            panel.imshow(renderer.draw(sample), interpolation="lanczos")
             panel.set_axis_off()
-            panel.set_title(f"$t$ = {t:.3g} s", fontsize=8, pad=3)
+            panel.set_title(f"$t$ = {record.t[sample]:.3g} s", fontsize=8, pad=3)
     return figure
 
 
@@ -108,7 +105,8 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
         MissingDependencyError: MuJoCo, an OpenGL library or the encoder is not installed.
         FileError: The file cannot be written.
     """
-    encoder = import_encoder()
+    import_extra("imageio_ffmpeg", "pip install 'iiwa-dnn[sim]'")
+    encoder = import_extra("imageio.v2", "pip install 'iiwa-dnn[sim]'")
 
     def encode(file: BinaryIO) -> None:
         # The index at the front, so that a page can start to play it at once.
@@ -120,32 +118,19 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
     write_atomically(path, encode)
 
 
-def import_encoder() -> Any:
-    """Import the writer of videos, a part of the extra ``sim``; raises MissingDependencyError."""
-    import_extra("imageio_ffmpeg", _REMEDY)
-    return import_extra("imageio.v2", _REMEDY)
-
-
 def frames(robot: Robot, record: Record) -> Iterator[Image]:
-    """Draw the video's pictures, (HEIGHT, WIDTH, 3)."""
+    """Draw the video's pictures, (height, width, 3)."""
     count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
-    with ArmRenderer(robot, record, WIDTH, HEIGHT) as renderer:
-        for t in np.linspace(record.t[0], record.t[-1], count):
-            yield renderer.draw(sample_at(record, t))
-
-
-def sample_at(record: Record, t: float) -> int:
-    """Return the index of the record's sample nearest to a time [s]."""
-    return int(np.abs(record.t - t).argmin())
+    with ArmRenderer(robot, record) as renderer:
+        for sample in np.linspace(0, record.steps, count).astype(int):
+            yield renderer.draw(sample)
 
 
 class ArmRenderer(AbstractContextManager["ArmRenderer"]):
     """A renderer of an arm that follows a record, with the path so far; a context manager."""
 
-    def __init__(
-        self, robot: Robot, record: Record, width: int = WIDTH, height: int = HEIGHT
-    ) -> None:
-        """Lay out the scene around the arm and the record's path, `width` by `height` [pixel].
+    def __init__(self, robot: Robot, record: Record, size: tuple[int, int] | None = None) -> None:
+        """Lay out the scene around the arm and the record's path, width by height [pixel].
 
         Raises:
             MissingDependencyError: MuJoCo or an OpenGL library is not installed.
@@ -155,22 +140,16 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         prepare_renderer()  # before the slow part
         self._record = record
         self._obstacles = obstacles_of(record)
-        model = self._model(robot)
-        model.vis.global_.offwidth = width
-        model.vis.global_.offheight = height
-        self._data = self._mj.MjData(model)
-        self._pose(0)
+        self._model = self._scene(robot)
+        self._data = self._mj.MjData(self._model)
         self._camera = self._mj.MjvCamera()
-        _aim(self._camera, record, float(self._data.xpos[:, 2].max()))
+        _aim(self._camera, record)
         self._options = self._mj.MjvOption()
+        self._options.geomgroup[:] = np.arange(self._options.geomgroup.size) == VISUAL_GROUP
         self._options.sitegroup[:] = 0
-        self._options.geomgroup[:] = 0
-        self._options.geomgroup[[_GROUP, VISUAL_GROUP]] = 1
-        self._paths = [(record.position_desired, record.position)]
-        desired = record.frame_position_desired.swapaxes(0, 1)
-        self._paths += zip(desired, record.frame_position.swapaxes(0, 1), strict=True)
-        most = model.ngeom + 2 * _PIECES * len(self._paths) + 10
-        self._renderer = self._mj.Renderer(model, height, width, most)
+        width, height = size or SIZE
+        most = self._model.ngeom + 2 * _PIECES + 10
+        self._renderer = self._mj.Renderer(self._model, height, width, most)
 
     def __exit__(self, *_: object) -> None:
         """Give the OpenGL context back."""
@@ -178,49 +157,54 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
 
     def draw(self, sample: int) -> Image:
         """Draw the arm at a sample of the record, 0 to N: (height, width, 3), colors to 255."""
-        self._pose(sample)
+        record = self._record
         renderer = self._renderer
+        self._data.qpos[:] = record.q[sample]
+        for i, obstacle in enumerate(self._obstacles):
+            self._data.mocap_pos[i] = obstacle.shift(float(record.t[sample]))
+        self._mj.mj_kinematics(self._model, self._data)
+        self._mj.mj_camlight(self._model, self._data)
         renderer.update_scene(self._data, self._camera, self._options)
         width = max(3.0, renderer.height / 130.0)
         # A little farther off than what is drawn, so that it never shows through that.
         behind = 2e-3 * self._camera.distance * renderer.scene.camera[0].forward
-        steps = self._record.steps
-        corners = np.linspace(0, steps, min(steps, _PIECES) + 1).astype(int)
-        for desired, drawn in self._paths:
-            self._line(desired[corners] + behind, 0.4 * width, _DESIRED)
-            self._line(drawn[[*corners[corners < sample], sample]], width, _DRAWN)
+        corners = np.linspace(0, record.steps, min(record.steps, _PIECES) + 1).astype(int)
+        self._line(record.position_desired[corners] + behind, 0.4 * width, (0.2, 0.25, 0.35))
+        drawn = record.position[[*corners[corners < sample], sample]]
+        self._line(drawn, width, (0.86, 0.0, 0.1))
         image: Image = renderer.render()
         return image
 
-    def _model(self, robot: Robot) -> mujoco.MjModel:
+    def _scene(self, robot: Robot) -> Any:
         """Compile robot, floor and light, and the obstacles as bodies that can be displaced."""
         spec = self._mj.MjSpec.from_string(_SCENERY)
         arm = build_spec(robot)
-        _add_meshes(self._mj, arm, robot)
+        mesh_type = self._mj.mjtGeom.mjGEOM_MESH
+        shell = self._mj.mjtMeshInertia.mjMESH_INERTIA_SHELL
+        joints = {joint.name: joint.parent for joint in arm.joints}
+        for i, mesh in enumerate(visual_meshes(robot)):
+            faces = mesh.faces.ravel()
+            arm.add_mesh(
+                name=f"mesh_{i}", uservert=mesh.corners.ravel(), userface=faces, inertia=shell
+            )
+            body = joints[robot.model.names[mesh.joint]] if mesh.joint else arm.worldbody
+            body.add_geom(type=mesh_type, meshname=f"mesh_{i}", rgba=[*mesh.color, 1.0], **_SHAPE)
         spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
         for i, obstacle in enumerate(self._obstacles):
             body = spec.worldbody.add_body(name=f"obstacle_{i}", mocap=True)
             vertices, faces = outline(obstacle)
             spec.add_mesh(name=body.name, uservert=vertices.ravel(), userface=faces.ravel())
-            mesh = self._mj.mjtGeom.mjGEOM_MESH
-            body.add_geom(type=mesh, meshname=body.name, rgba=[*OBSTACLE_COLOR, 1.0], **_SHAPE)
+            rgba = [*OBSTACLE_COLOR, 1.0]
+            body.add_geom(type=mesh_type, meshname=body.name, rgba=rgba, **_SHAPE)
         return spec.compile()
-
-    def _pose(self, sample: int) -> None:
-        """Bring the arm and the obstacles to where they are at a sample."""
-        self._data.qpos[:] = self._record.q[sample]
-        for i, obstacle in enumerate(self._obstacles):
-            self._data.mocap_pos[i] = obstacle.shift(float(self._record.t[sample]))
-        self._mj.mj_kinematics(self._data.model, self._data)
-        self._mj.mj_camlight(self._data.model, self._data)
 
     def _line(self, points: FloatArray, width: float, color: tuple[float, ...]) -> None:
         """Add a path (M, 3) [m] to the scene as lines of this width [pixel]."""
         scene = self._renderer.scene
         kind = self._mj.mjtGeom.mjGEOM_LINE
+        rgba = np.array([*color, 1.0], dtype=np.float32)
         for start, end in pairwise(points):
             geom = scene.geoms[scene.ngeom]
-            rgba = np.array(color, dtype=np.float32)
             self._mj.mjv_initGeom(geom, kind, np.zeros(3), start, np.eye(3).ravel(), rgba)
             self._mj.mjv_connector(geom, kind, width, start, end)
             geom.emission = 1.0  # the color as it is, whatever the light
@@ -233,28 +217,12 @@ def obstacles_of(record: Record) -> list[Obstacle]:
     return [obstacle for obstacle in made if not isinstance(obstacle, HalfSpace)]
 
 
-def _add_meshes(mj: Any, spec: mujoco.MjSpec, robot: Robot) -> None:
-    """Add the meshes of a robot, or sticks where it has no shapes; its primitives are there."""
-    joints = {joint.name: joint.parent for joint in spec.joints}
-    shell = mj.mjtMeshInertia.mjMESH_INERTIA_SHELL
-    for i, mesh in enumerate(visual_meshes(robot)):
-        name = f"mesh_{i}"
-        faces = mesh.faces.ravel()
-        spec.add_mesh(name=name, uservert=mesh.corners.ravel(), userface=faces, inertia=shell)
-        body = joints[robot.model.names[mesh.joint]] if mesh.joint else spec.worldbody
-        shape = {**_SHAPE, "group": VISUAL_GROUP, "rgba": [*mesh.color, 1.0]}
-        body.add_geom(type=mj.mjtGeom.mjGEOM_MESH, meshname=name, **shape)
-
-
-def _aim(camera: Any, record: Record, top: float) -> None:
-    """Aim a camera at the whole arm, up to its top [m], from beside the path."""
+def _aim(camera: Any, record: Record) -> None:
+    """Aim a camera at the whole arm from beside the path."""
     path = record.position_desired.mean(axis=0)
     radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
     camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * radius])
     camera.distance = 1.8 * radius
-    if top > 1.1 * radius:  # a head, for example
-        camera.lookat[2] = 0.5 * top
-        camera.distance = 1.8 * top
     # MuJoCo's azimuth is the direction of sight.
     camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
     camera.elevation = -38.0

@@ -40,10 +40,14 @@ _JOINTS = {
     "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]"),
     "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]"),
 }
-_COMPONENTS = (("$e_x$", "0.35", "--"), ("$e_y$", "0.5", "-."), ("$e_z$", "0.65", ":"))
+_ERRORS = (
+    ("$e_x$", "0.35", "--"),
+    ("$e_y$", "0.5", "-."),
+    ("$e_z$", "0.65", ":"),
+    (r"$\|e\|$", "0.0", "-"),
+)
 _DASHES = ("-", "--", "-.", ":")
 _MARKERS = "os^Dv<>PXd"
-_GREYS = ("0.15", "0.55", "0.35", "0.7")
 
 
 def save_figures(record: Record, folder: str | os.PathLike[str]) -> list[Path]:
@@ -114,13 +118,13 @@ def overview_figure(record: Record) -> Figure:
     A run in physics, one that was slowed, one that avoids collisions and one that tracks several
     frames have further panels.
     """
-    further: dict[Callable[[Any, Record], None], Any] = {
+    further: dict[Callable[[Axes, Record], None], Any] = {
         partial(draw_joints, name="torque"): len(record.torque),
         draw_frames: len(record.frame_position),
         draw_path_time: (record.fraction < 1.0).any(),
         draw_distance: len(record.distance),
     }
-    panels: list[Callable[[Any, Record], None]] = [
+    panels: list[Callable[[Axes, Record], None]] = [
         draw_path,
         partial(draw_joints, name="q"),
         partial(draw_joints, name="dq"),
@@ -132,8 +136,7 @@ def overview_figure(record: Record) -> Figure:
     rows = (len(panels) + 1) // 2
     figure = new_figure(DOUBLE_COLUMN, 2.7 * rows)
     for number, draw in enumerate(panels):
-        spatial = draw is draw_path and plane_of(record.position_desired) is None
-        axes = figure.add_subplot(rows, 2, number + 1, projection="3d" if spatial else None)
+        axes = figure.add_subplot(rows, 2, number + 1)
         draw(axes, record)
         axes.set_title(f"({chr(ord('a') + number)})", loc="left", fontsize=8)
     return figure
@@ -141,37 +144,24 @@ def overview_figure(record: Record) -> Figure:
 
 def convergence_figure(record: Record) -> Figure:
     """Draw KKT residual and, if there were references, the gap to each; with their tolerances."""
-    rows = 2 if record.references else 1
-    figure = new_figure(COLUMN, 1.9 * rows)
-    panels = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
-    for axes, draw in zip(panels, (draw_residual, draw_gap), strict=False):
+    panels = [draw_residual, draw_gap][: 2 if record.references else 1]
+    figure = new_figure(COLUMN, 1.9 * len(panels))
+    for axes, draw in zip(figure.subplots(len(panels), squeeze=False).flat, panels, strict=True):
         draw(axes, record)
-        axes.label_outer()
     return figure
 
 
-def plane_of(position: FloatArray) -> tuple[int, int] | None:
-    """Return the two axes that a path (N, 3) [m] spans, None for three or for a single point."""
-    spread = np.ptp(position, axis=0)
-    flat = int(spread.argmin())
-    if not spread[flat] <= 1e-3 * spread.max():
-        return None
-    first, second = (axis for axis in range(3) if axis != flat)
-    return first, second
-
-
-def draw_path(axes: Any, record: Record) -> None:
-    """Draw the desired and the actual path [m], in spatial axes where `plane_of` finds no plane."""
-    plane = plane_of(record.position_desired)
-    columns = list(plane or (0, 1, 2))
-    actual = record.position[:, columns].T
+def draw_path(axes: Axes, record: Record) -> None:
+    """Draw the desired and the actual path [m], seen along the axis of its least extent."""
+    across, up = np.sort(np.ptp(record.position_desired, axis=0).argsort(kind="stable")[1:])
     # Wide and pale under thin and dark: both stay visible where they coincide.
-    desired = record.position_desired[:, columns].T
-    axes.plot(*desired, color="0.72", linewidth=3.2, label="desired")
-    axes.plot(*actual, color="0.0", linestyle="--", label="actual")
-    axes.plot(*actual[:, :1], color="0.0", marker="o", linestyle="", markersize=4, label="start")
-    names = ("xlabel", "ylabel", "zlabel")
-    axes.set(**{name: f"${'xyz'[i]}$ [m]" for name, i in zip(names, columns, strict=False)})
+    for path, style in (
+        (record.position_desired, {"color": "0.72", "linewidth": 3.2, "label": "desired"}),
+        (record.position, {"color": "0.0", "linestyle": "--", "label": "actual"}),
+        (record.position[:1], {"color": "0.0", "marker": "o", "linestyle": "", "label": "start"}),
+    ):
+        axes.plot(path[:, across], path[:, up], **style)
+    axes.set(xlabel=f"${'xyz'[across]}$ [m]", ylabel=f"${'xyz'[up]}$ [m]")
     axes.set_aspect("equal", adjustable="datalim")
     axes.locator_params(nbins=4)
     legend_above(axes, columns=3)
@@ -187,13 +177,12 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
 
     symbol, quantity = _JOINTS[name]
     curves: FloatArray = getattr(record, name).T
-    bounds: FloatArray = np.full((2, record.dof), np.nan)
+    bounds = limits(record, "dq_max") * [[-1.0], [1.0]]
     if name == "torque":
         curves = 100.0 * curves / limits(record, "torque_max")[:, np.newaxis]
+        bounds = np.empty((0, record.dof))
     elif name == "q":
         bounds = np.array([limits(record, "q_lower", -np.inf), limits(record, "q_upper")])
-    else:
-        bounds = limits(record, "dq_max") * [[-1.0], [1.0]]
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings, record.dof)
     every = max(min(curves.shape[1], BUCKETS) // 7, 1)
@@ -212,8 +201,7 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     for i, joint in np.argwhere((low - margin <= bounds) & (bounds <= high + margin)):
         color = colors[joint] if np.ptp(bounds[i]) else "0.0"
         axes.axhline(bounds[i, joint], color=color, linewidth=0.8, linestyle=(0, (8, 3)))
-    label_time(axes, record, quantity)
-    legend_above(axes, columns=4 if max(map(len, names)) < 8 else 2)
+    label_time(axes, record, quantity, columns=4 if max(map(len, names)) < 8 else 2)
 
 
 def _draw_curve(axes: Axes, t: FloatArray, curve: FloatArray, **line: Any) -> None:
@@ -233,17 +221,11 @@ def draw_error(axes: Axes, record: Record) -> None:
     from matplotlib.ticker import EngFormatter
 
     error = position_error(record)
-    error = np.where(np.isfinite(error), error, np.nan)  # a gap in the line
-    for (label, color, dashes), curve in zip(_COMPONENTS, error.T, strict=True):
-        times, mean, _, _ = envelope(
-            record.t, curve, BUCKETS // 4
-        )  # four bands would hide each other
-        axes.plot(times, mean, color=color, linestyle=dashes, label=label)
-    norm = np.linalg.norm(error, axis=1)
-    _draw_curve(axes, record.t, norm, color="0.0", label=r"$\|e\|$")
+    curves = [*error.T, np.linalg.norm(error, axis=1)]
+    for (label, color, dashes), curve in zip(_ERRORS, curves, strict=True):
+        _draw_curve(axes, record.t, curve, color=color, linestyle=dashes, label=label)
     axes.yaxis.set_major_formatter(EngFormatter("m"))
     label_time(axes, record, "Position error")
-    legend_above(axes, columns=4)
 
 
 def draw_orientation_error(axes: Axes, record: Record) -> None:
@@ -259,23 +241,20 @@ def draw_kinetic_index(axes: Axes, record: Record) -> None:
     """Draw the kinetic index over time."""
     _draw_curve(axes, record.t[:-1], record.kinetic_index, color="0.0", label="kinetic index")
     label_time(axes, record, r"$\dot{q}^T G \dot{q}$")
-    legend_above(axes, columns=1)
 
 
 def draw_residual(axes: Axes, record: Record) -> None:
     """Draw the KKT residual of the network's answers over time, and its tolerance."""
     # In continuous mode it is a lag, which no tolerance is meant for.
-    judged = record.settings["mode"] == "converged"
-    residual = record.kkt_residual[:, np.newaxis]
-    draw_log(axes, record.t[:-1], residual, ["network"], judged * record.settings["tol"])
+    tolerance = (record.settings["mode"] == "converged") * record.settings["tol"]
+    draw_log(axes, record.t[:-1], record.kkt_residual[:, np.newaxis], ["network"], tolerance)
     label_time(axes, record, "KKT residual")
 
 
 def draw_gap(axes: Axes, record: Record) -> None:
     """Draw the gap to each reference over time, and its tolerance; missing answers are gaps."""
     check = record.settings["check"]
-    judged = record.settings["mode"] == "converged"
-    tolerance = judged * check["tolerance"]
+    tolerance = (record.settings["mode"] == "converged") * check["tolerance"]
     draw_log(axes, record.t[:-1], record.solution_gap, check["solvers"], tolerance)
     label_time(axes, record, "Gap to reference [rad/s]")
 
@@ -288,24 +267,20 @@ def draw_frames(axes: Axes, record: Record) -> None:
 
 def draw_distance(axes: Axes, record: Record) -> None:
     """Draw the distance of the nearest pair [m] over time, and the least that is allowed."""
-    # Of each stretch the smallest: that is what counts.
     times, _, least, _ = envelope(record.t, record.distance)
     axes.plot(times, least, color="0.0", label="nearest pair")
     allowed = record.settings["collisions"]["distance"]
     axes.axhline(allowed, color="0.0", linestyle="--", label="least allowed")
     axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     label_time(axes, record, "Distance [m]")
-    legend_above(axes, columns=2)
 
 
 def draw_path_time(axes: Axes, record: Record) -> None:
     """Draw the path's time over time, as planned and as a slowed run reached it."""
     reached = np.append(0.0, np.cumsum(record.settings["dt"] * record.filled("fraction")))
-    span = record.t[[0, -1]]
-    axes.plot(span, span - span[0], color="0.55", linestyle="--", label="as planned")
+    axes.plot(record.t, record.t - record.t[0], color="0.55", linestyle="--", label="as planned")
     axes.plot(*envelope(record.t, reached)[:2], color="0.0", label="reached")
     label_time(axes, record, "Path time [s]")
-    legend_above(axes, columns=2)
 
 
 def draw_log(
@@ -317,22 +292,20 @@ def draw_log(
     line. Zero and infinity have no point there.
     """
     axes.set_yscale("log", nonpositive="mask")
-    for i, (name, curve) in enumerate(zip(names, values.T, strict=True)):
+    for name, curve in zip(names, values.T, strict=True):
         shown = (curve > 0.0) & np.isfinite(curve)
         times, _, _, greatest = envelope(t[shown], curve[shown])
-        axes.plot(
-            times, greatest, ".-", color=_GREYS[i % 4], markersize=1.0, linewidth=0.8, label=name
-        )
+        axes.plot(times, greatest, ".-", markersize=1.0, linewidth=0.8, label=name)
     if tolerance > 0.0:
         axes.axhline(tolerance, color="0.0", linestyle="--", label="tolerance")
-    legend_above(axes, columns=3)
 
 
-def label_time(axes: Axes, record: Record, quantity: str) -> None:
-    """Label time and quantity, and let the time axis span the run."""
+def label_time(axes: Axes, record: Record, quantity: str, columns: int = 4) -> None:
+    """Label time, quantity and curves, and let the time axis span the run."""
     axes.set(xlabel="Time [s]", ylabel=quantity)
     if record.steps:
         axes.set_xlim(record.t[0], record.t[-1])
+    legend_above(axes, columns)
 
 
 def legend_above(axes: Axes, columns: int) -> None:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields
-from pathlib import Path
 from typing import Annotated, Any, NamedTuple, get_origin, get_type_hints
 
 import numpy as np
@@ -20,8 +18,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 CodeArray = NDArray[np.int8]
 
-MODES = ("converged", "continuous")
-LIMITS = ("q_lower", "q_upper", "dq_max")
 RATES = ("ddq_max", "dddq_max")
 
 
@@ -50,7 +46,7 @@ class Column(NamedTuple):
         return array
 
     def check(self, name: str, value: ArrayLike, sizes: dict[str, int]) -> NDArray[Any]:
-        """Return a read-only array of this column, copied unless it cannot be written into.
+        """Return a read-only copy of an array of this column.
 
         Sizes that this array is the first to have are entered.
 
@@ -62,18 +58,15 @@ class Column(NamedTuple):
             if isinstance(symbol, str) and length:
                 sizes.setdefault(symbol, length)
         expected = self._lengths(sizes)
-        absent = (0, *expected[1:])
-        if not array.size:
-            array = np.zeros(expected if array.shape == expected else absent, self.dtype)
         kinds = "fiu" if self.dtype is np.float64 else "iu"
-        if array.dtype.kind not in kinds or array.shape not in (expected, absent):
+        if name in OPTIONAL and not array.size:
+            array = np.zeros(expected if array.shape == expected else (0, *expected[1:]))
+        elif array.dtype.kind not in kinds or array.shape != expected:
             symbols = ", ".join(map(str, self.shape))
             problem = f"{array.dtype} of shape {array.shape}, expected numbers ({symbols})"
             raise InvalidInputError(name, f"{problem} = {expected}", value)
-        array = np.asarray(array, self.dtype, order="C")
-        if array.flags.writeable:
-            array = array.copy()
-            array.flags.writeable = False
+        array = np.array(array, self.dtype, order="C")
+        array.flags.writeable = False
         return array
 
     def _lengths(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
@@ -252,10 +245,7 @@ class Record:
         samples = np.size(self.t)
         sizes = {"N": samples - 1, "N+1": samples}
         for name, column in COLUMNS.items():
-            array = column.check(name, getattr(self, name), sizes)
-            if name not in OPTIONAL and len(array) != sizes[str(column.shape[0])]:
-                raise InvalidInputError(name, "is empty", array)
-            object.__setattr__(self, name, array)
+            object.__setattr__(self, name, column.check(name, getattr(self, name), sizes))
         if not (samples and np.isfinite(self.t).all() and (np.diff(self.t) > 0).all()):
             raise InvalidInputError("t", "must hold increasing times, one at least", self.t)
         try:
@@ -359,13 +349,7 @@ class Record:
         from iiwa_dnn.results.report import summary
 
         try:
-            with Path(path).open("rb") as file, warnings.catch_warnings():
-                # NumPy warns of a slightly wrong head before it gives up.
-                warnings.simplefilter("ignore", UserWarning)
-                if not file.read(2) == b"PK":
-                    raise ValueError("not an .npz archive")
-                file.seek(0)
-                stored = np.load(file, allow_pickle=False)
+            with np.load(path, allow_pickle=False) as stored:
                 missing = [name for name in COLUMNS if name not in stored]
                 if missing:
                     raise ValueError(f"of another version, without {', '.join(missing)}")
@@ -401,17 +385,3 @@ Record.__doc__ = "\n        ".join(
         ),
     ]
 )
-
-
-def cut(arrays: Mapping[str, NDArray[Any]], steps: int) -> dict[str, NDArray[Any]]:
-    """Protect columns and cut them to the steps that were taken: `Record` need not copy them then.
-
-    Args:
-        arrays: Columns by name, each as long as `Column.allocate` made it: (N, ...) or (N+1, ...).
-        steps: Steps that were taken, at most N.
-    """
-    ended = {}
-    for name, array in arrays.items():
-        array.setflags(write=False)
-        ended[name] = array[: steps + (COLUMNS[name].shape[0] == "N+1")]
-    return ended

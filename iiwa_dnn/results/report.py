@@ -13,45 +13,43 @@ from tabulate import tabulate
 
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import describe, unwatched
-from iiwa_dnn.results.failures import INFEASIBLE, completed, failures, programs_checked
+from iiwa_dnn.results.failures import INFEASIBLE, completed, counted, failures, programs_checked
 from iiwa_dnn.results.markdown import markdown_table
-from iiwa_dnn.results.metrics import JOINT_LIMITS, METRICS, PROOF, compute_metrics
+from iiwa_dnn.results.metrics import JOINT_LIMITS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
 
 Row = tuple[str, str, str]
 """Quantity, value and unit."""
 
-_OF_CHECK = (
+_RESULTS = (
+    ("largest position error", "max_position_error_m", "m"),
+    ("mean squared position error", "mse_position_error_m2", "m²"),
+    ("largest orientation error", "max_orientation_error_rad", "rad"),
+    ("joint drift, start to end", "joint_drift_rad", "rad"),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s², or J with inertia"),
+    ("wall time", "wall_time_s", "s"),
+    ("time simulated / wall time", "realtime_factor", ""),
+    ("largest KKT residual", "max_kkt_residual", ""),
+    ("steps with an active bound or row", "active_limit_steps", ""),
+    *((f"beyond {kind} limits", name, unit) for name, (kind, unit) in JOINT_LIMITS.items()),
     ("network steps in a control period, mean", "network_iterations.mean", ""),
     ("network steps in a control period, most", "network_iterations.max", ""),
     ("largest gap to the reference", "crosscheck.max_solution_gap", "rad/s"),
-    ("tolerance on it", "crosscheck.tolerance", "rad/s"),
     ("largest residual of a reference", "crosscheck.max_reference_residual", ""),
     ("largest position error, settled", "physics.max_position_error_settled_m", "m"),
     ("largest torque of each joint", "physics.max_torque_n_m", "N m"),
     ("largest torque, of its limit", "physics.max_torque_share", ""),
-    ("largest position error since the push", "physics.push.max_position_error_m", "m"),
-    ("time from the push until back within 1 mm", "physics.push.recovery_s", "s"),
     ("steps with a clipped command", "incidents.clipped_steps", ""),
     ("steps slowed", "incidents.slow_steps", ""),
     ("steps relaxed", "incidents.relax_steps", ""),
     ("steps stopped", "incidents.stop_steps", ""),
     ("steps taken by Euler's method", "incidents.euler_steps", ""),
 )
-_RESULTS = (
-    *((metric.quantity, metric.key, metric.unit) for metric in METRICS if metric.quantity),
-    *((f"beyond {limit.kind} limits", limit.metric, limit.unit) for limit in JOINT_LIMITS),
-    *_OF_CHECK,
-)
 """Rows of numbers: quantity, place in the metrics, and unit."""
 
-_SPELLS = {
-    "active": ("active_bounds", "active_rows"),
-    "in the way": ("blocking", "blocking_rows"),
-}
 _MOST = 6
-"""Limits of each kind that have a row of their own."""
+"""Limits of each kind that have a row of their own, and entries of a long list that are shown."""
 
 
 def save_run(
@@ -100,7 +98,7 @@ def write_report(
     settings = metrics["settings"]
     shown = [(key, _text(value)) for key, value in settings.items() if value not in (None, [], {})]
     parts = [
-        f"# {settings['robot']}: {metrics['steps']:,} steps, {settings['mode']}",
+        f"# {settings['robot']}: {counted(metrics['steps'])}, {settings['mode']}",
         "## Verdict",
         *(f"- {line}" for line in _verdict(metrics)),
         "## Results",
@@ -127,12 +125,12 @@ def made(versions: Mapping[str, str]) -> dict[str, str]:
     }
 
 
-def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> str:
+def summary(metrics: Mapping[str, Any]) -> str:
     """Sum up a run in aligned lines of ASCII, for the terminal.
 
     An incomplete path is its first line, or that the path cannot be followed.
     """
-    verdict = _verdict(metrics, reasons)
+    verdict = _verdict(metrics)
     lines = [(name, f"{value} {unit}") for name, value, unit in rows(metrics)]
     lines += zip(["verdict", *[""] * len(verdict)], verdict, strict=False)
     table = tabulate(lines, tablefmt="plain", disable_numparse=True)
@@ -142,36 +140,35 @@ def summary(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) ->
 
 
 def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -> Iterator[Row]:
-    """Yield the results of a run: quantity, value in words, and unit."""
+    """Yield the results of a run: quantity, value in words, and unit.
+
+    Numbers that do not exist are left out, and counts of no steps.
+    """
     settings = metrics["settings"]
-    steps = f"{metrics['steps']:,} steps of {_text(metrics['dt_s'])} s"
+    steps = f"{counted(metrics['steps'])} of {_text(metrics['dt_s'])} s"
     yield "run", f"{settings['robot']}, {settings['mode']}, {steps}", ""
-    yield "cross-check", _checked(metrics), ""
-    yield from _numbers(metrics, paper or {})
+    yield "cross-check", _checked(metrics["crosscheck"]), ""
+    yield "path completed", completed(metrics), ""
+    for name, place, unit in _RESULTS:
+        value = _at(metrics, place)
+        if value is not None and (value or not place.startswith("incidents.")):
+            beside = f" (the paper's {_text(paper[place])})" if paper and place in paper else ""
+            yield name, _text(value) + beside, unit
     near = metrics.get("collisions")
     if near is not None:
-        allowed = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
-        yield f"nearest pair: {near['second']} and {near['first']}", allowed, "m"
+        least = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
+        yield f"nearest pair: {near['second']} and {near['first']}", least, "m"
     for frame, errors in metrics.get("frames", {}).items():
         yield f"largest position error, {frame}", _text(errors["max_position_error_m"]), "m"
         angle = _text(errors["max_orientation_error_rad"])
         yield f"largest orientation error, {frame}", angle, "rad"
-    for verb, keys in _SPELLS.items():
-        found = [spell for key in keys for spell in metrics.get("incidents", {}).get(key, ())]
-        yield from _spells(verb, sorted(found, key=lambda spell: -spell["steps"]))
-
-
-def _numbers(metrics: Mapping[str, Any], paper: Mapping[str, float]) -> Iterator[Row]:
-    """Yield the numbers of a run, without those that do not exist and counts of no steps."""
-    settings = metrics["settings"]
-    for name, place, unit in _RESULTS:
-        value = _at(metrics, place)
-        if value is None or (value == 0 and place.startswith("incidents.")):
-            continue
-        shown = completed(metrics) if place == "path_completed" else _text(value)
-        if place in paper:
-            shown += f" (the paper's {_text(paper[place])})"
-        yield name, shown, _unit(settings, place, unit)
+    for verb, key in (("active", "active"), ("in the way", "blocking")):
+        limits = metrics.get("incidents", {}).get(key, ())
+        for limit in limits[:_MOST]:
+            steps = f"{counted(limit['steps'])}, from {_text(limit['time_s'])} s on"
+            yield f"{describe(limit)} {verb}", steps, ""
+        if len(limits) > _MOST:
+            yield f"further limits {verb}", str(len(limits) - _MOST), ""
 
 
 def _at(metrics: Mapping[str, Any], place: str) -> Any:
@@ -182,39 +179,22 @@ def _at(metrics: Mapping[str, Any], place: str) -> Any:
     return found
 
 
-def _spells(verb: str, spells: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
-    """Yield how long each limit acted."""
-    for spell in spells[:_MOST]:
-        size = ""
-        if "max_multiplier" in spell:
-            size = f", multiplier up to {_text(spell['max_multiplier'])}"
-        took = f"{_text(spell['time_s'])} s, from {_text(spell['first_s'])} s on"
-        yield f"{describe(spell)} {verb}", took + size, ""
-    if len(spells) > _MOST:
-        yield f"further limits {verb}", str(len(spells) - _MOST), ""
-
-
-def _checked(metrics: Mapping[str, Any]) -> str:
+def _checked(check: Mapping[str, Any]) -> str:
     """State what was checked, by whom, and with what result."""
-    check = metrics["crosscheck"]
     solver = check["solver"]
-    failed = f"{check['reference_failures']:,}"
     if solver == "none":
         return "not asked for"
     if not check["judged"]:
-        compared = f"{check['steps_checked']:,} own programs compared, not judged"
-        return f"{solver}: {compared}; {failed} without an answer to be believed"
-    if solver == PROOF:
-        return f"{check['proven']:,} answers proven, {failed} not; {programs_checked(check)}"
+        return f"{solver}: {check['steps_checked']:,} own programs compared, not judged"
+    counts = f"{check['disagreements']:,} disagreements, {check['reference_failures']:,} failures"
     judges = ", ".join(f"{name} {count:,}" for name, count in check["judged_by"].items())
-    judged = f"; judged by {judges}" if set(check["judged_by"]) - {solver} else ""
-    disagreements = f"{check['disagreements']:,} disagreements, {failed} failures"
-    return f"{solver}: {programs_checked(check)}, {disagreements}{judged}"
+    judged = f"; judged by {judges}" if set(check["judged_by"]) - set(solver.split("+")) else ""
+    return f"{solver}: {programs_checked(check)}, {counts}{judged}"
 
 
-def _verdict(metrics: Mapping[str, Any], reasons: Sequence[str] | None = None) -> list[str]:
+def _verdict(metrics: Mapping[str, Any]) -> list[str]:
     """State the reasons of a failure, or the success no stronger than the check; and warn."""
-    said = list(failures(metrics) if reasons is None else reasons) or [_success(metrics)]
+    said = failures(metrics) or [_success(metrics)]
     links = (metrics["settings"].get("collisions") or {}).get("unwatched")
     return [*said, f"Beware: {unwatched(links)}."] if links else said
 
@@ -227,39 +207,23 @@ def _success(metrics: Mapping[str, Any]) -> str:
         return "completed within all limits; no reference solver was asked"
     if not check["judged"]:
         return f"completed within all limits; the gap to {solver} is a lag, not judged"
-    agreed = "proven" if solver == PROOF else f"in agreement with {solver}"
-    for name, count in check["judged_by"].items():
-        if name not in solver.split("+"):
-            agreed += f", {count:,} of them with {name} in its place"
-    return f"all {metrics['steps']:,} steps solved, within all limits and {agreed}"
-
-
-def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
-    """Return the unit of a metric; of two it depends on the scheme."""
-    scheme = settings.get("scheme") or {}
-    if place == "max_kinetic_index":
-        return {"identity": unit, "inertia": "J"}.get(str(scheme.get("kinetic")), "")
-    free = place == "max_orientation_error_rad" and scheme.get("orientation") == "none"
-    return f"{unit} (orientation free)" if free else unit
+    stood_in = set(check["judged_by"]) - set(solver.split("+"))
+    judges = " or ".join([solver, *sorted(stood_in)])
+    agreed = "proven" if solver == PROOF else f"in agreement with {judges}"
+    return f"all {counted(metrics['steps'])} solved, within all limits and {agreed}"
 
 
 def _text(value: object) -> str:
-    """Put a value in words: numbers in four digits."""
+    """Put a value in words: numbers in four digits, equal entries once, a long list cut off."""
     if isinstance(value, Mapping):
         items = value.items()
         return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
-    if isinstance(value, list):
-        return _listed(value)
     if isinstance(value, float):
         return f"{value:.4g}"
-    return f"{value:,}" if type(value) is int else str(value)
-
-
-def _listed(values: Sequence[Any]) -> str:
-    """Put a list in words: equal entries said once, a long one cut off."""
-    if len(values) > 1 and all(item == values[0] for item in values):
-        return f"{_text(values[0])} (all {len(values)})"
-    more = f" and {len(values) - _MOST} more" if len(values) > 2 * _MOST else ""
-    shown = values[:_MOST] if more else values
-    texts = (f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in shown)
-    return " ".join(texts) + more
+    if not isinstance(value, list):
+        return f"{value:,}" if type(value) is int else str(value)
+    if len(value) > 1 and all(item == value[0] for item in value):
+        return f"{_text(value[0])} (all {len(value)})"
+    more = f" and {len(value) - _MOST} more" if len(value) > 2 * _MOST else ""
+    shown = value[:_MOST] if more else value
+    return " ".join(f"({_text(v)})" if isinstance(v, list) else _text(v) for v in shown) + more

@@ -12,7 +12,7 @@ from iiwa_dnn.control.policies import Action
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
-from iiwa_dnn.results.record import COLUMNS, OPTIONAL, cut
+from iiwa_dnn.results.record import COLUMNS, OPTIONAL
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme
@@ -141,7 +141,10 @@ class Recorder:
         placement = controller.placement(q)
         targets = controller.targets(self.arrays["t"][self._done] - controller.delay)
         self._add_samples(self._done, placement[np.newaxis], targets.reshape(1, -1))
-        return cut(self.arrays, self._done)
+        return {
+            name: array[: self._done + (COLUMNS[name].shape[0] == "N+1")]
+            for name, array in self.arrays.items()
+        }
 
     def stop_reason(self, k: int) -> str:
         """Describe the limits that stood in the way at step k, at which a policy stopped."""

@@ -116,9 +116,9 @@ def test_a_run_has_the_panels_of_what_it_has(heart):
     curves = axes_of(draw_joints, record, "torque").lines
     assert [curve.get_ydata()[0] for curve in curves] == [50.0] * 6 + [0.0]  # per cent
     desired = np.array(heart.position_desired)
-    desired[:, 2] += 0.02 * np.sin(heart.t)
+    desired[:, 2] += 0.5 * np.sin(heart.t)  # wider than along y
     axes = overview_figure(dataclasses.replace(heart, position_desired=desired)).axes[0]
-    assert (axes.name, axes.get_zlabel()) == ("3d", "$z$ [m]")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("$y$ [m]", "$z$ [m]")
 
 
 def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):

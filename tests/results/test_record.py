@@ -11,11 +11,11 @@ import zipfile
 import numpy as np
 import pytest
 
-from helpers_records import heart_record, make_record, make_settings
+from helpers_records import heart_record, make_record
 from iiwa_dnn.errors import FileError, InvalidInputError
 from iiwa_dnn.files import percent
 from iiwa_dnn.results.metrics import compute_metrics
-from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record, cut
+from iiwa_dnn.results.record import COLUMNS, OPTIONAL, Record
 from iiwa_dnn.results.report import summary
 
 ROWS = [{"part": "CollisionAvoidance", "row": 1 + i} for i in range(3)]
@@ -110,18 +110,6 @@ def test_a_record_does_not_change_with_what_it_was_made_of():
         record.q[0] = 1.0
     with pytest.raises(dataclasses.FrozenInstanceError):
         record.q = q
-    assert dataclasses.replace(record).q is record.q  # a protected array is taken as it is
-
-
-def test_columns_of_a_run_are_allocated_cut_and_taken_without_a_copy():
-    sizes = {"n": 7, "k": 1, "m": 3, "f": 1}
-    arrays = {name: column.allocate(20, **sizes) for name, column in COLUMNS.items()}
-    arrays["t"][:] = 0.1 * np.arange(21)
-    taken = cut(arrays, 10)
-    settings = {"rows": ROWS, "torque_max": [1.0] * 7, "collisions": NEAR, "frames": ["elbow"]}
-    record = Record(**taken, settings=make_settings() | settings)
-    assert record.steps == 10
-    assert all(getattr(record, name) is array for name, array in taken.items())
 
 
 def test_every_column_is_documented():
@@ -165,7 +153,7 @@ CHECK = {"solvers": ["proxqp"], "tolerance": 1e-6, "reference_tolerance": 1e-8}
         ({"rotation": np.zeros((11, 9))}, r"rotation: .* shape \(11, 9\)"),
         ({"rotation_desired": np.zeros((11, 3, 2))}, r"\(N\+1, 3, 3\)"),
         ({"kkt_residual": np.zeros(11)}, "kkt_residual"),
-        ({"kkt_residual": []}, "kkt_residual: is empty"),
+        ({"kkt_residual": []}, "kkt_residual: .* shape"),
         ({"t": np.zeros(11)}, "increasing"),
         ({"t": np.full(11, np.nan)}, "increasing"),
         ({"t": np.zeros(0)}, "t"),
@@ -216,7 +204,7 @@ def test_a_file_that_is_not_a_record(heart, tmp_path, change):
 def test_other_files_are_refused(tmp_path):
     np.save(tmp_path / "one.npy", np.zeros(3))
     (tmp_path / "text").write_text("hello")
-    expected = {"one.npy": "archive", "text": "read", "missing": "No such", "": "read"}
+    expected = {"one.npy": "read", "text": "read", "missing": "No such", "": "read"}
     for name, words in expected.items():
         with pytest.raises(FileError, match=words):
             Record.load(tmp_path / name)

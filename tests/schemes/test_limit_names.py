@@ -109,7 +109,7 @@ def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
     scheme = DoubleIndicator(orientation="none", extra_limits=(AccelerationLimits(A),))
     record = simulate(paper_robot(), scheme, path, PAPER_Q0, dt=DT, duration=0.2)
     incidents = compute_metrics(record)["incidents"]
-    said = {limit["limit"] for limit in incidents["blocking"] + incidents["active_bounds"]}
+    said = {limit["limit"] for limit in incidents["blocking"] + incidents["active"]}
     assert said == {"acceleration"}
 
 

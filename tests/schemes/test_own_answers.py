@@ -134,7 +134,7 @@ def test_an_active_bound_of_ones_own_is_no_position_limit() -> None:
         duration=0.01,
     )  # fmt: skip
     np.testing.assert_allclose(record.dq, 0.1, rtol=1e-9)
-    active = compute_metrics(record)["incidents"]["active_bounds"]
+    active = compute_metrics(record)["incidents"]["active"]
     assert {bound["limit"] for bound in active} == {"position limit or bound of OwnBounds"}
 
 
