@@ -12,7 +12,7 @@ import tyro
 
 import iiwa_dnn
 from iiwa_dnn.app.command_line import run_script
-from iiwa_dnn.results.pictures import ArmRenderer, sample_at
+from iiwa_dnn.results.pictures import ArmRenderer
 from iiwa_dnn.results.plots import new_figure, write_figures
 
 START = [-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0]  # [rad]
@@ -34,9 +34,9 @@ def draw(robot, records, names, distances):
     """Draw the arm of each record as it is nearest to the ball, and the distances over time."""
     figure = new_figure(7.0, 2.4)
     panels = figure.subplots(1, 3, width_ratios=(1.0, 1.0, 1.1))
-    near = sample_at(records[0], records[0].t[distances[0].argmin()])
+    near = int(distances[0].argmin())
     for panel, record, name in zip(panels, records, names, strict=False):
-        with ArmRenderer(robot, record, 700, 700) as renderer:
+        with ArmRenderer(robot, record, (700, 700)) as renderer:
             panel.imshow(renderer.draw(near), interpolation="lanczos")
         panel.set_title(name, fontsize=8, pad=3)
         panel.set_axis_off()

@@ -60,7 +60,7 @@ def run(*arguments):
 def arm(records, index=-1):
     """Draw the arm near the end of a run."""
     record, robot = records[index]
-    with ArmRenderer(robot, record, 540, 340) as renderer:
+    with ArmRenderer(robot, record, (540, 340)) as renderer:
         return Image.fromarray(renderer.draw(round(0.93 * record.steps)))
 
 

@@ -23,7 +23,6 @@ import numpy as np
 from helpers_records import make_record
 from iiwa_dnn.errors import IiwaDnnError
 from iiwa_dnn.references import Waypoints
-from iiwa_dnn.results.failures import failures
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.results.report import summary
@@ -144,7 +143,7 @@ def read_record(path: Path) -> None:
     """A record that is taken for one has metrics and a verdict, too."""
     record = Record.load(path)
     metrics = compute_metrics(record)
-    text = summary(metrics, failures(record)) + repr(record)
+    text = summary(metrics) + repr(record)
     assert "\n" not in repr(record), text
 
 

@@ -50,7 +50,7 @@ from iiwa_dnn.app.command_line import SETTINGS_FILE, claim_folder
 from iiwa_dnn.app.words import TABLES, Export, Physics, Track
 from iiwa_dnn.control.estimation import NoiseModel
 from iiwa_dnn.files import parse_toml, read_toml, write_text
-from iiwa_dnn.results.pictures import import_encoder, save_moments, save_video
+from iiwa_dnn.results.pictures import save_moments, save_video
 from iiwa_dnn.results.report import save_run, summary
 from iiwa_dnn.robot.offscreen import prepare_renderer
 from iiwa_dnn.simulation import Disturbances, Plant, Push, count_steps
@@ -102,7 +102,6 @@ def _draw(options: Track, more: Tables, pictured: bool) -> int:
     folder = claim_folder(options.out or folder, tables, options.overwrite)
     if pictured:  # before the run, what draws them is asked for
         prepare_renderer()
-        import_encoder()
     # Hidden if standard error is no terminal.
     with tqdm(total=steps, unit="step", disable=True if options.quiet else None) as bar:
         record = simulate(**arguments, progress=bar.update, far_start=True)

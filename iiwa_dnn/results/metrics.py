@@ -184,7 +184,7 @@ def _max(values: NDArray[Any]) -> Any:
     return values.max() if values.size else None
 
 
-def _first(record: Record, acts: BoolArray) -> dict[str, Any] | None:
+def _first(record: Record, acts: np.bool_ | BoolArray) -> dict[str, Any] | None:
     """Count steps (N,), and name the first of them."""
     steps = np.flatnonzero(acts)
     if not steps.size:

@@ -192,8 +192,8 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
         spec.attach(arm, prefix="arm_", frame=spec.worldbody.add_frame())
         for i, obstacle in enumerate(self._obstacles):
             body = spec.worldbody.add_body(name=f"obstacle_{i}", mocap=True)
-            vertices, faces = outline(obstacle)
-            spec.add_mesh(name=body.name, uservert=vertices.ravel(), userface=faces.ravel())
+            vertices, triangles = outline(obstacle)
+            spec.add_mesh(name=body.name, uservert=vertices.ravel(), userface=triangles.ravel())
             rgba = [*OBSTACLE_COLOR, 1.0]
             body.add_geom(type=mesh_type, meshname=body.name, rgba=rgba, **_SHAPE)
         return spec.compile()

@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields
+from pathlib import Path
 from typing import Annotated, Any, NamedTuple, get_origin, get_type_hints
 
 import numpy as np
@@ -349,7 +350,8 @@ class Record:
         from iiwa_dnn.results.report import summary
 
         try:
-            with np.load(path, allow_pickle=False) as stored:
+            with Path(path).open("rb") as file:
+                stored = np.load(file, allow_pickle=False)
                 missing = [name for name in COLUMNS if name not in stored]
                 if missing:
                     raise ValueError(f"of another version, without {', '.join(missing)}")

@@ -33,8 +33,7 @@ def test_everything_is_written(
     draw_only(monkeypatch, "overview")
     monkeypatch.setattr(pictures, "MOMENTS", 2)
     monkeypatch.setattr(pictures, "FRAME_RATE", 10)
-    for name, pixels in {"WIDTH": 480, "HEIGHT": 270}.items():
-        monkeypatch.setattr(pictures, name, pixels)
+    monkeypatch.setattr(pictures, "SIZE", (480, 270))
     words = ("physics", "--duration", "0.2", "--out", tmp_path, "--disturb", "--push", 0, 10, 0)
     later = ("push.start=0.1", "push.duration=0.05")
     assert call(*words, *(f"--set=plant.disturbances.{text}" for text in later)) == 0
@@ -44,7 +43,8 @@ def test_everything_is_written(
         assert (tmp_path / name).stat().st_size > 1000, name
     assert "largest torque, of its limit" in captured.out
     record, metrics = results(tmp_path)
-    assert metrics["physics"]["push"] == {**metrics["physics"]["push"], "force": [0.0, 10.0, 0.0]}
+    push = {"force": [0.0, 10.0, 0.0], "start": 0.1, "duration": 0.05}
+    assert metrics["settings"]["physics"]["disturbances"]["push"] == push
     assert metrics["physics"]["max_torque_share"] < 0.5
     assert record["torque"].shape == (200, 7)
     report = (tmp_path / "report.md").read_text()

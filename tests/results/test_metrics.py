@@ -150,7 +150,7 @@ def test_crosscheck_counts_only_what_is_believed():
     gap[3, 1], residual[3, 1], objective[3, 1] = np.inf, np.inf, np.inf  # no answer
     gap[4, 0], residual[4, 0], objective[4, 0] = np.nan, np.nan, np.nan  # not asked
     record = make_record(
-        steps=6, solvers=("proxqp", "osqp"), judge=[[0, 0], [0, 1], [1, 0], [-1, 0], [0, 0], [0, 0]],
+        steps=6, solvers=("proxqp", "osqp"), judge=[[0, 0], [0, 1], [1, 0], [-1, 0], *[[0, 0]] * 2],
         solution_gap=gap, objective_gap=objective, reference_residual=residual,
     )  # fmt: skip
     assert compute_metrics(record)["crosscheck"] == {
@@ -329,7 +329,7 @@ def test_limits_that_act_are_counted_and_named_the_longest_first():
         (1, "position", "upper", 2, 1),
     ]
     time = {"time_s": pytest.approx(0.4)}
-    assert active[2:4] == [bounds[2], {**ROWS[1], "steps": 2, "step": 4, **time}]
+    assert active[2:4] == [{**ROWS[1], "steps": 2, "step": 4, **time}, bounds[2]]
     assert active[4] == {**ROWS[2], "steps": 1, "step": 9, "time_s": pytest.approx(0.9)}
     assert metrics["incidents"]["blocking"] == []
     assert failures(record) == []

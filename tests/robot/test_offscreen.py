@@ -40,7 +40,7 @@ def test_without_a_display_it_draws(wanted, tmp_path):
         "from iiwa_dnn import Record, load_robot\n"
         "from iiwa_dnn.results.pictures import ArmRenderer\n"
         f"robot = load_robot('iiwa7'); record = Record.load({str(record)!r})\n"
-        "with ArmRenderer(robot, record, 80, 60) as renderer: image = renderer.draw(9)\n"
+        "with ArmRenderer(robot, record, (80, 60)) as renderer: image = renderer.draw(9)\n"
         "print('spread', image.std())",
         MUJOCO_GL=wanted,
         PYOPENGL_PLATFORM="",
