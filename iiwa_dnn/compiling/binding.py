@@ -29,10 +29,12 @@ def extension(translator: Translator) -> str:
     parts = [
         prelude("binding.h"),
         prelude("kernels.h"),
+        prelude("arena.h"),
         translator.text(),
         prelude("binding.c"),
         *map(_wrapper, called),
         "static PyMethodDef methods[] = {",
+        '    {"scratch_peak", scratch_peak, METH_NOARGS, NULL},',
         *rows,
         "    {NULL, NULL, 0, NULL}\n};",
         "static const struct kernel kernels[] = {",
@@ -43,7 +45,7 @@ def extension(translator: Translator) -> str:
     return "\n".join(parts) + "\n"
 
 
-def _is_returned(kind: Kind | None) -> bool:
+def _is_returned(kind: Kind) -> bool:
     """Test whether Python is handed a result of this type: no arrays, which are given back."""
     if isinstance(kind, Struct):
         return not kind.is_named and all(_is_returned(own) for _, own in kind.members)
@@ -72,7 +74,7 @@ def _wrapper(made: Made) -> str:
         _read(kind, f"a{i}", f"given[{i}]", lines, i in made.written)
     lines.append("    ) return NULL;")
     own = ", ".join(["arena_here()", *(f"{'&' * is_named(k)}a{i}" for i, k in enumerate(kinds))])
-    result = made.result or VOID
+    result = made.result
     call = f"{made.name}({own});"
     if result is not VOID:
         lines.append(f"    {result.tag} result;")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import ast
 import builtins
-import math
 import re
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from .kinds import BOOL, FLOAT, INT, INT_VECTOR, VECTOR, VOID, Array, Kind, Struct, array_of
-from .sources import Constants, Module, decoration, fail
+from .sources import ENTRY, Constants, Module, decoration, fail
 
 if TYPE_CHECKING:
     from .translator import Translator
@@ -85,6 +84,12 @@ class Value:
         """Return the sizes of an array."""
         assert isinstance(self.kind, Array)
         return [Value(INT, f"{self.at(ATOM)}.size{i}") for i in range(self.kind.axes)]
+
+
+def number_text(value: float) -> str:
+    """Write a number as C does."""
+    text = repr(value).replace("inf", "INFINITY").replace("nan", "NAN")
+    return text.lower() if isinstance(value, bool) else text
 
 
 def literal(kind: Kind, *members: str) -> str:
@@ -166,15 +171,10 @@ class Expressions:
         """Translate a value of Python."""
         if getattr(found, "shape", None) == ():
             found = found.item()
-        if isinstance(found, bool):
-            return Value(BOOL, str(found).lower(), known=found)
-        if isinstance(found, int):
-            return Value(INT, str(int(found)), ATOM if found >= 0 else UNARY, int(found))
-        if isinstance(found, float):
-            text = repr(float(found)) if math.isfinite(found) else "INFINITY"
-            text = "NAN" if found != found else text.replace("-INF", "INF")
-            text = f"-{text.lstrip('-')}" if found < 0.0 else text
-            return Value(FLOAT, text, UNARY if found < 0.0 else ATOM, float(found))
+        for python, kind in ((bool, BOOL), (int, INT), (float, FLOAT)):
+            if isinstance(found, python):
+                text = number_text(python(found))
+                return Value(kind, text, UNARY if text[0] == "-" else ATOM, python(found))
         if isinstance(found, ModuleType | Constants) or callable(found):
             return Value(VOID, name, known=found)
         self.require(hasattr(found, "__len__"), node)
@@ -410,13 +410,12 @@ class Expressions:
     def _called(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
         """Translate the call of another kernel."""
         made = self.translator.function(home, found)
-        self.require(made.result is not None, node, "calls itself")
+        self.require(made.text or decoration(found) == ENTRY, node, "calls itself")
         self.require(len(node.args) == len(made.parameters), node, "leaves arguments out")
         pairs = zip(node.args, made.parameters.values(), strict=True)
         texts = [self._argument(each, kind) for each, kind in pairs]
         given = [node.args[i] for i in made.written]
         self.written |= {each.id for each in given if isinstance(each, ast.Name)}
-        assert made.result is not None
         return Value(made.result, f"{made.name}({', '.join(['arena', *texts])})")
 
     def _argument(self, node: ast.expr, kind: Kind) -> str:

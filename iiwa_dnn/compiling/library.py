@@ -62,6 +62,11 @@ def source_of(kernel: Any) -> Any:
     return _SOURCES.get(id(kernel), kernel)
 
 
+def scratch_peak() -> int:
+    """Return the most bytes that kernels of this thread took at once since the last call."""
+    return int(_LIBRARY.scratch_peak())
+
+
 def raise_failure() -> None:
     """Raise the error of a user's function that a kernel of this thread has entered, if any."""
     error = _ERRORS.pop(threading.get_ident(), None)

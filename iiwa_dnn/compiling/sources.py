@@ -96,6 +96,11 @@ class Package:
             self._modules[name] = Module(self.folder.parent, name, file)
         return self._modules[name]
 
+    def add(self, name: str, path: Path) -> Module:
+        """Add a module from outside of the package, and return it."""
+        self._modules[name] = Module(path.parent, name, path)
+        return self._modules[name]
+
     def modules(self) -> list[Module]:
         """Return all modules that have a kernel, by their paths."""
         found = []

@@ -8,6 +8,7 @@ file and line.
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,7 +29,7 @@ class Made:
         name: Its name.
         about: Its docstring.
         parameters: Types of its parameters by their names in Python.
-        result: Type of its result; None while it is being translated.
+        result: Type of its result.
         decoration: The decorator that it has in Python.
         text: The function.
         written: Indices of the parameters that are arrays it writes into.
@@ -37,7 +38,7 @@ class Made:
     name: str
     about: str
     parameters: dict[str, Kind]
-    result: Kind | None
+    result: Kind
     decoration: str
     text: str = ""
     written: set[int] = field(default_factory=set)
@@ -46,7 +47,7 @@ class Made:
     def code(self) -> str:
         """Types of parameters and result as a text, one letter each."""
         own = "".join(kind.code for kind in self.parameters.values())
-        return f"{own}:{self.result.code if self.result else ''}"
+        return f"{own}:{self.result.code}"
 
     def head(self) -> str:
         """Return the declaration in C."""
@@ -54,8 +55,7 @@ class Made:
         for name, kind in self.parameters.items():
             own.append(f"const {kind.tag} *{name}" if is_named(kind) else f"{kind.tag} {name}")
         inline = "inline " * (self.decoration == "inlined")
-        result = self.result.tag if self.result else ""
-        return f"static {inline}{result} {self.name}({', '.join(own)})"
+        return f"static {inline}{self.result.tag} {self.name}({', '.join(own)})"
 
 
 def is_named(kind: Kind) -> bool:
@@ -70,6 +70,7 @@ class Translator:
         package: The package that they are in.
         kinds: Types of their variables.
         made: The functions, by module and name.
+        parts: Functions that entries call by their numbers, from 1; None: by any address.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -77,6 +78,7 @@ class Translator:
         self.package = Package(folder)
         self.kinds = Kinds(self.package)
         self.made: dict[tuple[str, str], Made] = {}
+        self.parts: list[Made] | None = None
         self._tables: dict[str, str] = {}
 
     def all(self) -> None:
@@ -87,7 +89,7 @@ class Translator:
 
     def text(self) -> str:
         """Return structs, tables and functions as one text."""
-        functions = [own.text for own in self.made.values()]
+        functions = [own.text or _switch(own, self.parts or []) for own in self.made.values()]
         heads = [f"{own.head()};" for own in self.made.values()]
         parts = (self.kinds.structs.values(), self._tables.values(), heads, functions)
         return "\n".join(text for part in parts for text in part) + "\n"
@@ -109,12 +111,14 @@ class Translator:
             own = Function(self, module, node)
             name = c_name(*key)
             about = ast.get_docstring(node) or ""
-            made = Made(name, about, own.given(), None, decoration(node))
+            result = self.kinds.of(module, node.returns)
+            made = Made(name, about, own.given(), result, decoration(node))
             self.made[key] = made
             own.made = made
-            result = self.kinds.of(module, node.returns)
-            made.text = own.entry(result) if decoration(node) == ENTRY else own.translated(result)
-            made.result = result
+            if decoration(node) != ENTRY:
+                made.text = own.translated(result)
+            elif self.parts is None:
+                made.text = own.entry(result)
             self.made[key] = self.made.pop(key)  # after all that it calls
         return self.made[key]
 
@@ -164,9 +168,11 @@ class Function(Expressions):
             self.add("arena_leave(arena, &mark);")
         variables = [own for own in self.kinds if own not in self.parameters]
         declared = [f"    {self.kinds[own].tag} {self.name(own)};" for own in variables]
+        text = "\n".join(self.lines)
+        given = ["arena", *map(self.name, self.parameters)]
+        declared += [f"    (void){own};" for own in given if not is_read(own, text)]
         if self._makes:
             declared.insert(0, "    const struct arena mark = *arena;")
-        self.made.result = result
         self.made.written = {i for i, own in enumerate(self.made.parameters) if own in self.written}
         self.made.parameters = {self.name(own): kind for own, kind in self.made.parameters.items()}
         about = self.made.about.replace("*/", "* /").replace("\n", "\n * ").replace(" \n", "\n")
@@ -379,7 +385,6 @@ class Function(Expressions):
         A user's has a negative address. It takes numbers as they are, an array as its pointer and
         its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.
         """
-        self.made.result = result
         address, *own = self.made.parameters.items()
         kinds = [f"const {kind.tag} *" if is_named(kind) else kind.tag for _, kind in own]
         kernel = f"({result.tag} (*)(struct arena *, {', '.join(kinds)}))(intptr_t){address[0]}"
@@ -407,6 +412,24 @@ class Function(Expressions):
             numbers = [f"({kind.tag})numbers[{i}]" for i, (_, kind) in enumerate(result.members)]
             lines.append(f"    return {literal(result, *numbers)};")
         return "\n".join([f"/* {self.made.about} */", self.made.head(), "{", *lines, "}", ""])
+
+
+def is_read(name: str, text: str) -> bool:
+    """Test whether a variable, not a member of that name, stands in a text of C."""
+    return re.search(rf"(?<![.>\w]){name}\b", text) is not None
+
+
+def _switch(made: Made, parts: list[Made]) -> str:
+    """Write the function that enters one of several functions of its types by their numbers."""
+    names = ["arena", *made.parameters]
+    given = f"({', '.join(['arena', *names[2:]])});"
+    back = "return " * (made.result is not VOID)
+    own = [(n, part.name) for n, part in enumerate(parts, 1) if part.code == made.code[1:]]
+    lines = [f"    if ({names[1]} == {n}) {{ {back}{name}{given} }}" for n, name in own]
+    if made.result is not VOID:
+        lines += [f"    const {made.result.tag} none = {{0}};", "    return none;"]
+    idle = [f"    (void){name};" for name in names if not is_read(name, "".join(lines))]
+    return "\n".join([f"/* {made.about} */", made.head(), "{", *idle, *lines, "}", ""])
 
 
 def _flatten(value: Value, flat: list[tuple[str, str]]) -> None:

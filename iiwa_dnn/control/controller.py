@@ -24,10 +24,20 @@ from iiwa_dnn.control.paths import (
     warn_if_unstable,
     warn_if_unwatched,
 )
-from iiwa_dnn.control.policies import POLICIES, Action, Policy, ProgramKind
-from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, KeptStates, Q
-from iiwa_dnn.control.step import ControlStep
-from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step, yield_step
+from iiwa_dnn.control.policies import POLICIES, Action, Policy
+from iiwa_dnn.control.state import (
+    BEFORE,
+    DELAY,
+    HALTED,
+    LAST,
+    REST,
+    YIELDS,
+    ControllerState,
+    KeptStates,
+    Q,
+)
+from iiwa_dnn.control.step import INVALID, ControlStep, begin_step, finish_step, take_step
+from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
@@ -36,6 +46,7 @@ from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
 from iiwa_dnn.schemes.base import targets_of
 from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]
 MODES: tuple[Mode, ...] = ("converged", "continuous")
@@ -43,6 +54,8 @@ MODES: tuple[Mode, ...] = ("converged", "continuous")
 _FLOAT = np.dtype(np.float64)
 
 _NOTHING = np.zeros(0)
+
+_ACTIONS = {int(action): action for action in Action}
 
 
 class Controller:
@@ -139,11 +152,11 @@ class Controller:
     @property
     def delay(self) -> float:
         """Time by which the reference's clock is behind [s]."""
-        return self._kept.now.delay
+        return float(self._kept.now.past[DELAY, 0])
 
     @delay.setter
     def delay(self, seconds: float) -> None:
-        self._kept.now = self._kept.now._replace(delay=seconds)
+        self._kept.now.past[DELAY, 0] = seconds
 
     def step(
         self,
@@ -197,8 +210,8 @@ class Controller:
         past[BEFORE] = self._kept.now.past[LAST]
         past[LAST] = dq
         past[REST] = 0.0
-        delay = self._kept.now.delay + self.dt * (1.0 - fraction)
-        self._kept.now = self._kept.next._replace(past=past, delay=delay)
+        past[DELAY] = self._kept.now.past[DELAY] + self.dt * (1.0 - fraction)
+        self._kept.now = self._kept.next._replace(past=past)
 
     def _compute(
         self,
@@ -221,43 +234,33 @@ class Controller:
         row = np.empty(layout.width)
         samples = step.samples and target is None
         if not samples:
-            layout.targets(row)[:] = self.targets(t - state.delay, target, dt)
+            layout.targets(row)[:] = self.targets(t - state.past[DELAY, 0], target, dt)
         program = step.program
         program.kinematics.update(joints)
         if program.refreshed:
             program.refresh(joints, state.past[LAST], layout.targets(row), t, dt)
-        state.past[Q] = joints
-        following = state.past.copy()
-        if self._answer(step, row, t, samples, following):
-            self._kept.next = ControllerState(following, state.delay, True, False, state.halted)
-            return Command(row, layout)
-        return self._yield(step, row, following)
-
-    def _answer(
-        self, step: ControlStep, row: Vector, t: float, samples: bool, following: Matrix
-    ) -> bool:
-        """Write the program of a step into a row, and answer it by a command that can be stopped.
-
-        The network is not asked if the task yielded at the last step, or the arm is halted.
-        """
-        state = self._kept.now
-        asks = state.halted is None and not state.yields
+        past = state.past
+        past[Q] = joints
+        following = past.copy()
+        relaxed = state.relaxed
+        if relaxed.size != step.relaxed_size:
+            relaxed = np.zeros(step.relaxed_size)
         network = self._warm_state(step)
-        solved: bool = step.run(
-            row,
-            step.arrays,
-            state.past,
-            following,
-            _NOTHING if network is None else network,
-            (t, state.delay),
-            samples,
-            asks and network is not None,
-        )
-        if asks and network is None:
-            solved = self._ask(step, row, following)
-        if not solved or not step.yielding.stop:
-            return solved
-        return bool(guard_step(step.arrays, state.past, following, step.yielding))
+        if network is None:
+            solved = begin_step(row, step.plan, past, following, _NOTHING, t, samples, False)
+            if past[YIELDS, 0] == past[HALTED, 0] == 0.0:
+                solved = self._ask(step, row, following)
+            action = finish_step(row, step.plan, past, following, _NOTHING, relaxed, solved)
+        else:
+            plan = step.plan
+            action = take_step(row, plan, past, following, network, relaxed, t, samples)
+        if action == INVALID:
+            checks.finite_array("q", past[Q], (layout.dof,))
+            checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
+        if action and state.blocking is not None:
+            layout.view(row, "blocking")[:] = state.blocking
+        self._kept.next = ControllerState(following, True, state.blocking, relaxed)
+        return Command(row, layout, _ACTIONS[action])
 
     def _ask(self, step: ControlStep, row: Vector, following: Matrix) -> bool:
         """Ask a network that is not compiled, or has no state yet, for the answer to a program."""
@@ -296,51 +299,16 @@ class Controller:
             dq: Velocity that the program's bounds and rows allow [rad/s], (n,).
         """
         step = self._laid_out()
-        if step.yields or not step.yielding.stop:
+        if step.yields or not step.plan.yielding.stop:
             return 1.0
         step.program.kinematics.update(q)
         past = np.zeros_like(self._kept.now.past)
         following = past.copy()
         for share in TOWARDS:
             following[LAST] = share * dq
-            if guard_step(step.arrays, past, following, step.yielding):
+            if guard_step(step.plan.arrays, past, following, step.plan.yielding):
                 return share
         return 0.0
-
-    def _yield(self, step: ControlStep, row: Vector, following: Matrix) -> Command:
-        """Answer a step without a solution as the policy says."""
-        state = self._kept.now
-        layout = step.layout
-        halted = state.halted
-        targets = layout.targets(row)
-        checks.finite_array("q", state.past[Q], (layout.dof,))
-        checks.finite_array("target", targets, targets.shape)
-        goes_on = halted is None and self.mode == "converged"
-        action = int(Action[self.policy.upper()]) if goes_on else BRAKE
-        n, m, p = layout.sizes
-        network = self._warm_state(step)
-        if network is None or not is_projection(self.solver.network):
-            network = np.zeros(3 * n + m + p)
-        relaxed = state.relaxed
-        if relaxed.size != step.relaxed_size:
-            relaxed = np.zeros(step.relaxed_size)
-        taken = yield_step(
-            row,
-            step.arrays,
-            state.past,
-            following,
-            network,
-            step.yielding,
-            relaxed,
-            action,
-        )
-        if halted is not None:
-            layout.view(row, "blocking")[:] = halted
-        command = Command(row, layout, Action(taken))
-        delay = state.delay + step.dt * (1.0 - command.fraction)
-        yields = ProgramKind.OWN < command.kind < ProgramKind.STOPPED
-        self._kept.next = ControllerState(following, delay, True, yields, halted, relaxed)
-        return command
 
     def _prepare(self, q: ArrayLike, t: float, own: bool) -> ControlStep:
         """Anchor the scheme, and at the first step warn of a start that is most likely wrong.
@@ -363,9 +331,8 @@ class Controller:
         step = self._derived
         if step is None:
             program = self.scheme.program(self.robot)
-            step = ControlStep(
-                program, self._seen(self.dt) or {}, self.solver, self.dt, self.mode == "converged"
-            )
+            policy = int(Action[self.policy.upper()]) if self.mode == "converged" else BRAKE
+            step = ControlStep(program, self._seen(self.dt) or {}, self.solver, self.dt, policy)
             if self._anchored is self.scheme:  # else the next step gives the scheme its home
                 self._derived = step
         return step
@@ -409,14 +376,14 @@ class Controller:
                 None: it stops for another reason than a limit.
         """
         step = self._laid_out()
-        if self._kept.now.halted is not None:
+        if self._kept.now.past[HALTED, 0] or not (command is None or step.yields):
             return
-        if command is None:
-            n, m, _ = step.layout.sizes
-            self._kept.now = self._kept.now._replace(halted=np.zeros(n + m))
-        elif step.yields:
-            blocking = step.layout.view(command.row, "blocking").copy()
-            self._kept.now = self._kept.now._replace(halted=blocking)
+        self._kept.now.past[HALTED] = 1.0
+        n, m, _ = step.layout.sizes
+        blocking = np.zeros(n + m)
+        if command is not None:
+            blocking[:] = step.layout.view(command.row, "blocking")
+        self._kept.now = self._kept.now._replace(blocking=blocking)
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""

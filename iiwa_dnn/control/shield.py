@@ -29,7 +29,7 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.state import BEFORE, LAST, REST, ControllerState, KeptStates
+from iiwa_dnn.control.state import BEFORE, LAST, REST, YIELDS, ControllerState, KeptStates
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
@@ -90,7 +90,7 @@ def approach_positions(
 
     Args:
         q: Joint positions [rad], (n,).
-        past: `ControllerState.past`, (5, n).
+        past: `ControllerState.past`, (8, n).
         goal: Joint positions to reach [rad], (n,).
         limits: `MotionLimits.constants`, (6 n,).
         dt: Control period [s].
@@ -292,7 +292,7 @@ class Shield:
         target = self._target(controller, wish, self._q)
         command = controller.step(self._q, self._t, target)
         # A wish that can be had again is had at once.
-        self._kept.now = self._kept.now._replace(yields=False)
+        self._kept.now.past[YIELDS] = 0.0
         clipped = bool(reasons)
         if wish.kind == "dq":
             clipped = clipped or bool((command.dq != wish.value).any())

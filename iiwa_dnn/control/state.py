@@ -6,8 +6,8 @@ import numpy as np
 
 from iiwa_dnn.qp import Matrix, Vector
 
-Q, LAST, BEFORE, WANTED, REST = range(5)
-"""Rows of `ControllerState.past`."""
+Q, LAST, BEFORE, WANTED, REST, DELAY, YIELDS, HALTED, ROWS = range(9)
+"""Rows of `ControllerState.past`, and their number."""
 
 
 class ControllerState(NamedTuple):
@@ -17,27 +17,24 @@ class ControllerState(NamedTuple):
 
     Attributes:
         past: Joint positions of this step [rad], last command, the one before, the velocity that a
-            yielding task wanted at the last step [rad/s], and in the first entry of its last row
-            the periods until the braking motion in hand rests, 0 if there is none, (5, n).
-        delay: Time by which the reference's clock is behind [s].
+            yielding task wanted at the last step [rad/s], and in the first entries of further rows
+            the periods until the braking motion in hand rests, 0 if there is none, the time by
+            which the reference's clock is behind [s], and 1 if the task yielded at the last step
+            and if the arm brakes whatever has a solution, (8, n).
         begun: Whether a first step was taken.
-        yields: Whether the task yielded at the last step.
-        halted: What stood in the way when a policy stopped the arm, (n + m,), after which every
-            step brakes; None: it did not.
+        blocking: What stood in the way when a policy stopped the arm, (n + m,); None: it did not.
         relaxed: States of the networks of relaxed programs, (size,), warm starts.
     """
 
     past: Matrix
-    delay: float = 0.0
     begun: bool = False
-    yields: bool = False
-    halted: Vector | None = None
+    blocking: Vector | None = None
     relaxed: Vector = np.zeros(0)
 
     @classmethod
     def at_rest(cls, dof: int, begun: bool = False) -> "ControllerState":
         """Return the state of an arm of n joints that has had no command."""
-        return cls(np.zeros((5, dof)), begun=begun)
+        return cls(np.zeros((ROWS, dof)), begun)
 
 
 class KeptStates:

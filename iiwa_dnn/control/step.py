@@ -4,8 +4,9 @@ For seven joints the way into compiled code is a large part of the cost of a cal
 enters it once a step.
 """
 
+import math
 from collections.abc import Mapping
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,10 +22,20 @@ from iiwa_dnn.control.command import (
     RowViews,
     row_views,
 )
-from iiwa_dnn.control.relaxed import make_yielding, relaxed_size
-from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED
-from iiwa_dnn.control.yielding import with_limits
+from iiwa_dnn.control.relaxed import Yielding, make_yielding, relaxed_size
+from iiwa_dnn.control.state import (
+    BEFORE,
+    DELAY,
+    HALTED,
+    LAST,
+    REST,
+    WANTED,
+    YIELDS,
+    Q,
+)
+from iiwa_dnn.control.yielding import BRAKE, NONE, OWN, STOPPED, guard_step, with_limits, yield_step
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
+from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import qp_views
@@ -39,6 +50,25 @@ from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
 
+INVALID = -1
+"""Action at joint positions or targets that are not finite: nothing is changed."""
+
+
+class StepPlan(NamedTuple):
+    """What a control step is laid out with.
+
+    Attributes:
+        arrays: Arrays with which the program is written.
+        yielding: What relaxed programs need beside them.
+        policy: Action that the policy asks for at a step without a solution; `BRAKE`: none.
+        shares_state: Whether relaxed programs start from the state of the step's own network.
+    """
+
+    arrays: ProgramArrays
+    yielding: Yielding
+    policy: int
+    shares_state: bool
+
 
 class ControlStep:
     """A control step laid out for a scheme, references and a network.
@@ -48,13 +78,11 @@ class ControlStep:
         layout: Columns of the rows that are written.
         names: Names of the limits.
         dt: Control period [s].
-        arrays: Arrays that stay the same from step to step.
+        plan: Arrays and settings that stay the same from step to step.
         has_network: Whether the network is compiled.
         samples: Whether the compiled step samples the targets: all references are compiled, and no
             part is refreshed by the targets of a step.
-        run: `control_step`.
-        yielding: What relaxed programs need beside a step's own.
-        relaxed_size: Numbers of the states of their networks.
+        relaxed_size: Numbers of the states of relaxed programs' networks.
     """
 
     def __init__(
@@ -63,7 +91,7 @@ class ControlStep:
         references: Mapping[str, Reference],
         solver: DNNSolver,
         dt: float,
-        converged: bool,
+        policy: int,
     ) -> None:
         """Lay a control step out.
 
@@ -72,20 +100,20 @@ class ControlStep:
             references: Reference of each tracked frame, or none.
             solver: The network that answers the programs.
             dt: Control period [s].
-            converged: Whether the network settles at every step.
+            policy: Action of a step without a solution; `BRAKE`: in continuous mode.
         """
         self.program = program
         self.dt = dt
         frames = program.target_frames
         self.names = LimitNames(program, dt)
         self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), self.names)
-        self.has_network = self._add_network(solver, 0.0 if converged else dt)
+        self.has_network = self._add_network(solver, dt if policy == BRAKE else 0.0)
         self.samples = self._add_paths(references) and not program.reads_targets
-        self.arrays = program.arrays(dt)
+        arrays = program.arrays(dt)
         if program.rate_limits is not None:
-            check_ranges(program.rate_limits.constants(program.robot), self.arrays.rate)
-        self.run: Any = control_step
-        self.yielding = with_limits(make_yielding(program, solver.tol, dt))
+            check_ranges(program.rate_limits.constants(program.robot), arrays.rate)
+        yielding = with_limits(make_yielding(program, solver.tol, dt))
+        self.plan = StepPlan(arrays, yielding, policy, is_projection(solver.network))
         self.relaxed_size = relaxed_size(program.sizes)
 
     def set_period(self, dt: float) -> None:
@@ -99,15 +127,16 @@ class ControlStep:
             check_ranges(program.rate_limits.constants(program.robot), 1.0 / dt)
         self.dt = dt
         self.names.dt = dt
-        self.arrays = self.arrays._replace(rate=1.0 / dt)
-        self.yielding = self.yielding._replace(dt=dt)
+        arrays = self.plan.arrays._replace(rate=1.0 / dt)
+        yielding = self.plan.yielding._replace(dt=dt)
+        self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
         if self.has_network:  # 0 where the network settles
             program.constants[self._duration_at] = dt * self._duration_rate
 
     @property
     def yields(self) -> bool:
         """Test whether the task yields to acceleration or jerk limits."""
-        return self.yielding.limits.size > 0
+        return self.plan.yielding.limits.size > 0
 
     def _add_network(self, solver: DNNSolver, duration: float) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""
@@ -145,31 +174,55 @@ class ControlStep:
 
 
 @compiled
-def control_step(
+def take_step(
     row: Vector,
-    arrays: ProgramArrays,
+    plan: StepPlan,
     past: Matrix,
     following: Matrix,
     state: Vector,
-    clock: tuple[float, float],
+    relaxed: Vector,
+    t: float,
+    samples: bool,
+) -> int:
+    """Take a control step: its own program, or what the policy asks for.
+
+    Args:
+        row: The row, (width,), with the targets unless they are sampled.
+        plan: What the step is laid out with.
+        past: `ControllerState.past`, (8, dof); the kinematics are at its joint positions.
+        following: The same for the next step, overwritten.
+        state: The network's state, (size,), advanced.
+        relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
+        t: Time [s].
+        samples: Whether the references are asked for the targets.
+
+    Returns:
+        The action that was taken, or `INVALID`.
+    """
+    solved = begin_step(row, plan, past, following, state, t, samples, True)
+    return finish_step(row, plan, past, following, state, relaxed, solved)
+
+
+@compiled
+def begin_step(
+    row: Vector,
+    plan: StepPlan,
+    past: Matrix,
+    following: Matrix,
+    state: Vector,
+    t: float,
     samples: bool,
     asks: bool,
 ) -> bool:
     """Write targets, program and answer of one control step into a row.
 
-    Args:
-        row: The row, (width,), with the targets unless they are sampled.
-        arrays: Arrays of the loop.
-        past: `ControllerState.past`, (5, dof); the kinematics are at its joint positions.
-        following: `ControllerState.following`, (5, dof), overwritten.
-        state: The network's state, (size,), advanced.
-        clock: Time, and time by which the reference's clock is behind [s].
-        samples: Whether the references are asked for the targets.
-        asks: Whether the network is asked: not if the task yielded at the last step.
+    Arguments are those of `take_step`; `asks` says that the network is asked, unless the task
+    yielded at the last step, or the arm brakes.
 
     Returns:
         False if the network was not asked, did not settle or diverged; `state` is then as it was.
     """
+    arrays = plan.arrays
     table = arrays.table
     constants = arrays.constants
     n = table[0, 0]
@@ -179,12 +232,11 @@ def control_step(
     network = 1 + table[0, 4]
     views = row_views(row, n, m, p, dof)
     qp = qp_views(views.program, n, m, p)
-    t, delay = clock
     for i in range(dof):
         for k in range(PAST):
             views.past[k, i] = past[k, i]
     if samples:
-        sample_targets(arrays, t - delay, views.targets)
+        sample_targets(arrays, t - past[DELAY, 0], views.targets)
     assemble(step_views(arrays, past, views.targets, t), arrays, qp)
     for i in range(dof):
         views.bounds[0, i] = qp.lb[i]
@@ -192,7 +244,7 @@ def control_step(
     for i in range(PLACEMENT):
         views.placement[i] = arrays.placements[table[0, 5], i]
     clear_answer(views)
-    if not asks:
+    if not asks or past[YIELDS, 0] != 0.0 or past[HALTED, 0] != 0.0:
         return False
     own = constants[table[network, 4] : table[network, 5]]
     address = table[network, 1]
@@ -217,6 +269,50 @@ def control_step(
         following[WANTED, i] = past[WANTED, i]
     following[REST, 0] = 0.0
     return True
+
+
+@compiled
+def finish_step(
+    row: Vector,
+    plan: StepPlan,
+    past: Matrix,
+    following: Matrix,
+    state: Vector,
+    relaxed: Vector,
+    solved: bool,
+) -> int:
+    """Answer a step that is not solved, or whose command cannot be stopped; advance the clock.
+
+    Arguments and result are those of `take_step`; `solved` is the result of `begin_step`.
+    """
+    table = plan.arrays.table
+    yielding = plan.yielding
+    following[DELAY, 0] = past[DELAY, 0]
+    following[YIELDS, 0] = 0.0
+    following[HALTED, 0] = past[HALTED, 0]
+    if solved and (yielding.stop == 0 or guard_step(plan.arrays, past, following, yielding)):
+        return NONE
+    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], table[0, 3])
+    if not _all_finite(past[Q]) or not _all_finite(row[row.size - views.targets.size :]):
+        return INVALID
+    policy = plan.policy if past[HALTED, 0] == 0.0 else BRAKE
+    cold = np.zeros(3 * table[0, 0] + table[0, 1] + table[0, 2])
+    if plan.shares_state and state.size == cold.size:
+        cold = state
+    action = yield_step(row, plan.arrays, past, following, cold, yielding, relaxed, policy)
+    kind = views.decision[3]
+    following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
+    following[YIELDS, 0] = 1.0 if OWN < kind < STOPPED else 0.0
+    return action
+
+
+@compiled
+def _all_finite(values: Vector) -> bool:
+    """Test whether all of some numbers (k,) are finite."""
+    others = 0
+    for i in range(values.size):
+        others += not math.isfinite(values[i])
+    return others == 0
 
 
 @compiled

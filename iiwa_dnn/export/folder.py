@@ -166,7 +166,6 @@ def _texts(
         "fri_sample": sample_of_fri * has_reference,
         "usage": "controller_target(&c, t, target);  /* the reference */\n" * has_reference,
         "target_declaration": filled("target.h", reference) * has_reference,
-        "target_function": filled("target.c", {}) * has_reference,
         "settings": json.dumps(settings, indent=2),
         "what_systems": "linear systems" if controller.mode == "converged" else "sub-steps",
     }

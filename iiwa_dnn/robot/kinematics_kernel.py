@@ -34,10 +34,10 @@ class ModelTables(NamedTuple):
         joints: Placement of each joint at 0 in the frame of its parent, (n, 12).
         axes: Direction of each joint's motion in its own frame, linear and angular, (n, 6).
         frames: For each frame its row among the placements, and the joint that carries it, (k, 2).
-        placements: Placement of each frame in its joint's, (k, 12).
+        offsets: Placement of each frame in its joint's, (k, 12).
         bodies: For what each joint carries the placement of its principal axes, and the roots of
             its mass and of its moments about them, (n, 16); none without the inertia matrix.
-        supports: 1 where joint j moves body i, else 0, (n, n).
+        supports: 1 where joint j moves body i, else 0, (n, n); none with them.
         armature: Inertia of the motors [kg m^2], (n,).
     """
 
@@ -45,7 +45,7 @@ class ModelTables(NamedTuple):
     joints: Matrix
     axes: Matrix
     frames: IntMatrix
-    placements: Matrix
+    offsets: Matrix
     bodies: Matrix
     supports: Matrix
     armature: Vector
@@ -62,16 +62,17 @@ def model_tables(robot: Robot, frames: Sequence[int], dynamics: bool = False) ->
         joint.calc(data, np.zeros(1), np.zeros(1))
         axes.append(np.ravel(data.S))
     carried = [[model.frames[k].placement, model.frames[k].parentJoint] for k in frames]
-    bodies = [_body(model.inertias[j]) for j in moving]
-    supports = [[float(j in list(model.supports[i])) for j in moving] for i in moving]
+    carrying = moving if dynamics else ()
+    bodies = [_body(model.inertias[j]) for j in carrying]
+    supports = [[float(j in list(model.supports[i])) for j in moving] for i in carrying]
     return ModelTables(
         np.array(model.parents[1:], dtype=np.int64),
         np.array([_flat(model.jointPlacements[j]) for j in moving]),
         np.array(axes),
         np.array([[k, row[1]] for k, row in zip(frames, carried, strict=True)], dtype=np.int64),
         np.array([_flat(row[0]) for row in carried]),
-        np.array(bodies if dynamics else np.zeros((0, 16))),
-        np.array(supports),
+        np.reshape(bodies, (-1, 16)),
+        np.reshape(supports, (-1, model.nv)),
         np.array(model.armature),
     )
 
@@ -113,7 +114,7 @@ def write_kinematics(
         compose(start, motion, placed[j + 1])
     for k in range(len(model.frames)):
         carrier = placed[model.frames[k, 1]]
-        compose(carrier, model.placements[k], placements[model.frames[k, 0]])
+        compose(carrier, model.offsets[k], placements[model.frames[k, 0]])
     if len(model.bodies) > 0:
         _write_inertia(model, placed, jacobian, inertia)
 

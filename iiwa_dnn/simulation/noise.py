@@ -137,7 +137,7 @@ class SignalChain:
         elif self._entry == "network":
             controller.solver.disturb(self._noise[k])
         command, clipped = clip_command(
-            qp, self._average(command), controller.control_step.yielding
+            qp, self._average(command), controller.control_step.plan.yielding
         )
         if estimator is not None:
             # The joints get the average, clipped: the estimator is told of its known part.

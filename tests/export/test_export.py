@@ -17,11 +17,10 @@ import iiwa_dnn
 from export_settings import SETTINGS, drawing, with_parts
 from helpers_export import QUICK, WARNINGS, needs, run
 from iiwa_dnn import Controller, DoubleIndicator
-from iiwa_dnn.control.command import RowLayout
-from iiwa_dnn.control.policies import ProgramKind
 from iiwa_dnn.errors import FileError, InvalidInputError, MissingDependencyError
 from iiwa_dnn.export import ExportedController, c99, load
 from iiwa_dnn.export.folder import run as run_controller
+from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 
 pytestmark = needs("gcc")
 
@@ -117,81 +116,54 @@ COMBINED = {
 SHOWN_BY_OTHERS = (
     *("inertia", "block form", "poses", "soft tasks", "axis and coupling"),
     *("obstacles that move", "collisions with itself, a box, a floor"),
-    *("ur5", "next target, cone"),
-    *("heart", "acceleration", "panda", "xarm7"),
+    *("ur5", "next target, cone", "heart", "acceleration", "panda", "xarm7"),
 )
-"""Controllers whose code is another's too: of those in `COMBINED`, and of four more.
-
-The heart is "velocity limits active" at other limits and has the folder's own test; limits of
-acceleration alone are in "braking among balls", the line is in "acceleration and jerk"; an arm that
-is another has other kinematics, which tests/export/test_kinematics.py compares with Pinocchio's.
-"""
+"""Controllers whose code is another's too, of those in `COMBINED` or of `SETTINGS`."""
 
 MADE = {**{k: v for k, v in SETTINGS.items() if k not in SHOWN_BY_OTHERS}, **COMBINED}
 
 
+def take_kernels_kinematics(controller: Controller) -> None:
+    """Let the kernel of the exported C compute a controller's kinematics, not Pinocchio."""
+    program = controller.program
+    own = program.kinematics
+    tables = model_tables(controller.robot, own.frame_ids, program.needs_inertia)
+    own.update = lambda q: write_kinematics(  # type: ignore[method-assign]
+        tables, np.ascontiguousarray(q), own.jacobian, own.placements, own.inertia
+    )
+
+
 @pytest.mark.parametrize("name", MADE)
-def test_commands_are_pythons_in_closed_loop(name: str, folders: Callable[[str], Path]) -> None:
+def test_commands_have_pythons_bits_in_closed_loop(
+    name: str, folders: Callable[[str], Path]
+) -> None:
+    """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py."""
     controller, q0 = MADE[name]()
-    folder = folders(name)
-    run("gcc", *WARNINGS, "-fsyntax-only", folder / "controller.c")
-    exported = loaded(folder, QUICKEST)
+    exported = loaded(folders(name), QUICKEST)
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
-    dt = controller.dt
-    ours = q0.copy()
-    theirs = q0.copy()
-    active = 0
-    actions = []
-    sampled = []
-    given = []
-    commands = []
-    rows = []
+    take_kernels_kinematics(controller)
     layout = controller.layout
-    reaches_limits = name in REACHING
-    yields = name.startswith(("without", "yielding", "braking"))
+    dt = controller.dt
+    q = q0.copy()
+    active = 0
+    actions = set()
     for k in range(STEPS.get(name, 500)):
-        targets = controller.targets(k * dt - controller.delay)
-        sampled.append(exported.target(k * dt))
-        given.append(targets.ravel())
-        command = controller.step(ours, k * dt)
-        dq, action = exported.step(theirs, targets)
-        actions.append((action, command.action))
-        commands.append((dq, command.dq))
-        rows.append((np.frombuffer(exported._memory)[: layout.width].copy(), command.row))
-        solution = command.solution
-        active += bool((np.abs(solution.z_box) > 1e-9).any() or (solution.z > 1e-9).any())
-        ours = ours + dt * command.dq
-        theirs = theirs + dt * dq
-    # At once: a comparison by numpy takes longer than a step.
-    np.testing.assert_allclose(sampled, given, rtol=0, atol=1e-9 if yields else 1e-11)
-    assert all(in_c == in_python for in_c, in_python in actions)
-    in_c, in_python = np.array(commands).swapaxes(0, 1)
-    assert (np.abs(in_c - in_python) / controller.robot.dq_max).max() < 1e-9
-    assert exported.has_reference
-    assert np.abs(ours - q0).max() > 1e-4
-    if reaches_limits:
-        assert active > 50
-    if yields:
-        assert len(set(actions)) > 1
-        _check_programs(np.array(rows), layout)
-
-
-def _check_programs(rows: np.ndarray, layout: RowLayout) -> None:
-    """Check that C hands out Python's programs (k, 2, width), and that its commands answer them."""
-    in_c, in_python = rows.swapaxes(0, 1)
-    for name in ("program", "decision", "bounds"):
-        theirs, ours = (layout.view(each, name) for each in (in_c, in_python))
-        np.testing.assert_allclose(theirs, ours, rtol=1e-7, atol=1e-7)
-    kinds = layout.view(in_c, "decision")[:, 3]
-    yielding = in_c[(kinds > ProgramKind.OWN) & (kinds < ProgramKind.HELD)][:100]
-    programs = np.ascontiguousarray(layout.view(yielding, "program"))
-    commands = np.ascontiguousarray(layout.view(yielding, "dq"))
-    if layout.sizes[0] != layout.dof or not len(yielding):
-        return
-    check = iiwa_dnn.CrossCheck(("osqp",))
-    assert (check.check_block(programs, layout.sizes, commands).solution_gap <= 1e-6).all()
-    others = np.random.default_rng(3).uniform(-0.1, 0.1, commands.shape)
-    assert not (check.check_block(programs, layout.sizes, others).solution_gap <= 1e-6).any()
+        target = exported.target(k * dt)
+        command = controller.step(q, k * dt)
+        dq, action = exported.step(q, target)
+        row = np.frombuffer(exported._memory)[: layout.width]
+        assert target.tobytes() == command.targets.tobytes()
+        assert (dq.tobytes(), action) == (command.dq.tobytes(), command.action)
+        for column in ("program", "point", "figures", "decision", "bounds"):
+            of_python = layout.view(command.row, column)
+            assert layout.view(row, column).tobytes() == of_python.tobytes(), column
+        actions.add(action)
+        active += bool((np.abs(command.solution.z_box) > 1e-9).any())
+        active += bool((command.solution.z > 1e-9).any())
+        q = q + dt * dq
+    assert np.abs(q - q0).max() > 1e-4
+    assert active > 50 or name not in REACHING
+    assert len(actions) > 1 or not name.startswith(("without", "yielding", "braking"))
 
 
 @pytest.fixture(scope="module")
@@ -253,9 +225,8 @@ def test_clang_has_no_warning_either(heart: Path) -> None:
 def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
     text = (heart / "controller.c").read_text(encoding="utf-8")
     code = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
-    assert set(re.findall(r"#include (\S+)", code)) == {
-        '"controller.h"', "<math.h>", "<stdbool.h>", "<stddef.h>",
-    }  # fmt: skip
+    included = {"math", "stdbool", "stddef", "stdint", "string"}
+    assert set(re.findall(r"#include <(\S+)\.h>", code)) == included
     assert not re.search(r"\b(malloc|free|alloca|printf|fopen|goto|setjmp|restrict)\b", code)
     outside = re.sub(r"\{(?:[^{}]|\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})*\}", "{}", code)
     variables = [line for line in outside.splitlines() if line.startswith("static") and "=" in line]
@@ -266,10 +237,9 @@ def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
 def test_names_and_first_lines_of_docstrings_are_carried_over(heart: Path) -> None:
     text = (heart / "controller.c").read_text(encoding="utf-8")
     for words in (
-        "static bool control_step(",
-        "static double field(",
+        "static ptrdiff_t control_step_take_step(struct arena *arena, vector row,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
-        "(iiwa_dnn/schemes/limits.py)",
+        " * iiwa_dnn/schemes/limits.py: joint_limits */",
     ):
         assert words in text
 
@@ -384,7 +354,7 @@ class _Eager(iiwa_dnn.ProjectionNetwork):
     ("make", "words"),
     [
         (_with_own_part, "Manipulability is written with numpy"),
-        (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing moves by numpy"),
+        (lambda: drawing(with_parts(limits=(_Closing(),)))[0], "_Closing is written with numpy"),
         (lambda: _with_network(iiwa_dnn.PrimalDualNetwork()), "solver: has no compiled answer"),
         (lambda: _with_network(_Eager()), "network: _Eager starts from a state of its own"),
     ],

@@ -1,94 +1,48 @@
-/* Velocity controller of the robot @robot@, made by iiwa_dnn @version@ from its own compiled code.
+/* Velocity controller of the robot @robot@, made by iiwa_dnn @version@ from its own kernels.
  *
  * C99 and libm's elementary functions alone. Every function states the file that it is translated
- * from; sizes are constants here: n = @n@ variables, m = @m@ inequality rows, p = @p@ equality rows.
+ * from. Programs have @n@ variables, @m@ inequality rows, @p@ equality rows.
  */
 #include "controller.h"
 
-#include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
-
-/* Places in the row, and the action that the policy asks for at a step without a solution. */
-#define AT_TARGETS @at_targets@
-#define AT_DECISION @at_decision@
-#define AT_DQ @at_dq@
-#define POLICY @policy@
-
-/* The size that the header states. */
-typedef char controller_size[sizeof(struct controller) == CONTROLLER_SIZE ? 1 : -1];
-
 @code@
-
-@kinematics@
-
-/* Assigned, and not initialized: compilers would keep a copy of that in memory. */
-static struct program_arrays controller_arrays(struct controller *c)
+/* What a step is laid out with; tables, and the kinematics in the controller. */
+static inline step_StepPlan controller_plan(struct controller *c)
 {
-    struct program_arrays arrays;
-@arrays@
-    return arrays;
-}
-
-static struct yielding controller_yielding(void)
-{
-    struct yielding yielding;
-@yielding@
-    return yielding;
-}
-@move_function@
-static bool all_finite(const double *values, int count)
-{
-    double sum = 0.0;
-    for (int i = 0; i < count; i++) {
-        sum += values[i] * 0.0;
-    }
-    return sum == 0.0;
+    (void)c;
+    const step_StepPlan plan = @plan@;
+    return plan;
 }
 
 void controller_init(struct controller *c)
 {
-    const struct controller zero = {0};
-    *c = zero;
+    memset(c, 0, sizeof *c);
 @start@}
 
 int controller_step(struct controller *c, const double *q, const double *target, double *dq)
 {
-    if (!all_finite(q, CONTROLLER_DOF) || !all_finite(target, 18 * CONTROLLER_FRAMES)) {
-        for (int i = 0; i < CONTROLLER_DOF; i++) {
-            dq[i] = 0.0;
-        }
+    bool full = false;
+    struct arena arena = controller_arena(c, &full);
+    const step_StepPlan plan = controller_plan(c);
+    const kinematics_kernel_ModelTables model = @model@;
+    const vector row = {c->row, @width@};
+    const matrix past = {c->past, @rows@, CONTROLLER_DOF};
+    const matrix following = {c->following, @rows@, CONTROLLER_DOF};
+    const vector state = {c->state, @state@};
+    const vector relaxed = {c->relaxed, @relaxed@};
+    const vector joints = {c->past, CONTROLLER_DOF};
+    const double t = c->steps[0] * CONTROLLER_DT;
+    memcpy(c->past, q, sizeof(double) * CONTROLLER_DOF);
+    memcpy(c->row + @at_targets@, target, sizeof(double) * 18 * CONTROLLER_FRAMES);
+    @kinematics@(&arena, &model, joints, plan.arrays.jacobian, plan.arrays.placements, plan.arrays.inertia);
+@move@    const ptrdiff_t action = @take_step@(&arena, row, &plan, past, following, state, relaxed, t, false);
+    if (full || action == CONTROLLER_INVALID) {
+        memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
         return CONTROLLER_INVALID;
     }
-    const struct program_arrays arrays = controller_arrays(c);
-    const struct yielding yielding = controller_yielding();
-    const double t = c->steps * CONTROLLER_DT;
-    const struct pair clock = {{t, c->delay}};
-    int action = 0;
-    kinematics(q, c->jacobian, c->placements@inertia@);
-    for (int i = 0; i < 18 * CONTROLLER_FRAMES; i++) {
-        c->row[AT_TARGETS + i] = target[i];
-    }
-    for (int i = 0; i < CONTROLLER_DOF; i++) {
-        c->past[i] = q[i];
-    }
-@move@    const bool solved = control_step(
-        c->row, &arrays, c->past, c->following, c->state, clock, false, c->yields == 0.0)@guard@;
-    if (!solved) {
-@cold@        action = yield_step(
-            c->row, &arrays, c->past, c->following, @state@, &yielding, c->relaxed, POLICY);
-        c->yields = c->row[AT_DECISION + 3] > 0.0 && c->row[AT_DECISION + 3] < 4.0;
-    }
-    if (action != 0) {
-        c->delay += CONTROLLER_DT * (1.0 - c->row[AT_DECISION + 1]);
-    }
-    for (int i = 0; i < CONTROLLER_DOF; i++) {
-        dq[i] = c->row[AT_DQ + i];
-    }
-    for (int i = 0; i < @past_size@; i++) {
-        c->past[i] = c->following[i];
-    }
-    c->steps += 1.0;
-    return action;
+    memcpy(dq, c->row + @at_dq@, sizeof(double) * CONTROLLER_DOF);
+    memcpy(c->past, c->following, sizeof c->past);
+    c->steps[0] += 1.0;
+    return (int)action;
 }
 @target_function@

@@ -1,6 +1,9 @@
 
 void controller_target(struct controller *c, double t, double *target)
 {
-    const struct program_arrays arrays = controller_arrays(c);
-    sample_targets(&arrays, t - c->delay, target);
+    bool full = false;
+    struct arena arena = controller_arena(c, &full);
+    const step_StepPlan plan = controller_plan(c);
+    const matrix targets = {target, CONTROLLER_FRAMES, 18};
+    @sample@(&arena, &plan.arrays, t - c->past[@delay@ * CONTROLLER_DOF], targets);
 }

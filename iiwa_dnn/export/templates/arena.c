@@ -1,0 +1,27 @@
+/* What kernels need for themselves stands in the controller. If it ever were too little, no memory
+ * but this would be written, and the step would be refused. */
+struct arena { char *top, *start, *end; bool *full; };
+
+static inline void *arena_take(struct arena *arena, int64_t count)
+{
+    const int64_t bytes = 8 * count;
+    char *taken = arena->top;
+    if (arena->end - taken < bytes) {
+        *arena->full = true;
+        taken = arena->start;
+    }
+    arena->top = taken + bytes;
+    return taken;
+}
+
+static inline struct arena controller_arena(struct controller *c, bool *full)
+{
+    char *start = (char *)c->scratch;
+    const struct arena arena = {start, start, start + sizeof c->scratch, full};
+    return arena;
+}
+
+static inline void arena_leave(struct arena *arena, const struct arena *mark)
+{
+    arena->top = mark->top;
+}
