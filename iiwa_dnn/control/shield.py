@@ -39,10 +39,10 @@ from iiwa_dnn.robot.obstacles import Obstacle
 from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.limits import (
     AccelerationLimits,
     JerkLimits,
+    JointLimits,
     MotionLimits,
     braking,
     joint_bounds,
