@@ -44,8 +44,6 @@ def write_atomically(path: str | os.PathLike[str], write: Callable[[BinaryIO], o
             # Without it, a power cut may leave the new name on an empty file.
             os.fsync(file.fileno())
         temporary.replace(path)
-    except FileError:
-        raise
     except OSError as error:
         raise FileError(path, f"cannot be written ({one_line(error)})") from error
     finally:

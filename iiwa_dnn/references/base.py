@@ -5,16 +5,17 @@ from __future__ import annotations
 import copy
 from abc import ABC, abstractmethod
 from dataclasses import fields, is_dataclass
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from iiwa_dnn.checks import Array, finite, finite_array, offers, positive, read_only
 from iiwa_dnn.compiling.library import entry
 from iiwa_dnn.files import plain
 from iiwa_dnn.references.rotations import set_mean_twist
 from iiwa_dnn.references.targets import Target
+from iiwa_dnn.robot import FrameState
 
 Self = TypeVar("Self", bound="Reference")  # typing.Self needs Python 3.11
 
@@ -28,16 +29,8 @@ AT_REST = read_only(np.concatenate([np.zeros(3), np.eye(3).ravel(), np.zeros(6)]
 """Target at position 0 with orientation identity, at rest, `Target.data` (18,)."""
 
 
-class Pose(Protocol):
-    """A pose to anchor a reference at; an ``iiwa_dnn.Configuration`` is one."""
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Position [m], shape (3,)."""
-
-    @property
-    def rotation(self) -> NDArray[np.float64]:
-        """Orientation, shape (3, 3)."""
+Pose = FrameState | Target
+"""A pose to anchor a reference at: a `Configuration`, a frame of it, or a target."""
 
 
 class Reference(ABC):

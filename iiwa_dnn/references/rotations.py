@@ -30,18 +30,12 @@ def coefficients(square: float) -> tuple[float, float]:
         sine = math.sin(0.5 * angle)
         versine = 2.0 * sine * sine
         return versine / square, (angle - math.sin(angle)) / (square * angle)
-    term_a = 0.5
-    term_b = 1.0 / 6.0
-    a = term_a
-    b = term_b
-    power = 1.0
-    for k in range(1, 11):  # the series, whose next term is below rounding
-        term_a /= -(2.0 * k + 1.0) * (2.0 * k + 2.0)
-        term_b /= -(2.0 * k + 2.0) * (2.0 * k + 3.0)
-        power *= square
-        a += term_a * power
-        b += term_b * power
-    return a, b
+    a = 1.0
+    b = 1.0
+    for k in range(10, 0, -1):  # the series from its last term, after which all are below rounding
+        a = 1.0 - a * square / ((2.0 * k + 1.0) * (2.0 * k + 2.0))
+        b = 1.0 - b * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0))
+    return 0.5 * a, b / 6.0
 
 
 @compiled

@@ -27,12 +27,6 @@ _CLOSED_WITHIN = 1e-9  # [m], and of a quaternion's components
 _NOT_CLOSED = "the last one of a closed path must be the first one"
 _UNIT_WITHIN = 1e-3  # error of a quaternion's length that is taken for rounding
 
-SPEED = 0.05
-"""Speed along the poses of a file without times [m/s]."""
-
-RATE = 0.5
-"""Angular speed along the poses of a file without times [rad/s]."""
-
 _BESIDE = 1e-10
 """Time before the start and after the end at which a path of poses rests already [s]."""
 
@@ -206,8 +200,8 @@ class Waypoints(Reference):
         cls,
         path: str | os.PathLike[str],
         ends: Ends = "clamped",
-        speed: float = SPEED,
-        rate: float = RATE,
+        speed: float = 0.05,
+        rate: float = 0.5,
         stretch: float = 1.0,
     ) -> Waypoints:
         """Read points or poses from a CSV file in [s] and [m].
@@ -259,9 +253,6 @@ class Waypoints(Reference):
             and speeds[end] > 0.5 * usual
             and steps[end] < 0.1 * self.duration
         ]
-
-    def __repr__(self) -> str:
-        return f"Waypoints({len(self.times)} points, {self.duration:g} s, ends={self.ends!r})"
 
     @property
     def period(self) -> float:

@@ -5,12 +5,11 @@ Works on the tables of `paper_tables`, in JSON types; nothing is computed here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from tabulate import tabulate
-
+from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, draw_error, new_figure
 from iiwa_dnn.results.record import Record
 
@@ -68,7 +67,7 @@ def report(tables: Mapping[str, Table], head: Mapping[str, str], figures: Iterab
     """
     parts = [
         "# The paper's experiments, run again",
-        markdown(("", "value"), head.items()),
+        markdown_table(("", "value"), head.items()),
         *summary(tables),
         "## What limits the comparison",
         _LIMITS,
@@ -76,12 +75,6 @@ def report(tables: Mapping[str, Table], head: Mapping[str, str], figures: Iterab
         *(f"![The paper's {name}]({name})" for name in figures),
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Lay out a table of texts in Markdown."""
-    escaped = [[str(text).replace("|", "\\|") for text in row] for row in rows]
-    return str(tabulate(escaped, head, "pipe", disable_numparse=True))
 
 
 def summary(tables: Mapping[str, Table]) -> list[str]:
@@ -100,13 +93,13 @@ def summary(tables: Mapping[str, Table]) -> list[str]:
                 found.setdefault(f"effect of {change}, on {where}", {})[name] = verdict
     ways = list(dict.fromkeys(way for verdicts in found.values() for way in verdicts))
     rows = [[title, *(verdicts.get(way, "–") for way in ways)] for title, verdicts in found.items()]
-    return ["## Verdicts", markdown(("the paper's", *ways), rows)] if found else []
+    return ["## Verdicts", markdown_table(("the paper's", *ways), rows)] if found else []
 
 
 def _table1(table: Table) -> list[str]:
     head = ("", *(f"ξ = {weight:g}" for weight in table["weights"]))
     rows = [[_ROWS[key], *map(_short, values)] for key, values in table["paper"].items()]
-    parts = ["## Table I: weights, without noise", "### The paper's", markdown(head, rows)]
+    parts = ["## Table I: weights, without noise", "### The paper's", markdown_table(head, rows)]
     for name, variant in table["variants"].items():
         rows = []
         for key, label in _ROWS.items():
@@ -114,7 +107,7 @@ def _table1(table: Table) -> list[str]:
             if key in variant["verdicts"]:
                 ratios = variant["verdicts"][key]["ours_over_paper"]
                 rows.append(["ours / paper's", *map(_short, ratios)])
-        parts += [f"### {name}", markdown(head, rows)]
+        parts += [f"### {name}", markdown_table(head, rows)]
     return parts
 
 
@@ -122,7 +115,7 @@ def _laps(table: Table) -> list[str]:
     laps = range(1, 1 + max(map(len, table.values())))
     head = ("MAX |q − q(0)| [rad] after lap", *map(str, laps))
     rows = [[name, *map(_short, drifts)] for name, drifts in table.items()]
-    return ["## Drift over laps", markdown(head, rows)]
+    return ["## Drift over laps", markdown_table(head, rows)]
 
 
 def _table2(table: Table) -> list[str]:
@@ -143,8 +136,8 @@ def _table2(table: Table) -> list[str]:
                     effects.append([label, change, paper, _change(effect)])
             parts += [
                 f"### {mode}; noise at {entry}",
-                markdown(head, rows),
-                markdown(("", "effect of", "paper", "ours [95 %]: verdict"), effects),
+                markdown_table(head, rows),
+                markdown_table(("", "effect of", "paper", "ours [95 %]: verdict"), effects),
             ]
     return parts
 
@@ -155,7 +148,7 @@ def _ablation(table: Table) -> list[str]:
     for row in table["rows"]:
         choice = [row["orientation"], row["noise_at"], str(row["substeps"])]
         rows.append([*choice, *(_short(row[key]) for key in _ABLATION)])
-    return ["## Ablation: what the paper leaves out", markdown(head, rows)]
+    return ["## Ablation: what the paper leaves out", markdown_table(head, rows)]
 
 
 _SECTIONS: dict[str, Callable[[Table], list[str]]] = {

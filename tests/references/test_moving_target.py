@@ -64,25 +64,6 @@ def test_sampling_ahead_moves_it_once() -> None:
         np.testing.assert_array_equal(hand.at(k * DT).data, once.at(k * DT).data)
 
 
-def test_a_slowed_clock_slows_it() -> None:
-    start = paper_start()
-    hand = MovingTarget(start, 0.3)
-    hand.at(0.0)
-    hand.set(start.position + AWAY)
-    path = np.array([hand.at(0.25 * k * DT).position for k in range(1200)])
-    speeds = np.linalg.norm(np.diff(path, axis=0), axis=1) / DT
-    np.testing.assert_allclose(speeds, 0.075, rtol=1e-9)
-
-
-def test_a_pose_may_be_set_at_every_step() -> None:
-    start = paper_start()
-    hand = MovingTarget(start, 0.3)
-    for k in range(1000):
-        hand.set(start.position + [0.1 + 1e-5 * k, 0.0, 0.0])
-        target = hand.at(k * DT)
-    np.testing.assert_allclose(target.position, start.position + [0.11, 0.0, 0.0], atol=2e-3)
-
-
 def test_a_pose_that_is_set_begins_from_the_one_shown() -> None:
     start = paper_start()
     hand = MovingTarget(start, 0.3)

@@ -76,12 +76,9 @@ def test_two_points_are_the_one_cubic_at_rest_at_both_ends() -> None:
     ("arguments", "argument"),
     [
         (([0, 1], [[0, 0, 0]]), "points"),
-        (([0, 1], [[0, 0], [1, 1]]), "points"),
         (([0], [[0, 0, 0]]), "times"),
         (([0, 0], [[0, 0, 0], [1, 1, 1]]), "times"),
-        (([1, 0], [[0, 0, 0], [1, 1, 1]]), "times"),
         (([0, np.nan], [[0, 0, 0], [1, 1, 1]]), "times"),
-        (([0, 1], [[0, 0, 0], [1, np.inf, 1]]), "points"),
         (([0, 1e-320, 1], [[0, 0, 0], [1, 1, 1], [0, 0, 0]]), "times"),
         (([0, 1], [[-1e308, 0, 0], [1e308, 0, 0]]), "times"),
         (([0, 1], [[0, 0, 0], [1, 1, 1]], "open"), "ends"),
@@ -113,7 +110,6 @@ def test_poses_of_a_file_are_in_the_base_frame_with_or_without_times(tmp_path: P
     timed = write(tmp_path, f"t,{POSE_HEADER}", np.hstack([TIMES[:, None], poses]))
     read = Waypoints.from_csv(timed, ends="closed")
     assert read.settings() == Waypoints(TIMES, POINTS, "closed", QUATERNIONS).settings()
-    assert repr(read) == "Waypoints(5 points, 6.5 s, ends='closed')"
     np.testing.assert_array_equal(read.at(0.0).position, POINTS[0])
     untimed = Waypoints.from_csv(write(tmp_path, POSE_HEADER, poses), speed=0.1, rate=0.7)
     lengths = np.linalg.norm(np.diff(POINTS, axis=0), axis=1)
@@ -132,38 +128,31 @@ def test_a_stretched_file_is_the_same_path_more_slowly(tmp_path: Path) -> None:
         np.testing.assert_allclose(after.linear_velocity, velocity, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("slow_at", ["nowhere", "the start", "both ends"])
-def test_rows_that_begin_or_end_at_speed_are_told(slow_at: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("said", [["begin", "end"], ["end"], []])
+def test_rows_that_begin_or_end_at_speed_are_told(said: list[str], tmp_path: Path) -> None:
     t = np.linspace(0.0, 8.0, 81)
-    s = t / 8.0
-    if slow_at == "the start":
-        s = s**2
-    elif slow_at == "both ends":
-        s = 3.0 * s**2 - 2.0 * s**3
-    rows = np.stack([t, 0.1 * np.cos(2 * np.pi * s), 0.1 * np.sin(2 * np.pi * s), 0.0 * t], axis=1)
+    s = {2: t / 8.0, 1: (t / 8.0) ** 2, 0: 3.0 * (t / 8.0) ** 2 - 2.0 * (t / 8.0) ** 3}[len(said)]
+    turn = 2 * np.pi * s
+    rows = np.stack([t, 0.1 * np.cos(turn), 0.1 * np.sin(turn), 0.0 * t], axis=1)
+    rows[-1, 1:] = [0.1, 0.0, 0.0]
     file = write(tmp_path, "t,x,y,z", rows)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         path = Waypoints.from_csv(file)
-        rows[-1] = [8.0, 0.1, 0.0, 0.0]
-        Waypoints.from_csv(write(tmp_path, "t,x,y,z", rows), ends="closed")
-    said = [str(warning.message) for warning in caught]
-    words = {"nowhere": ["begin", "end"], "the start": ["end"], "both ends": []}[slow_at]
-    assert [word for word in ("begin", "end") if any(f"rows {word} at" in x for x in said)] == words
-    assert len(said) == len(words)
-    assert not said or f"{file}: the rows" in said[0]
+        Waypoints.from_csv(file, ends="closed")  # which may be at speed
+    begun = [f"{file}: the rows {word} at" for word in said]
+    assert [str(each.message)[: len(begun[k])] for k, each in enumerate(caught)] == begun
     # They are told where the spline has to hurry: its speed there is well above that of the rows.
     early = np.linalg.norm(path.sample(np.linspace(0.0, 0.3, 31)).linear_velocity, axis=1).max()
     usual = np.linalg.norm(path.sample(np.linspace(3.0, 5.0, 31)).linear_velocity, axis=1).mean()
-    assert (early > 1.1 * usual) == ("begin" in words)
+    assert (early > 1.1 * usual) == ("begin" in said)
 
 
 @pytest.mark.parametrize(
     "text",
     [
         "\ufeff" + GOOD,
-        GOOD.replace("\n", "\r\n"),
-        GOOD.replace(",", " , "),
+        GOOD.replace("\n", "\r\n").replace(",", " , "),
         "\n T,X,Y,Z\n\n" + GOOD[8:],
     ],
 )
@@ -177,16 +166,12 @@ def test_csv_dialects(tmp_path: Path, text: str) -> None:
     ("content", "reason"),
     [
         ("", "the header must be"),
-        ("t,x,y\n0,0,0\n", "the header must be"),
         ("0,0,0,0\n1,1,2,3\n", "the header must be"),
         ("x,y,z\n0,0,0\n1,1,1\n", "the header must be"),
-        ("t,x,y,z\n", "at least 2 points"),
         ("t,x,y,z\n0,0,0,0\n", "at least 2 points"),
         (GOOD + "2,1,one,1\n", "line 4: 4 finite numbers are needed, not '2,1,one,1'"),
-        (GOOD + "2,1,,1\n", "line 4: 4 finite"),
         (GOOD + "\n2,1,1,nan\n", "line 5: 4 finite"),
         (GOOD + "2,1,1\n", "line 4: 4 finite"),
-        (GOOD + "2,1,1,1,1\n", "line 4: 4 finite"),
         (GOOD + "0.5,1,1,1\n", "must increase: point 3 is at 0.5 s"),
         (GOOD.encode() + b"\xff\xfe", "'utf-8' codec"),
         (GOOD + "1.0000000000000002,1e300,1,1\n", "no spline fits"),
@@ -214,5 +199,3 @@ def test_a_bad_argument_of_a_good_file_is_named(tmp_path: Path) -> None:
     for argument in ({"ends": "open"}, {"speed": 0.0}, {"rate": -1.0}, {"stretch": 0.0}):
         with pytest.raises(InvalidInputError, match=f"^{next(iter(argument))}"):
             Waypoints.from_csv(tmp_path / "good.csv", **argument)
-    with pytest.raises(FileError, match="null byte"):
-        Waypoints.from_csv("a\0.csv")

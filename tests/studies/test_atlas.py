@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers_qp import known_qp
 from iiwa_dnn import (
-    QP,
     Configuration,
     DNNSolver,
     Target,
@@ -17,6 +15,7 @@ from iiwa_dnn.app.main import main
 from iiwa_dnn.studies import atlas, atlas_report, paper
 from iiwa_dnn.studies.runs import paper_robot
 
+CLAIMS = atlas_report.CLAIMS
 FEW = ("projection (the paper's)", "dual", "zeroing, Euler", "primal-dual, fixed time")
 
 
@@ -80,25 +79,6 @@ def test_a_network_that_diverges_is_a_number_less_and_a_reason_more() -> None:
     assert "one evaluation takes" in unpaid["failures"][0]
 
 
-@pytest.mark.parametrize("name", ["projection (the paper's)", "dual", "one-layer", "gradient"])
-def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
-    network = atlas.entry_of(name).network
-    rng = np.random.default_rng(4)
-    qp, _ = known_qp(rng, 5, 3, 0)
-    qp = QP(qp.P, qp.q, A=qp.A, b=qp.b)
-    rates = network.flow(qp).rates
-    start = rng.standard_normal(network.state_size(qp))
-    limit = network.flow(qp).linear_limit(start)  # without bounds it is the same everywhere
-    for share, nearer in ((0.97, True), (1.03, False)):
-        state = start
-        sizes = []
-        for k in range(1200):
-            state = state + share * limit * rates(state)
-            if k >= 600:
-                sizes.append(np.linalg.norm(rates(state)))
-        assert bool(sizes[-1] < max(sizes[0], 1e-9)) is nearer  # below that it is rounding
-
-
 @pytest.mark.parametrize("name", sorted(atlas.NETWORKS))
 def test_work_grows_with_the_program_and_buys_evaluations(name: str) -> None:
     entry = atlas.entry_of(name)
@@ -159,11 +139,8 @@ def test_a_network_of_ones_own_comes_from_a_file_or_a_module(
     ("option", "value", "reason"),
     [
         ("--networks", "nowhere:My", "network: nowhere:My cannot be had: No module"),
-        ("--networks", "nowhere.py:My", "network: nowhere.py:My cannot be had: No module"),
-        ("--networks", "math:My", "network: math:My cannot be had: module 'math' has no"),
         ("--networks", "math:pi", "network: math:pi is no Network: 3.14"),
         ("--networks", "zeroing, Eular", "no network 'zeroing, Eular'; did you mean: 'zeroing, E"),
-        ("--schemes", "other", "no scheme 'other'"),
         ("--disturbances", "wihte", "no disturbance 'wihte'; did you mean: white"),
         ("--work", "-1", "work: must rise from above 0"),
         ("--seeds", "0", "seeds: "),
@@ -237,12 +214,6 @@ def test_formulas_have_their_orders_against_the_control_period() -> None:
     np.testing.assert_allclose(slopes, [2.0, 3.0], atol=0.15)
 
 
-def test_every_claim_names_what_is_in_the_atlas() -> None:
-    for claim in atlas_report.CLAIMS:
-        assert {claim.better, claim.worse} <= set(atlas.NETWORKS)
-        assert claim.disturbance in atlas.NOISES
-
-
 def test_the_command_writes_a_report_and_goes_on_where_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -262,7 +233,9 @@ def test_the_command_writes_a_report_and_goes_on_where_it_was(
     assert len(rows) == len(FEW) * (2 * len(kinds) + 2) + len(atlas.PERIODS)
     assert all((f"| {name} " in report) == (name in FEW) for name in atlas.NETWORKS)
     assert "| A claim " in report
-    assert "A place is formed by pairs of runs with the same seed" in report
+    for claim in CLAIMS:
+        assert {claim.better, claim.worse} <= set(atlas.NETWORKS)
+        assert claim.disturbance in atlas.NOISES
     for name in ("league", "errors", "verdicts", "orders", "schemes"):
         latex = (tmp_path / "a" / f"{name}.tex").read_text(encoding="utf-8")
         assert r"\toprule" in latex

@@ -26,17 +26,6 @@ def test_interval_of_four_numbers_worked_by_hand() -> None:
     assert found.samples == 4
 
 
-def test_the_interval_holds_the_true_mean_as_often_as_it_says() -> None:
-    rng = np.random.default_rng(0)
-    trials = 2000
-    inside = 0
-    for _ in range(trials):
-        found = estimate(rng.normal(3.0, 2.0, 6))
-        inside += found.low <= 3.0 <= found.high
-    spread = np.sqrt(0.95 * 0.05 / trials)
-    assert abs(inside / trials - 0.95) < 4.0 * spread
-
-
 def test_a_paired_difference_sees_what_the_shared_noise_hides() -> None:
     rng = np.random.default_rng(1)
     shared = rng.normal(0.0, 1.0, 50)
@@ -45,16 +34,9 @@ def test_a_paired_difference_sees_what_the_shared_noise_hides() -> None:
     paired = paired_difference(after, before)
     assert paired.sign == -1
     assert paired.low < -0.05 < paired.high
-    # Unpaired, the same difference drowns.
-    assert estimate(after).high > estimate(before).low
     # An independent word on it: scipy's paired t-test and its interval.
     other = ttest_rel(after, before).confidence_interval(0.95)
     np.testing.assert_allclose([paired.low, paired.high], other, rtol=1e-12)
-
-
-def test_a_constant_difference_has_no_width() -> None:
-    found = paired_difference([3.0, 4.0, 5.0], [1.0, 2.0, 3.0])
-    assert (found.mean, found.half_width, found.sign) == (2.0, 0.0, 1)
 
 
 def test_a_trend_is_the_sign_of_the_pairs_in_order_minus_those_out_of_order() -> None:
@@ -69,24 +51,9 @@ def test_a_trend_is_the_sign_of_the_pairs_in_order_minus_those_out_of_order() ->
             assert trend(x, y) == expected
             seen.add(expected)
     assert seen == {"falling", "none", "rising"}
-    assert trend([1.0, 1.0, 1.0], [1.0, 2.0, 3.0]) == "none"
-
-
-@pytest.mark.parametrize(
-    ("values", "expected"),
-    [
-        ((1.0, 2.0, 4.0), "rising"),
-        ((4.0, 5.0, 2.0, 1.0), "falling"),
-        ((1.00, 1.01, 1.04), "constant"),
-        ((1.0, 2.0, 2.0, 1.0), "none"),
-        # The rows of the paper's Table I.
-        ((7.25, 5.59, 6.50, 4.06, 7.88, 4.24, 1.75), "falling"),
-        ((1.74, 3.88, 8.71), "rising"),
-        ((4.54,) * 7, "constant"),
-    ],
-)
-def test_trends(values: tuple[float, ...], expected: str) -> None:
-    assert trend(range(len(values)), values) == expected
+    assert trend(range(3), (1.00, 1.01, 1.04)) == "constant"
+    # The rows of the paper's Table I.
+    assert trend(range(7), (7.25, 5.59, 6.50, 4.06, 7.88, 4.24, 1.75)) == "falling"
 
 
 @pytest.mark.parametrize(
@@ -130,9 +97,7 @@ def test_a_row_is_judged_where_the_paper_has_numbers() -> None:
     assert judge_row([0.1], [1.0], [1.9])["verdict"] == "reproduced"
     assert judge_row([0.1], [1.0], [3.0])["verdict"] == "not reproduced"
     assert judge_row([0.1], [None], [3.0])["verdict"] == "–"
-
-
-def test_a_constant_row_wants_a_constant_row() -> None:
+    # A constant row wants a constant row.
     assert judge_row(X, (4.54,) * 3, (454.0, 455.0, 453.0))["verdict"] == "same trend"
     assert judge_row(X, (4.54,) * 3, (454.0, 500.0, 600.0))["verdict"] == "not reproduced"
 

@@ -63,15 +63,6 @@ def test_answers_come_in_the_order_of_the_cells_and_are_kept(tmp_path: Path, log
     assert finished(folder).items() >= kept.items()
 
 
-def test_a_changed_package_or_task_is_a_new_cell(
-    tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    sweep(draw, cells(log, 2), tmp_path, workers=1)
-    monkeypatch.setattr(sweeps, "fingerprint", lambda task: "other")
-    assert sweep(draw, cells(log, 2), tmp_path, workers=1) == expected(2)
-    assert sorted(computed(log)) == [0, 0, 1, 1]
-
-
 def test_versions_and_sources_are_in_the_fingerprint(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -92,26 +83,6 @@ def test_versions_and_sources_are_in_the_fingerprint(
     seen.add(sweeps.fingerprint(draw))
     sweeps.fingerprint.cache_clear()
     assert len(seen) == 7
-
-
-@pytest.mark.parametrize("content", [b"", b"\x80", b"[]"])
-@pytest.mark.filterwarnings("ignore:Exception while loading results")
-def test_a_damaged_file_is_computed_again(tmp_path: Path, log: Path, content: bytes) -> None:
-    sweep(draw, cells(log, 1), tmp_path, workers=1)
-    (file,) = tmp_path.rglob("output.pkl")
-    file.write_bytes(content)
-    assert sweep(draw, cells(log, 1), tmp_path, workers=1) == expected(1)
-    assert computed(log) == [0, 0]
-
-
-def test_every_cell_is_computed_once_by_two_processes_of_one_thread(
-    tmp_path: Path, log: Path
-) -> None:
-    assert sweep(draw, cells(log, 5, sleep=0.3), tmp_path / "draws", workers=2) == expected(5)
-    lines = [line.split() for line in log.read_text(encoding="utf-8").splitlines()]
-    assert sorted(int(seed) for seed, _, _ in lines) == [0, 1, 2, 3, 4]
-    assert {threads for _, threads, _ in lines} == {"1"}
-    assert len({process for _, _, process in lines}) == 2
 
 
 def test_two_workers_bring_the_bytes_of_one(tmp_path: Path) -> None:
