@@ -6,7 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from helpers_qp import known_qp
 from iiwa_dnn import (
+    QP,
     Configuration,
     DNNSolver,
     Target,
@@ -77,6 +79,25 @@ def test_a_network_that_diverges_is_a_number_less_and_a_reason_more() -> None:
     unpaid = atlas.measure(atlas.Cell("zeroing, Euler", work=100.0))
     assert unpaid["rms_error_m"] == [None]
     assert "one evaluation takes" in unpaid["failures"][0]
+
+
+@pytest.mark.parametrize("name", ["projection (the paper's)", "dual", "one-layer", "gradient"])
+def test_the_linear_limit_is_where_steps_stop_to_come_nearer(name: str) -> None:
+    network = atlas.entry_of(name).network
+    rng = np.random.default_rng(4)
+    qp, _ = known_qp(rng, 5, 3, 0)
+    qp = QP(qp.P, qp.q, A=qp.A, b=qp.b)
+    rates = network.flow(qp).rates
+    start = rng.standard_normal(network.state_size(qp))
+    limit = network.flow(qp).linear_limit(start)  # without bounds it is the same everywhere
+    for share, nearer in ((0.97, True), (1.03, False)):
+        state = start
+        sizes = []
+        for k in range(1200):
+            state = state + share * limit * rates(state)
+            if k >= 600:
+                sizes.append(np.linalg.norm(rates(state)))
+        assert bool(sizes[-1] < max(sizes[0], 1e-9)) is nearer  # below that it is rounding
 
 
 @pytest.mark.parametrize("name", sorted(atlas.NETWORKS))
