@@ -35,21 +35,21 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.obstacles import Obstacle
-from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.costs import KineticEnergy
-from iiwa_dnn.schemes.limits import (
+from iiwa_dnn.schemes import (
     AccelerationLimits,
+    CollisionAvoidance,
     JerkLimits,
     JointLimits,
-    MotionLimits,
-    braking,
-    joint_bounds,
+    KineticEnergy,
+    Limit,
+    Obstacle,
+    PoseTask,
+    Scheme,
+    Task,
 )
-from iiwa_dnn.schemes.parts import Limit, Task
+from iiwa_dnn.schemes.collisions import avoidance_of
+from iiwa_dnn.schemes.limits import MotionLimits, braking, joint_bounds
 from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
-from iiwa_dnn.schemes.tasks import PoseTask
 
 DAMPING = 0.02
 """Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
@@ -90,7 +90,7 @@ def approach_positions(
 
     Args:
         q: Joint positions [rad], (n,).
-        past: `ControllerState.past`, (8, n).
+        past: `ControllerState.past`, (5, n).
         goal: Joint positions to reach [rad], (n,).
         limits: `MotionLimits.constants`, (6 n,).
         dt: Control period [s].
@@ -183,11 +183,11 @@ class ShieldCommand(NamedTuple):
         q = self.command.past[0]
         robot = self.shield.robot
         joint = float(np.minimum(q - robot.q_lower, robot.q_upper - q).min())
-        avoidance = self.shield.avoidance
-        if avoidance is None:
-            return Margin(joint, math.inf)
-        nearest, _ = avoidance.scene(robot).nearest(q[np.newaxis], np.array([self.t]))
-        return Margin(joint, float(nearest[0]) - avoidance.distance)
+        distance = math.inf
+        if (avoidance := avoidance_of(self.shield)) is not None:
+            nearest, _ = avoidance.scene(robot).nearest(q[np.newaxis], np.array([self.t]))
+            distance = float(nearest[0]) - avoidance.distance
+        return Margin(joint, distance)
 
 
 class Shield:
@@ -199,7 +199,7 @@ class Shield:
     Attributes:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
-        avoidance: Obstacles and links that are kept apart; None: none.
+        limits: Limits that every command keeps.
         timeout: Time for which a wish counts [s].
         tracking_error: Difference of measured and commanded positions [rad] above which the
             measured ones are taken over.
@@ -233,12 +233,17 @@ class Shield:
         self.dt = checks.positive("dt", dt)
         self.timeout = math.inf if timeout == math.inf else checks.positive("timeout", timeout)
         self.tracking_error = checks.not_negative("tracking_error", tracking_error)
-        self.avoidance: CollisionAvoidance | None = None
+        rates: list[AccelerationLimits | JerkLimits] = []
+        if np.isfinite(robot.ddq_max).any():
+            rates.append(AccelerationLimits())
+        if np.isfinite(robot.dddq_max).any():
+            rates.append(JerkLimits())
+        self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
-            self.avoidance = CollisionAvoidance(obstacles, distance=distance)
+            self.limits.append(CollisionAvoidance(obstacles, distance=distance))
+        self._motion = MotionLimits(tuple(rates)).constants(robot)
         self._controllers: dict[str, Controller] = {}
         self._kept = KeptStates(ControllerState.at_rest(robot.dof))
-        self._motion = MotionLimits(tuple(_rate_limits(robot))).constants(robot)
         self.reset()
 
     def reset(self) -> None:
@@ -246,12 +251,11 @@ class Shield:
         self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
         self._q: Vector | None = None
         self._t = 0.0
-        self._halted = False
         self._wish = self._rest("no wish")
 
     def halt(self) -> None:
         """Brake from now on, whatever is wished for, until `reset`."""
-        self._halted = True
+        self._wish = self._rest("halted")
 
     def step(
         self,
@@ -293,14 +297,10 @@ class Shield:
         command = controller.step(self._q, self._t, target)
         # A wish that can be had again is had at once.
         self._kept.now.past[YIELDS] = 0.0
-        clipped = bool(reasons)
-        if wish.kind == "dq":
-            clipped = clipped or bool((command.dq != wish.value).any())
-        else:
-            clipped = clipped or bool(command.against)
+        other = (command.dq != wish.value).any() if wish.kind == "dq" else command.against
         decision = ShieldCommand(
             command.dq,
-            clipped,
+            bool(reasons or other),
             tuple(reasons),
             self._stopping_time(command),
             command,
@@ -320,13 +320,12 @@ class Shield:
         """Return the wish that counts, which is one to rest if there is no other."""
         if len(given) > 1:
             raise InvalidInputError(" and ".join(given), "are several wishes")
-        wish = self._wish
+        if (wish := self._wish).reason == "halted":
+            return wish
         for name, values in given.items():
             value = checks.array(name, values, (6 if name == "twist" else self.robot.dof,))
             seen = JOINTS if name != "twist" else frame or self.robot.tip
             wish = Wish(name, value, seen, self._t)
-        if self._halted:
-            return self._rest("halted")
         if not np.isfinite(wish.value).all():
             return self._rest("wish not finite")
         if not wish.reason and self._t - wish.since > self.timeout + 0.5 * self.dt:
@@ -337,13 +336,10 @@ class Shield:
         """Return the controller for wishes of a frame, or of all joints; they share one state."""
         found = self._controllers.get(frame)
         if found is None:
-            limits: list[Limit] = [JointLimits(), *_rate_limits(self.robot)]
-            if self.avoidance is not None:
-                limits.append(self.avoidance)
-            scheme = Scheme([], [JointVelocityTask()], limits)
+            scheme = Scheme([], [JointVelocityTask()], self.limits)
             if frame != JOINTS:
                 task = PoseTask(frame=frame, gain=0.0, weight=1.0)
-                scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], limits)
+                scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], self.limits)
             found = Controller(self.robot, scheme, dt=self.dt, policy="relax")
             found._kept = self._kept
             self._controllers[frame] = found
@@ -380,13 +376,3 @@ class Shield:
             moves = float(command.dq.any())
             rest = max(moves, least_periods(command.dq, command.past[1], self._motion, self.dt))
         return float(self.dt * rest)
-
-
-def _rate_limits(robot: Robot) -> list[AccelerationLimits | JerkLimits]:
-    """Return the limits on acceleration and jerk that a robot has."""
-    limits: list[AccelerationLimits | JerkLimits] = []
-    if np.isfinite(robot.ddq_max).any():
-        limits.append(AccelerationLimits())
-    if np.isfinite(robot.dddq_max).any():
-        limits.append(JerkLimits())
-    return limits
