@@ -9,13 +9,14 @@ import argparse
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 import braking
 import iiwa_dnn
+from iiwa_dnn.qp import Vector
 from judge_limits import Breach, breaches
 from random_motion import Judge
 
@@ -58,11 +59,28 @@ def hostile_wishes(case: braking.Case, seed: int) -> Iterator[Wish]:
                 yield {}
 
 
-def drive(case: braking.Case, seed: int, times: list[float]) -> braking.Drive:
+Filter = Callable[[Vector, Wish], tuple[Vector, bool]]
+"""``step(q, wish)``, which returns a command [rad/s] and whether it answers a program."""
+
+
+def shield(case: braking.Case) -> Filter:
+    """Return the step of a shield."""
+    made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, braking.DISTANCE)
+
+    def step(q: Vector, wish: Wish) -> tuple[Vector, bool]:
+        command = made.step(q, **wish)
+        return command.dq, command.command.ok
+
+    return step
+
+
+def drive(
+    case: braking.Case, seed: int, times: list[float], make: Callable[[braking.Case], Filter]
+) -> braking.Drive:
     """Drive an arm by hostile wishes, and ask it back."""
     robot = case.robot
     dt = case.dt
-    shield = iiwa_dnn.Shield(robot, dt, case.avoidance.obstacles, braking.DISTANCE)
+    step = make(case)
     start = robot.start_posture()
     wishes = hostile_wishes(case, seed)
     q = start
@@ -76,11 +94,11 @@ def drive(case: braking.Case, seed: int, times: list[float]) -> braking.Drive:
                 break
         wish = next(wishes) if k < case.hostile else {"position": start}
         began = time.perf_counter()
-        command = shield.step(q, **wish)
+        dq, solved = step(q, wish)
         times.append(time.perf_counter() - began)
-        q = q + dt * command.dq
+        q = q + dt * dq
         path.append(q)
-        ok.append(command.command.ok)
+        ok.append(solved)
     return braking.Drive(np.array(path), np.array(ok), left)
 
 
@@ -95,7 +113,10 @@ def drawn(seed: int) -> braking.Case:
 
 
 def judged(
-    case: braking.Case, seed: int, times: list[float] | None = None
+    case: braking.Case,
+    seed: int,
+    times: list[float] | None = None,
+    make: Callable[[braking.Case], Filter] = shield,
 ) -> tuple[braking.Drive, list[Breach], int, float]:
     """Drive a case, and return what coal and differences say of it.
 
@@ -104,7 +125,7 @@ def judged(
         obstacles [m].
     """
     robot = case.robot
-    driven = drive(case, seed, [] if times is None else times)
+    driven = drive(case, seed, [] if times is None else times, make)
     found = braking.judge_distances(case, Judge(robot, case.avoidance), driven)
     kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
     return driven, breaches(driven.path, case.dt, *kinds), found.broken, found.least
