@@ -156,7 +156,8 @@ class ShieldCommand(NamedTuple):
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        clipped: Whether it is another one than the given wish.
+        clipped: Whether it is another one than the given wish, or than the quickest approach to
+            positions that the joints' own limits allow.
         reasons: Reasons for that beside the limits.
         stopping_time: Time of the motion to rest from it [s].
         command: The controller's command, with the program that was answered.
