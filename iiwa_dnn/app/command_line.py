@@ -69,8 +69,10 @@ def run_script(main: Callable[..., int | None]) -> int:
     return guard(Path(sys.argv[0]).stem, lambda: tyro.cli(main))
 
 
-def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> Path:
-    """Prepare the folder of a run with these settings.
+def claim_folder(
+    folder: Path, settings: Mapping[str, Any], overwrite: bool, product: str = SETTINGS_FILE
+) -> Path:
+    """Prepare the folder of a run with these settings, which leaves a file of the name `product`.
 
     Raises:
         FileError: The folder holds other files, or another run and `overwrite` is not set, or
@@ -78,7 +80,8 @@ def claim_folder(folder: Path, settings: Mapping[str, Any], overwrite: bool) -> 
     """
     file = folder / SETTINGS_FILE
     is_same = file.is_file() and file.read_text(encoding="utf-8") == tomli_w.dumps(settings)
-    if folder.is_dir() and any(folder.glob("[!.]*")) and not (is_same or overwrite):
+    mine = overwrite or (is_same and (folder / product).exists())
+    if folder.is_dir() and any(folder.glob("[!.]*")) and not mine:
         problem = "holds another run or other files: choose another --out, or --overwrite"
         raise FileError(folder, problem)
     return prepare_folder(folder)

@@ -14,7 +14,7 @@ from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg
 from tyro.extras import subcommand_cli_from_dict
 
 from iiwa_dnn.app.command_line import guard
-from iiwa_dnn.app.words import Count, Export, Flag, Number, Physics, SweepWords, Track, shown
+from iiwa_dnn.app.words import OPTIONS, Count, Flag, Number, Run, SweepWords, shown
 
 PROG = "iiwa-dnn"
 CONFIG = (OmitArgPrefixes, FlagCreatePairsOff)
@@ -117,14 +117,7 @@ def view(
         replay.tick(1 / 30)
 
 
-COMMANDS: dict[str, Any] = {
-    "track": Track,
-    "physics": Physics,
-    "paper": paper,
-    "atlas": atlas,
-    "export": Export,
-    "view": view,
-}
+COMMANDS: dict[str, Any] = {**OPTIONS, "paper": paper, "atlas": atlas, "view": view}
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -149,7 +142,7 @@ def _run(words: Sequence[str]) -> int:
     done: Any = subcommand_cli_from_dict(
         COMMANDS, prog=PROG, description=about, args=words, config=CONFIG
     )
-    if isinstance(done, Track):
+    if isinstance(done, Run):
         done = getattr(import_module("iiwa_dnn.app.track"), words[0])(done)
     code: int = done
     return code

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from iiwa_dnn import checks
 from iiwa_dnn.app.command_line import SETTINGS_FILE
 from iiwa_dnn.app.track import load
 from iiwa_dnn.errors import FileError, InvalidInputError, import_extra
@@ -18,12 +19,12 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import ACTIONS, limits, position_error, rotation_angle
+from iiwa_dnn.results.metrics import ACTIONS, orientation_error, position_error
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot import Robot
-from iiwa_dnn.robot.obstacles import Obstacle, outline
+from iiwa_dnn.robot.obstacles import outline
 from iiwa_dnn.robot.robot import source_of
 from iiwa_dnn.robot.shapes import read_shapes
 
@@ -39,8 +40,6 @@ _STYLE = """<style>
     width: 100% !important }
 </style>"""
 """On a phone viser's controls would cover 60 % of the height, and leave a strip beside them."""
-
-SPEEDS = ("0.1", "0.25", "0.5", "1", "2", "5")
 
 
 def open_replay(run: Path, robot: str | None, host: str, port: int) -> Replay:
@@ -64,17 +63,14 @@ def robot_of(record: Record, settings: Path, name: str | None = None) -> Robot:
         InvalidInputError: The robot does not have as many joints as the record.
     """
     kept = record.settings
-    table = {
-        "name": kept["robot"],
-        "tip": kept.get("tip"),
-        "locked": list(kept.get("locked") or ()),
-    }
+    table = {"name": kept["robot"], "tip": kept.get("tip"), "locked": list(kept["locked"] or ())}
     if settings.is_file():
-        table = read_toml(settings).get("robot", {})
-    robot = load({**table, "name": name or table.get("name", kept["robot"])})
+        table = {"name": kept["robot"], **read_toml(settings).get("robot", {})}
+    robot = load({**table, "name": name or table["name"]})
     if robot.dof != record.dof:
         problem = f"{robot.name} has {robot.dof} free joints, the record {record.dof}"
         raise InvalidInputError("--robot", problem, name)
+    checks.finite_array("q0", table.get("q0", record.q[0]), (robot.dof,))
     return robot
 
 
@@ -91,7 +87,7 @@ def serve(title: str, host: str, port: int) -> Any:
             free = probe.getsockname()[1]
     except (OSError, OverflowError) as error:
         problem = f"cannot listen on {host}:{port}: {one_line(error)}"
-        raise InvalidInputError("port", problem, port) from error
+        raise InvalidInputError("--host, --port", problem, (host, port)) from error
     with redirect_stdout(StringIO()):  # its banner
         server = viser.ViserServer(host=host, port=free, label=title, verbose=False)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")
@@ -135,8 +131,7 @@ def draw_path(server: Any, name: str, points: Matrix, color: tuple[int, int, int
     """Draw a path through points (M, 3) [m], or draw it anew."""
     chosen = points[np.linspace(0, len(points) - 1, min(len(points), PIECES + 1)).astype(int)]
     pieces = np.stack([chosen[:-1], chosen[1:]], axis=1)
-    style: Any = {"thickness": 3.0, "thickness_units": "screen"}
-    server.scene.add_line_segments(f"/{name}", pieces, color, **style)
+    server.scene.add_line_segments(f"/{name}", pieces, color, line_width=3.0)
 
 
 class Replay:
@@ -149,6 +144,7 @@ class Replay:
         clock: Slider: the present time of the record [s].
         marks: Bar below it, red where a policy acted.
         speed: Menu: seconds of the record in a second.
+        obstacles: Obstacles, and their meshes on the page.
     """
 
     def __init__(
@@ -156,40 +152,38 @@ class Replay:
     ) -> None:
         """Serve the page; `tick` moves it. Errors as of `serve`."""
         self.record = record
-        self._errors = np.linalg.norm(position_error(record), axis=1)
         self.server = serve(f"{robot.name} · iiwa_dnn", host, port)
         self._visualizer = show_robot(self.server, robot)
-        self._add_scene()
-        gui = self.server.gui
-        start = float(record.t[0])
-        length = max(float(record.t[-1]) - start, 1e-6)
-        self.playing = gui.add_checkbox("play", False)
-        self.clock = gui.add_slider("time [s]", start, start + length, 1e-3 * length, start)
-        acts = envelope(record.t[:-1], record.filled("action"), PIECES)[3]
-        colors = np.where(acts > 0, "#d6001c", "#e5e7ec")
-        marks = "".join(f'<i style="flex:1;background:{color}"></i>' for color in colors)
-        self.marks = gui.add_html(
-            f'<div style="display:flex;height:6px;margin:0 1em">{marks}</div>'
-        )
-        self.speed = gui.add_dropdown("speed", SPEEDS, initial_value="1")
-        verdict = failures(record) or ["completed within all limits"]
-        gui.add_markdown("\n".join(f"- {line}" for line in verdict))
-        self._readout = gui.add_markdown("")
-        self._add_curve()
-        self.show()
-
-    def _add_scene(self) -> None:
-        """Draw the path, the target and the obstacles, and aim the camera."""
-        path = self.record.position_desired
+        path = record.position_desired
         scene = self.server.scene
         draw_path(self.server, "desired", path, (70, 80, 100))
         self._target = scene.add_frame("/target", axes_length=0.06, axes_radius=0.002)
-        self._obstacles: list[tuple[Obstacle, Any]] = []
-        for obstacle in obstacles_of(self.record):
-            name = f"/obstacle_{len(self._obstacles)}"
-            mesh = scene.add_mesh_simple(name, *outline(obstacle), color=(64, 115, 191))
-            self._obstacles.append((obstacle, mesh))
+        self.obstacles = [
+            (obstacle, scene.add_mesh_simple(f"/obstacle_{i}", *outline(obstacle)))
+            for i, obstacle in enumerate(obstacles_of(record))
+        ]
         aim(self.server, path.mean(axis=0))
+        gui = self.server.gui
+        start = float(record.t[0])
+        end = max(float(record.t[-1]), start + 1e-6)
+        self.playing = gui.add_checkbox("play", False)
+        self.clock = gui.add_slider("time [s]", start, end, 1e-3 * (end - start), start)
+        self.marks = gui.add_html(self._bar())
+        self.speed = gui.add_dropdown("speed", ("0.1", "0.5", "1", "2", "5"), initial_value="1")
+        verdict = failures(record) or ["completed within all limits"]
+        gui.add_markdown("\n".join(f"- {line}" for line in verdict))
+        self._readout = gui.add_markdown("")
+        self._errors = np.linalg.norm(position_error(record), axis=1)
+        self._angles = orientation_error(record)
+        self._add_curve()
+        self.show()
+
+    def _bar(self) -> str:
+        """Return the bar of time, red where a policy acted."""
+        acts = envelope(self.record.t[:-1], self.record.filled("action"), PIECES)[3]
+        colors = np.where(acts > 0, "#d6001c", "#e5e7ec")
+        parts = "".join(f'<i style="flex:1;background:{color}"></i>' for color in colors)
+        return f'<div style="display:flex;height:6px;margin:0 1em">{parts}</div>'
 
     def _add_curve(self) -> None:
         """Draw the largest position error of each stretch of time, by its decimal logarithm."""
@@ -221,27 +215,21 @@ class Replay:
         self._visualizer.display(record.q[k])
         self._target.position = record.position_desired[k]
         self._target.wxyz = pin.Quaternion(record.rotation_desired[k]).coeffs()[[3, 0, 1, 2]]
-        for obstacle, mesh in self._obstacles:
+        for obstacle, mesh in self.obstacles:
             mesh.position = obstacle.shift(self._shown)
         draw_path(self.server, "drawn", record.position[: k + 2], (220, 0, 30))
-        self._readout.content = "\n".join(f"| {row} |" for row in self._rows(k))
-
-    def _rows(self, k: int) -> list[str]:
-        """Return the values of a sample as the rows of a table in Markdown."""
-        record = self.record
         step = min(k, record.steps - 1)
-        angle = rotation_angle(record.rotation[k], record.rotation_desired[k])
         acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
-        against = in_the_way(record.settings, *acting)
+        against = map(describe, in_the_way(record.settings, *acting))
         action = ACTIONS.get(int(record.filled("action")[step]), "none")
-        bounds = zip(limits(record, "q_lower", -np.inf), limits(record, "q_upper"), strict=True)
-        joints = zip(record.settings["joints"], record.q[k], bounds, strict=True)
-        return [
+        rows = [
             f"position error | {self._errors[k]:.3g} m",
             "---|---",
-            f"orientation error | {angle:.3g} rad",
+            f"orientation error | {self._angles[k]:.3g} rad",
             f"KKT residual | {record.kkt_residual[step]:.1e}",
             f"gap to the reference | {record.crosscheck_gap[step]:.1e} rad/s",
-            f"policy | {', '.join([action, *map(describe, against)])}",
-            *(f"{name} [rad] | {q:+.3f} in [{low:.2f}, {up:.2f}]" for name, q, (low, up) in joints),
+            f"policy | {', '.join([action, *against])}",
         ]
+        for name, q in zip(record.settings["joints"], record.q[k], strict=True):
+            rows.append(f"{name} [rad] | {q:+.3f}")
+        self._readout.content = "\n".join(f"| {row} |" for row in rows)

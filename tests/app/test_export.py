@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers_commands import call, track
+from helpers_commands import QUICK, call, track
 from helpers_export import compile_quickly, needs
 from iiwa_dnn.export import load
 
@@ -34,6 +34,14 @@ def test_the_settings_of_a_run_become_c(
     assert "--overwrite" in capsys.readouterr().err
     assert call(*words, "--weight", "0.5", "--overwrite", "--joint-limit", "datasheet", "-q") == 0
     assert capsys.readouterr() == ("", "")
+
+
+def test_a_runs_folder_takes_no_controller(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call("track", *QUICK, "-q", "--out", tmp_path) == 0
+    assert call("export", *QUICK[:-1], "--out", tmp_path) == 2
+    assert "holds another run or other files" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [("--filter-window", "5"), ("--motion", "rk4")])

@@ -140,7 +140,7 @@ def test_the_path_so_far_is_drawn_and_the_values_are_the_samples(
 
     def shown() -> bool:
         page = browser.find_element("tag name", "body").text
-        joint = f"{record.q[300, 3]:+.3f} in [-2.50, 2.50]"
+        joint = f"{record.q[300, 3]:+.3f}"
         return f"{error:.3g} m" in page and joint in page
 
     assert wait_for(shown, "the values of the sample at 6 s")
@@ -189,7 +189,7 @@ def test_on_a_phone_the_arm_stands_above_the_controls(browser: Any, replay: Repl
 def test_obstacles_stand_where_they_are_and_slowed_stretches_are_marked(slowed: Record) -> None:
     page = Replay(papers_robot(), slowed, port=0)
     try:
-        drawn = dict(page._obstacles)
+        drawn = dict(page.obstacles)
         assert [type(obstacle).__name__ for obstacle in drawn] == ["Sphere", "Box"]
         page.clock.value = 2.0
         page.tick(0.0)
@@ -243,9 +243,14 @@ def test_the_robot_is_the_one_of_the_settings_or_the_record(tmp_path: Path) -> N
         robot_of(replace(record, settings={**record.settings, "locked": None}), none)
     urdf = Path(load_robot("iiwa7").path)
     file = tmp_path / "settings.toml"
-    file.write_text(f'[robot]\nname = "{urdf}"\nlocked = ["iiwa7_joint_1"]\nq0 = [0.0]\n')
+    file.write_text(
+        f'[robot]\nname = "{urdf}"\nlocked = ["iiwa7_joint_1"]\nq0 = [0, 0, 0, 0, 0, 0]\n'
+    )
     moved = replace(record, settings={**record.settings, "robot": "my_arm"})
     assert robot_of(moved, file).locked == ("iiwa7_joint_1",)
+    file.write_text("[robot]\nname = 'iiwa7'\nlocked = ['iiwa7_joint_1']\nq0 = [0.0]\n")
+    with pytest.raises(InvalidInputError, match=r"q0: must have shape \(6,\)"):
+        robot_of(moved, file)
     file.write_text('[robot]\nname = "gone.urdf"\nlocked = ["iiwa7_joint_1"]\n')
     assert robot_of(moved, file, "iiwa7").name == "iiwa7"
 
@@ -259,7 +264,13 @@ def test_bad_input_is_one_line_and_2(
         bad = {
             "not the folder of a run": (tmp_path / "nowhere",),
             "did you mean: iiwa7": (tmp_path, "--robot", "iiwa8"),
-            "cannot listen on no such host:0": (tmp_path, "--host", "no such host", "--port", 0),
+            "host, --port: cannot listen on no such host:0": (
+                tmp_path,
+                "--host",
+                "no such host",
+                "--port",
+                0,
+            ),
             "cannot listen on 127.0.0.1:70000": (tmp_path, "--port", 70_000),
             f"cannot listen on 127.0.0.1:{port}": (tmp_path, "--port", port),
         }

@@ -189,7 +189,7 @@ def test_defaults_are_the_papers_experiment(
     asked: dict[str, Any] = {}
 
     def take(**arguments: Any) -> None:
-        asked.update(arguments)
+        asked.update(arguments, folders=list(tmp_path.glob("runs/*")))
         raise IiwaDnnError("seen enough")
 
     monkeypatch.setattr(command, "simulate", wraps(command.simulate)(take))
@@ -199,7 +199,7 @@ def test_defaults_are_the_papers_experiment(
         assert not asked  # there is no such robot
         return
     assert asked["dt"] == dt
-    assert (tmp_path / "runs" / ("circle" if words else "heart")).is_dir()
+    assert asked["folders"] == [tmp_path / "runs" / ("circle" if words else "heart")]
     np.testing.assert_array_equal(asked["robot"].q_lower, np.full(7, -2.5))
     np.testing.assert_array_equal(asked["robot"].q_upper, np.full(7, 2.5))
     np.testing.assert_array_equal(asked["q0"], PAPER_Q0)
@@ -400,7 +400,7 @@ def test_obstacles_are_kept_away_from_and_links_without_geometry_are_told(
     file.write_text(f"{ball}radius = -1\n")
     assert call("track", "--obstacles", file, "--out", tmp_path / "bad") == 2
     said = capsys.readouterr().err
-    assert "ball.toml: radius: must be a finite number above 0" in said
+    assert "ball.toml: obstacle 1: radius: must be a finite number above 0" in said
     assert said.count("\n") == 1
 
 
@@ -427,14 +427,14 @@ BAD: dict[str, tuple[str, ...]] = {
     "proof, not 'nobody'": ("--check", "nobody"),
     "jerk: is needed": ("--jerk-limit", "robot"),
     "motion: ": ("--mode", "continuous", "--motion", "rk4"),
-    "no path 'hart'; did you mean: heart": ("hart",),
+    "no name in [reference] 'hart'; did you mean: heart": ("hart",),
     "none.csv: No such file": ("none.csv",),
     "bad.csv: the header must be t,x,y,z": ("bad.csv",),
     "no setting in [reference] 'radius'": ("--set", "reference.radius=1"),
     "no setting in [scheme] 'wieght'; did you mean: weight": ("--set", "scheme.wieght=1"),
     "no setting in [run] 'dtt'": ("--set", "run.dtt=1"),
     "no setting in [limits] 'tipspeed'": ("--set", "limits.tipspeed=1"),
-    "no plant 'franka'": ("--plant", "franka"),
+    "no name in [plant] 'franka'": ("--plant", "franka"),
     "no table of settings 'schema'": ("--set", "schema.weight=1"),
     "run: must be a table with keys": ("--set", "run=1"),
     "--set: must be TABLE.KEY=VALUE, not '=1'": ("--set", "=1"),
