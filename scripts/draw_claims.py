@@ -10,12 +10,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
-import matplotlib
-import numpy as np
-
 from iiwa_dnn.results.plots import COLUMN, new_figure, write_figures
-from iiwa_dnn.studies.atlas import SOLVED, UNLIMITED
-from iiwa_dnn.studies.atlas_report import PAPER, find, of_every_disturbance, places
+from iiwa_dnn.studies.atlas import SOLVED
+from iiwa_dnn.studies.atlas_report import of_every_disturbance, places
 
 KINDS = {"none": ("o", "0.0"), "constant": ("s", "tab:red"), "white": ("^", "tab:blue")}
 """Marker and color of each disturbance."""
@@ -42,34 +39,6 @@ def claims_figure(rows):
     return drawn
 
 
-def work_figure(rows):
-    """Draw the tool's error against the work of a control period, a curve a network."""
-    drawn = new_figure(COLUMN, 4.6)
-    axis = drawn.subplots()
-    names = list(places(rows))
-    colors = matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))
-    for i, name in enumerate(names):
-        known = [
-            (row["taken"][1], row["mean"]["rms_error_m"])
-            for work in sorted({row["work"] for row in rows} - {UNLIMITED})
-            for row in find(rows, network=name, disturbance="none", work=work)
-            if not row["lost"]
-        ]
-        if known:
-            axis.loglog(
-                *np.transpose(known),
-                color="black" if name == PAPER else colors[i],
-                marker=MARKERS[i % 7],
-                markersize=3,
-                linewidth=2.0 if name == PAPER else 0.9,
-                label=name,
-            )
-    axis.set_xlabel("operations a control period")
-    axis.set_ylabel("RMS position error [m]")
-    drawn.legend(loc="outside lower center", ncols=2, fontsize=5)
-    return drawn
-
-
 def _finished(rows, name):
     """Test whether any run of a network was carried out."""
     return any(row["mean"]["residual"] is not None for row in of_every_disturbance(rows, name))
@@ -77,5 +46,5 @@ def _finished(rows, name):
 
 if __name__ == "__main__":
     cells = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
-    figures = {"claims": partial(claims_figure, cells), "atlas": partial(work_figure, cells)}
+    figures = {"claims": partial(claims_figure, cells)}
     print(*write_figures(figures, Path(sys.argv[2])), sep="\n")

@@ -60,7 +60,7 @@ def atlas(
     networks: Names = (),
     schemes: Names = (),
     disturbances: Names = (),
-    work: Annotated[tuple[float, ...], shown("X ...")] = (3e3, 1e4, 3e4),
+    work: Annotated[float, shown("X")] = 1e4,
 ) -> int:
     """Compare the networks of the field, and yours, at equal work.
 
@@ -70,11 +70,11 @@ def atlas(
         sweep: words of all sweeps
         whole: run 100 seeds and all schemes: hours in place of minutes
         seeds: number of noises with the first scheme (5, whole: 100)
-        other_seeds: number of noises with the other schemes and budgets (3)
+        other_seeds: number of noises with the other schemes (3)
         networks: networks (every one; beside your own too)
         schemes: schemes (the first; whole: every one)
         disturbances: disturbances beside the undisturbed runs (every one)
-        work: work a control period [operations] (3e3 1e4 3e4)
+        work: work a control period [operations] (1e4)
     """
     from iiwa_dnn.app import sweeps
     from iiwa_dnn.studies.atlas import NETWORKS, SCHEMES, Size

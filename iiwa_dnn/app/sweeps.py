@@ -107,8 +107,8 @@ def atlas(words: SweepWords, size: league.Size) -> int:
     runs = sum(cell.seeds for cell in cells) + len(trials)
     head = (
         f"{runs} runs of {league.DURATION:g} s in {time.perf_counter() - began:.0f} s; "
-        f"{size.seeds} seeds with the first scheme, {size.others} with the others and at the other "
-        "budgets, on heart, circle and Lissajous figure in turn; errors of each run's second half."
+        f"{size.seeds} seeds with the first scheme, {size.others} with the others, "
+        "on heart, circle and Lissajous figure in turn; errors of each run's second half."
     )
     text = atlas_report.report(folder, size, rows, head)
     write_text(folder / "report.md", text)

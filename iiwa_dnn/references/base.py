@@ -80,13 +80,11 @@ class Reference(ABC):
             pose: The pose, for example an ``iiwa_dnn.Configuration``.
 
         Raises:
-            InvalidInputError: If the pose is not finite or has wrong shapes.
+            InvalidInputError: If the pose is not finite, has wrong shapes or is no rotation.
         """
         offers("pose", pose, "position", "rotation")
-        position = finite_array("position", pose.position, (3,))
-        rotation = finite_array("rotation", pose.rotation, (3, 3))
         clone = copy.copy(self)
-        clone._set(base=read_only(np.concatenate([position, rotation.ravel(), np.zeros(6)])))
+        clone._set(base=read_only(Target(pose.position, pose.rotation).data))
         return clone
 
     def move(self, t: float, target: Array) -> None:

@@ -22,7 +22,7 @@ from iiwa_dnn.files import write_atomically
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, new_figure, write_figures
 from iiwa_dnn.results.record import FloatArray, Record
 from iiwa_dnn.robot.mujoco_model import VISUAL_GROUP, build_spec
-from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacle, outline
+from iiwa_dnn.robot.obstacles import HalfSpace, Obstacle, make_obstacles, outline
 from iiwa_dnn.robot.offscreen import import_mujoco, prepare_renderer
 from iiwa_dnn.robot.robot import Robot
 from iiwa_dnn.robot.shapes import visual_meshes
@@ -213,7 +213,7 @@ class ArmRenderer(AbstractContextManager["ArmRenderer"]):
 
 def obstacles_of(record: Record) -> list[Obstacle]:
     """Return the obstacles of a record that can be drawn: no half-spaces."""
-    made = map(make_obstacle, (record.settings.get("collisions") or {}).get("obstacles", []))
+    made = make_obstacles((record.settings.get("collisions") or {}).get("obstacles", []))
     return [obstacle for obstacle in made if not isinstance(obstacle, HalfSpace)]
 
 

@@ -193,43 +193,28 @@ class HalfSpace(Obstacle):
         return PlacedBox((self.offset - BEYOND) * normal, rotation, np.full(3, BEYOND))
 
 
-SHAPES: dict[str, type[Obstacle]] = {
-    shape.__name__: shape for shape in (Sphere, Capsule, Box, HalfSpace)
-}
-
-
-def make_obstacle(table: dict[str, Any]) -> Obstacle:
-    """Make an obstacle from a table of an obstacle file: ``shape`` and the shape's parameters.
-
-    Raises:
-        InvalidInputError: The shape or a parameter is missing, unknown or wrong.
-    """
-    values = dict(table)
-    name = str(values.pop("shape", "")).replace("_", "").lower()
-    kind = next((kind for shape, kind in SHAPES.items() if shape.lower() == name), None)
-    if kind is None:
-        problem = f"must be one of {', '.join(SHAPES)}, not {table.get('shape')!r}"
-        raise InvalidInputError("shape", problem, table)
-    try:
-        return kind(**values)
-    except TypeError as error:
-        raise InvalidInputError(kind.__name__, one_line(error).partition(" ")[2]) from error
+SHAPES = {shape.__name__.lower(): shape for shape in (Sphere, Capsule, Box, HalfSpace)}
 
 
 def make_obstacles(tables: object) -> list[Obstacle]:
-    """Make the obstacles of a file from its tables ``[[obstacle]]``.
+    """Make the obstacles of a file: tables of ``shape`` and the shape's parameters.
 
     Raises:
-        InvalidInputError: They are no tables, or as of `make_obstacle`, with the table's number.
+        InvalidInputError: They are no tables, or the shape or a parameter of the one with a number
+            is missing, unknown or wrong.
     """
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InvalidInputError("obstacle", f"must be tables [[obstacle]], not {tables!r}", tables)
-    found = []
+    found: list[Obstacle] = []
     for number, table in enumerate(tables, 1):
+        values = dict(table)
+        shape = str(values.pop("shape", None)).replace("_", "").lower()
         try:
-            found.append(make_obstacle(table))
-        except InvalidInputError as error:
-            raise InvalidInputError(f"obstacle {number}", str(error), table) from error
+            checks.one_of("shape", shape, tuple(SHAPES))
+            found.append(SHAPES[shape](**values))
+        except (InvalidInputError, TypeError) as error:
+            reason = one_line(error).replace(".__init__()", ":")
+            raise InvalidInputError(f"obstacle {number}", reason, table) from error
     return found
 
 

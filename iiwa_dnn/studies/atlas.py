@@ -376,16 +376,15 @@ class Size:
         networks: Names of the networks.
         schemes: Names of the schemes; the first is the league's.
         disturbances: Names of the disturbances, ``none`` among them.
-        work: Operations a control period, rising; the middle one with everything, the others with
-            the first scheme, undisturbed and with white noise.
+        work: Operations a control period.
         seeds: Runs of each cell with chance in it, with the first scheme.
-        others: Runs of each such cell with another scheme or budget.
+        others: Runs of each such cell with another scheme.
     """
 
     networks: Sequence[str] = tuple(NETWORKS)
     schemes: Sequence[str] = tuple(SCHEMES)[:1]
     disturbances: Sequence[str] = tuple(NOISES)
-    work: Sequence[float] = (3e3, 1e4, 3e4)
+    work: float = 1e4
     seeds: int = 5
     others: int = 3
 
@@ -402,16 +401,10 @@ class Size:
             _look_up("disturbance", name, NOISES)
         for name in self.networks:
             entry_of(name)
-        if not self.work or list(self.work) != sorted({w for w in self.work if w > 0.0}):
-            raise InvalidInputError("work", "must rise from above 0", self.work)
+        checks.positive("work", self.work)
         checks.integer("seeds", self.seeds, 1)
         kinds = tuple(dict.fromkeys(("none", *self.disturbances)))
         object.__setattr__(self, "disturbances", kinds)
-
-    @property
-    def middle(self) -> float:
-        """The budget with which everything is run."""
-        return self.work[len(self.work) // 2]
 
 
 def gain_cells(size: Size) -> list[Cell]:
@@ -420,7 +413,7 @@ def gain_cells(size: Size) -> list[Cell]:
     They are every share with one evaluation a period and with all that the work allows.
     """
     return [
-        Cell(network, size.schemes[0], work=size.middle, share=share, most=most)
+        Cell(network, size.schemes[0], work=size.work, share=share, most=most)
         for network in size.networks
         for share, most in product(SHARES, (None, 1))
         if entry_of(network).paced or (share == SHARES[-1] and most is None)
@@ -447,19 +440,16 @@ def best_gains(
 def cells(size: Size, gains: Mapping[str, Mapping[str, Any]]) -> list[Cell]:
     """List the cells of a league whose gains are known.
 
-    Every network with every disturbance, each scheme in turn; the other budgets; and the control
-    periods for the zeroing networks.
+    Every network with every disturbance, each scheme in turn; and the control periods for the
+    zeroing networks.
     """
     first = size.schemes[0]
     found = []
     for network in size.networks:
-        own = Cell(network, first, work=size.middle, seeds=size.others, **gains[network])
+        own = Cell(network, first, work=size.work, seeds=size.others, **gains[network])
         for scheme, kind in product(size.schemes, size.disturbances):
             seeds = size.seeds if scheme == first else size.others
             found.append(replace(own, scheme=scheme, disturbance=kind, seeds=seeds))
-        for kind, work in product(("none", "white"), size.work):
-            if work != size.middle and kind in size.disturbances:
-                found.append(replace(own, disturbance=kind, work=work))
         if isinstance(entry_of(network).network, ZeroingNetwork):
             once = replace(own, work=UNLIMITED, most=1, seeds=1)
             found += [replace(once, dt=dt) for dt in PERIODS]

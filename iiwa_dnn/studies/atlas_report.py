@@ -155,7 +155,7 @@ def places(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def judge(rows: Sequence[Row], claim: Claim) -> list[str]:
-    """Judge a claim by pairs of runs with the first scheme at the middle budget.
+    """Judge a claim by pairs of runs with the first scheme.
 
     Returns:
         The claim, its disturbance, both networks with their means, and the verdict: ``holds`` or
@@ -216,7 +216,7 @@ def _tables(size: Size, rows: Sequence[Row]) -> list[Table]:
     """Lay out the tables of a report."""
     ranking = places(rows)
     head = ["place", "network", "evaluations", *size.disturbances]
-    of = f"{size.schemes[0]}, {size.middle:g} operations a control period"
+    of = f"{size.schemes[0]}, {size.work:g} operations a control period"
     claims = [
         judge(rows, claim)
         for claim in CLAIMS

@@ -374,7 +374,7 @@ def test_a_controller_warns_of_links_that_no_row_watches(tmp_path: Path, few_sam
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        ("[[obstacle]]\nshape = 'ball'", "shape: must be one of Sphere"),
+        ("[[obstacle]]\nshape = 'ball'", "shape: must be one of sphere"),
         ("[[obstacle]]\nshape = 'sphere'\nradius = 1", "Sphere: missing"),
         ("[[obstacle]]\nshape = 'sphere'\ncenter = [0, 0]\nradius = 1", "center"),
         ("[[obstacle]]\nshape = 'Box'\ncenter = [0,0,0]\nhalf_extents = [1,1,-1]", "half_extents"),
