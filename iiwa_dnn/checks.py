@@ -86,7 +86,6 @@ def direction(argument: str, value: Sequence[float] | Array) -> Vector3:
     vector = np.array(vector3(argument, value))
     if not vector.any():
         raise InvalidInputError(argument, "must not be zero", value)
-    vector /= np.abs(vector).max()  # its square may not underflow
     x, y, z = (vector / np.linalg.norm(vector)).tolist()
     return x, y, z
 

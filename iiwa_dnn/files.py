@@ -113,9 +113,7 @@ def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
         FileError: It cannot be read, or is not TOML.
     """
     try:
-        with Path(path).open("rb") as file:
-            tables: dict[str, Any] = tomllib.load(file)
-            return tables
+        return parse_toml(Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:  # ValueError: not TOML, not UTF-8, a NUL in the path
         raise FileError(path, f"cannot be read as TOML: {one_line(error)}") from error
 

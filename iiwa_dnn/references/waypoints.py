@@ -22,7 +22,7 @@ from iiwa_dnn.references.rotations import added, combined, scaled, turn_target
 Ends = Literal["clamped", "closed"]
 
 _COLUMNS = ["t", "x", "y", "z", "qw", "qx", "qy", "qz"]
-_HEADERS = (_COLUMNS[:4], _COLUMNS, _COLUMNS[1:])
+_HEADERS = (_COLUMNS[:4], _COLUMNS)
 _CLOSED_WITHIN = 1e-9  # [m], and of a quaternion's components
 _NOT_CLOSED = "the last one of a closed path must be the first one"
 _UNIT_WITHIN = 1e-3  # error of a quaternion's length that is taken for rounding
@@ -200,39 +200,29 @@ class Waypoints(Reference):
         cls,
         path: str | os.PathLike[str],
         ends: Ends = "clamped",
-        speed: float = 0.05,
-        rate: float = 0.5,
         stretch: float = 1.0,
     ) -> Waypoints:
         """Read points or poses from a CSV file in [s] and [m].
 
-        The header is ``t,x,y,z``, ``t,x,y,z,qw,qx,qy,qz`` or ``x,y,z,qw,qx,qy,qz``. Without ``t``
-        every stretch takes the time of its length at `speed`, or of its turn at `rate` if that is
-        more. If the rows of an open path begin or end at speed, a warning says so.
+        The header is ``t,x,y,z`` or ``t,x,y,z,qw,qx,qy,qz``. If the rows of an open path begin or
+        end at speed, a warning says so.
 
         Args:
             path: The file. Empty lines in it are skipped.
             ends: As for :class:`Waypoints`.
-            speed: Mean speed on each stretch of a file without times [m/s].
-            rate: Mean angular speed on each stretch of a file without times [rad/s].
             stretch: Ratio of the path's times to those of the rows.
 
         Raises:
             FileError: If the file cannot be read or is not as said above, naming the line.
-            InvalidInputError: If ``ends`` is not one of its values, or a speed or the ratio is not
-                above zero.
+            InvalidInputError: If ``ends`` is not one of its values, or the ratio is not above zero.
         """
         one_of("ends", ends, ("clamped", "closed"))
-        positive("speed", speed)
-        positive("rate", rate)
         positive("stretch", stretch)
         path = Path(path)
-        columns, table = _read(path)
-        points = table[:, -7:-4] if "qw" in columns else table[:, 1:]
-        quaternions = table[:, -4:] if "qw" in columns else None
+        table = _read(path)
+        quaternions = table[:, 4:] if table.shape[1] > 4 else None
         try:
-            times = table[:, 0] if columns[0] == "t" else _times_at(table, speed, rate)
-            made = cls(stretch * times, points, ends, quaternions)
+            made = cls(stretch * table[:, 0], table[:, 1:4], ends, quaternions)
         except ValueError as error:
             raise FileError(path, one_line(error)) from error
         for message in made._abrupt_ends():
@@ -265,18 +255,8 @@ class Waypoints(Reference):
         return float(self.times[-1] - self.times[0])
 
 
-def _times_at(poses: Array, speed: float, rate: float) -> Array:
-    """Compute the times (m,) [s] of poses (m, 7) passed at a speed and an angular speed."""
-    from scipy.spatial.transform import Rotation
-
-    lengths = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
-    turns = Rotation.from_quat(poses[:, [4, 5, 6, 3]])
-    angles = (turns[1:] * turns[:-1].inv()).magnitude()
-    return np.concatenate([[0.0], np.cumsum(np.maximum(lengths / speed, angles / rate))])
-
-
-def _read(path: Path) -> tuple[list[str], Array]:
-    """Read a file of points or poses: the names of its columns, and its rows."""
+def _read(path: Path) -> Array:
+    """Read a file of points (m, 4) or poses (m, 8), each with its time."""
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:  # no UTF-8, or a NUL in the path: a ValueError
@@ -284,8 +264,7 @@ def _read(path: Path) -> tuple[list[str], Array]:
     rows = [(number, line) for number, line in enumerate(lines, 1) if line.strip()]
     columns = [cell.strip().lower() for cell in rows[0][1].split(",")] if rows else []
     if columns not in _HEADERS:
-        problem = "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz, the latter also without t"
-        raise FileError(path, problem)
+        raise FileError(path, "the header must be t,x,y,z or t,x,y,z,qw,qx,qy,qz")
     table = np.empty((len(rows) - 1, len(columns)))
     for values, (number, line) in zip(table, rows[1:], strict=True):
         try:
@@ -293,4 +272,4 @@ def _read(path: Path) -> tuple[list[str], Array]:
         except InvalidInputError as error:
             problem = f"{len(columns)} finite numbers are needed, not {line!r}"
             raise FileError(path, f"line {number}: {problem}") from error
-    return columns, table
+    return table
