@@ -81,7 +81,7 @@ class Live:
         gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
         tip = iiwa_dnn.Configuration(self.robot, self.q).position
         distance = np.linalg.norm(tip - self.target.position)
-        against = ", ".join(command.resolution.against) if command.resolution else ""
+        against = ", ".join(command.against)
         done = "as wanted" if command.ok else f"held back by {against or 'a singular pose'}"
         self.state.content = (
             f"distance to the target {distance:.2g} m\n\n"

@@ -3,12 +3,12 @@
 This is the only file that knows where a number lies in a row.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from iiwa_dnn.compiling.library import inlined
-from iiwa_dnn.control.policies import Action, ProgramKind, Resolution
+from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import Sizes, offsets
 from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
@@ -66,8 +66,10 @@ class RowViews(NamedTuple):
 
 
 @inlined
-def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
-    """Make the views of a row, (width,); the columns are those of `RowLayout`."""
+def row_ends(
+    n: int, m: int, p: int, dof: int
+) -> tuple[int, int, int, int, int, int, int, int, int]:
+    """Compute the columns at which all parts of a row but the last end, in their order."""
     at_point = (n + m + p) * (n + 1) + 2 * n
     at_figures = at_point + 2 * n + m + p
     at_placement = at_figures + FIGURES
@@ -77,17 +79,34 @@ def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
     at_bounds = at_decision + DECISION
     at_blocking = at_bounds + BOUNDS * dof
     at_targets = at_blocking + n + m
+    return (
+        at_point,
+        at_figures,
+        at_placement,
+        at_past,
+        at_dq,
+        at_decision,
+        at_bounds,
+        at_blocking,
+        at_targets,
+    )
+
+
+@inlined
+def row_views(row: Vector, n: int, m: int, p: int, dof: int) -> RowViews:
+    """Make the views of a row, (width,)."""
+    ends = row_ends(n, m, p, dof)
     return RowViews(
-        row[:at_point],
-        row[at_point:at_figures],
-        row[at_figures:at_placement],
-        row[at_placement:at_past],
-        row[at_past:at_dq].reshape(PAST, dof),
-        row[at_dq:at_decision],
-        row[at_decision:at_bounds],
-        row[at_bounds:at_blocking].reshape(BOUNDS, dof),
-        row[at_blocking:at_targets],
-        row[at_targets:].reshape((row.size - at_targets) // TARGET_SIZE, TARGET_SIZE),
+        row[: ends[0]],
+        row[ends[0] : ends[1]],
+        row[ends[1] : ends[2]],
+        row[ends[2] : ends[3]],
+        row[ends[3] : ends[4]].reshape(PAST, dof),
+        row[ends[4] : ends[5]],
+        row[ends[5] : ends[6]],
+        row[ends[6] : ends[7]].reshape(BOUNDS, dof),
+        row[ends[7] : ends[8]],
+        row[ends[8] :].reshape((row.size - ends[8]) // TARGET_SIZE, TARGET_SIZE),
     )
 
 
@@ -96,10 +115,9 @@ class RowLayout:
 
     Attributes:
         sizes: ``(n, m, p)`` of the programs.
-        dof: Number of joints.
         width: Length of a row.
         columns: Columns by the names of `RowViews`.
-        dq: Columns of the command.
+        dof: Number of joints.
         names: Names of the limits; None where nobody asks for them.
     """
 
@@ -108,27 +126,12 @@ class RowLayout:
     ) -> None:
         """Lay out rows for programs of these sizes, and a number of tracked frames."""
         self.names = names
-        n, m, p = sizes
-        lengths = {
-            "program": (n + m + p) * (n + 1) + 2 * n,
-            "point": 2 * n + m + p,
-            "figures": FIGURES,
-            "placement": PLACEMENT,
-            "past": PAST * dof,
-            "dq": dof,
-            "decision": DECISION,
-            "bounds": BOUNDS * dof,
-            "blocking": n + m,
-            "targets": TARGET_SIZE * frames,
-        }
         self.sizes = sizes
         self.dof = dof
-        self.columns: dict[str, slice] = {}
-        self.width = 0
-        for name, length in lengths.items():
-            self.columns[name] = slice(self.width, self.width + length)
-            self.width += length
-        self.dq = self.columns["dq"]
+        ends = row_ends(*sizes, dof)
+        self.width = ends[-1] + TARGET_SIZE * frames
+        columns = map(slice, (0, *ends), (*ends, self.width))
+        self.columns = dict(zip(RowViews._fields, columns, strict=True))
 
     def view(self, rows: Matrix, name: str) -> Matrix:
         """Return the columns of a name of rows (..., width)."""
@@ -155,22 +158,16 @@ class RowLayout:
         that is left from earlier takes a while to decay.
         """
         n, _, _ = self.sizes
-        dof = self.dof
         point = self.view(rows, "point")
+        multipliers = point[..., -n:]
         bounds = self.view(rows, "program")[..., -2 * n :]
-        multipliers = point[..., -n:][..., :dof]
-        above = bounds[..., n:][..., :dof] - point[..., :dof]
-        below = point[..., :dof] - bounds[..., :dof]
-        return _active(multipliers, np.where(multipliers > 0.0, above, below), tol)
+        nearest = np.where(multipliers > 0.0, bounds[..., n:], bounds[..., :n])
+        return _active(multipliers, np.abs(nearest - point[..., :n]), tol)[..., : self.dof]
 
     def row_multipliers(self, rows: Matrix, tol: float) -> Matrix:
         """Return the multipliers of the active inequality rows, (..., m), as `Solution.z`."""
         n, m, p = self.sizes
-        _, at_G, at_A, _ = offsets(n, m, p)
-        point = self.view(rows, "point")
-        G, h = np.split(self.view(rows, "program")[..., at_G:at_A], [m * n], axis=-1)
-        values = np.einsum("...ji,...i->...j", G.reshape(*h.shape, n), point[..., :n])
-        return _active(point[..., n + p : n + p + m], h - values, tol)
+        return _active(self.view(rows, "point")[..., n + p : n + p + m], self._slacks(rows), tol)
 
     def excess(self, rows: Matrix) -> Vector:
         """Compute by how much commands are beyond the bounds of their steps [rad/s], (k,).
@@ -181,18 +178,21 @@ class RowLayout:
         Args:
             rows: Rows of the commands, (k, width).
         """
-        n, m, p = self.sizes
         dq = self.view(rows, "dq")
         lower, upper = np.split(self.view(rows, "bounds"), 2, axis=1)
         excess = np.maximum(lower - dq, dq - upper).max(axis=1, initial=0.0)
-        _, at_G, at_A, _ = offsets(n, m, p)
-        G, h = np.split(self.view(rows, "program")[:, at_G:at_A], [m * n], axis=1)
-        values = np.einsum(
-            "kji,ki->kj", G.reshape(len(rows), m, n), self.view(rows, "point")[:, :n]
-        )
-        of_rows = (values - h).max(axis=1, initial=0.0)
+        of_rows = (-self._slacks(rows)).max(axis=1, initial=0.0)
         free = self.view(rows, "decision")[:, 3] < ProgramKind.HELD
         return np.where(free, np.maximum(excess, of_rows), excess)
+
+    def _slacks(self, rows: Matrix) -> Matrix:
+        """Compute h - G x at the answers x of rows (..., width), (..., m)."""
+        n, m, p = self.sizes
+        _, at_G, at_A, _ = offsets(n, m, p)
+        G, h = np.split(self.view(rows, "program")[..., at_G:at_A], [m * n], axis=-1)
+        x = self.view(rows, "point")[..., :n]
+        slacks: Matrix = h - np.einsum("...ji,...i->...j", G.reshape(*h.shape, n), x)
+        return slacks
 
 
 def _active(multipliers: Matrix, slacks: Matrix, tol: float) -> Matrix:
@@ -206,6 +206,7 @@ class Command:
     """Decision of one control step.
 
     Attributes:
+        row: The numbers of the command, (width,), which its properties are views of.
         dq: Joint velocity [rad/s], (n,), within the limits.
         action: The action taken; ``Action.NONE`` where the network's answer was taken.
     """
@@ -213,76 +214,70 @@ class Command:
     __slots__ = ("_layout", "action", "dq", "row")
 
     def __init__(self, row: Vector, layout: RowLayout, action: Action = Action.NONE) -> None:
-        """Take a row, which is not copied.
-
-        Args:
-            row: The numbers of the command, (width,).
-            layout: Columns of the row.
-            action: What was done in place of the network's answer.
-        """
+        """Take a row (width,), which is not copied, its columns, and the action taken."""
         self.row = row
-        self.dq = row[layout.dq]
+        self.dq = row[layout.columns["dq"]]
         self.action = action
         self._layout = layout
+
+    def _part(self, name: str) -> Vector:
+        """Return the part of a name of `RowViews`, a view."""
+        return self.row[self._layout.columns[name]]
 
     @property
     def fraction(self) -> float:
         """Share of the control period by which the reference's clock advances, in [0, 1]."""
-        return float(self._layout.view(self.row, "decision")[1])
+        return float(self._part("decision")[1])
 
     @property
-    def resolution(self) -> Resolution | None:
-        """Decision of the policy where the network had no answer; else None."""
-        if self.action is Action.NONE:
-            return None
-        n = self._layout.sizes[0]
-        blocking = self._layout.view(self.row, "blocking").astype(np.int8)
-        sides = blocking[:n]
-        rows = blocking[n:]
-        names = self._layout.names
-        against: tuple[str, ...] = ()
-        if names is not None:
-            against = tuple(names.in_words(self.bounds, sides, rows, self.past))
-        return Resolution(self.action, self.qp, self.solution, self.fraction, sides, rows, against)
+    def sides(self) -> Vector:
+        """Bounds that stood in the way, (n,): 1 upper, -1 lower, 0 neither; a view."""
+        return self._part("blocking")[: self._layout.sizes[0]]
+
+    @property
+    def rows(self) -> Vector:
+        """Inequality rows that stood in the way, (m,): 1 or 0; a view."""
+        return self._part("blocking")[self._layout.sizes[0] :]
 
     @property
     def against(self) -> tuple[str, ...]:
         """Bounds and rows that keep the command from what the tasks and the cost ask, in words."""
-        found = self.resolution
-        if found is not None:
-            return found.against
-        if self._layout.names is None:
+        names = self._layout.names
+        if names is None:
             return ()
-        sides = self._layout.bound_multipliers(self.row, ACTIVE)
-        rows = self._layout.row_multipliers(self.row, ACTIVE)
-        return tuple(self._layout.names.in_words(self.bounds, sides, rows, self.past))
+        sides = self.sides
+        rows = self.rows
+        if self.action is Action.NONE:
+            sides = self._layout.bound_multipliers(self.row, ACTIVE)
+            rows = self._layout.row_multipliers(self.row, ACTIVE)
+        return tuple(names.in_words(self.bounds, sides, rows, self.past))
 
     @property
     def qp(self) -> QP:
         """The program that was answered; `kind` says how it differs from the step's own."""
-        return QP.from_data(self._layout.view(self.row, "program"), self._layout.sizes)
+        return QP.from_data(self._part("program"), self._layout.sizes)
 
     @property
     def kind(self) -> ProgramKind:
         """Kind of the program that was answered."""
-        return ProgramKind(int(self._layout.view(self.row, "decision")[3]))
+        return ProgramKind(int(self._part("decision")[3]))
 
     @property
     def bounds(self) -> Matrix:
         """Lower and upper bounds of the command [rad/s], those of the step, (2, n), a view."""
-        return self._layout.view(self.row, "bounds").reshape(BOUNDS, -1)
+        return self._part("bounds").reshape(BOUNDS, -1)
 
     @property
     def limits(self) -> QP:
         """The program that was answered, with the bounds of the step: what the command keeps."""
-        qp = QP.from_data(self._layout.view(self.row, "program").copy(), self._layout.sizes)
+        qp = QP.from_data(self._part("program").copy(), self._layout.sizes)
         qp.lb[: self.dq.size], qp.ub[: self.dq.size] = self.bounds
         return qp
 
     @property
     def past(self) -> Matrix:
         """Joint positions [rad], last command and the one before it [rad/s], (3, n), a view."""
-        return self._layout.view(self.row, "past").reshape(PAST, -1)
+        return self._part("past").reshape(PAST, -1)
 
     @property
     def targets(self) -> Matrix:
@@ -292,23 +287,20 @@ class Command:
     @property
     def placement(self) -> Vector:
         """Placement of the first tracked frame, as `Kinematics.placements`, (12,), a view."""
-        return self._layout.view(self.row, "placement")
+        return self._part("placement")
 
     @property
     def solution(self) -> Solution:
         """The network's answer to `qp`; where the command is held back, it is on the way there."""
-        layout = self._layout
-        iterations, time, *residuals = layout.view(self.row, "figures").tolist()
-        point = layout.view(self.row, "point")
-        status = STATUSES[int(layout.view(self.row, "decision")[2])]
-        return Solution(point, layout.sizes, status, int(iterations), time, *residuals)
+        iterations, time, *residuals = self._part("figures").tolist()
+        status = STATUSES[int(self._part("decision")[2])]
+        point = self._part("point")
+        return Solution(point, self._layout.sizes, status, int(iterations), time, *residuals)
 
     @property
     def ok(self) -> bool:
         """True if the command does all that the tasks ask."""
-        solution = self.solution
-        solved = solution.status in (Status.SOLVED, Status.ADVANCED)
-        return self.action is Action.NONE and solved
+        return self.action is Action.NONE and self._part("decision")[2] <= ADVANCED
 
     @property
     def limited(self) -> bool:
@@ -317,26 +309,20 @@ class Command:
         Then the arm is on its way there, or noise asks for more than it may follow; a command that
         is neither `ok` nor limited cannot do it.
         """
-        found = self.resolution
-        if found is None or self._layout.names is None or found.rows.any():
+        names = self._layout.names
+        if self.action is Action.NONE or names is None or self.rows.any():
             return False
-        codes = np.abs(self._layout.names.codes(self.bounds, found.sides, self.past))
+        codes = np.abs(names.codes(self.bounds, self.sides, self.past))
         return bool(codes.any()) and bool((codes[codes > 0] >= ACCELERATION).all())
-
-    def __getstate__(self) -> tuple[Any, ...]:
-        return self.row, self._layout, self.action
-
-    def __setstate__(self, state: tuple[Any, ...]) -> None:
-        Command.__init__(self, *state)
 
     def __repr__(self) -> str:
         dq = np.array2string(self.dq, precision=4, separator=", ")
         words = _WORDS[self.action]
         if self.action is Action.NONE and not self.ok:
             words = "not settled"
-        found = self.resolution
-        if found is not None and found.against:
-            words += f", against {', '.join(found.against)}"
+        against = ", ".join(self.against)
+        if against and self.action is not Action.NONE:
+            words += f", against {against}"
         return f"<Command dq = {dq} rad/s, {words}; ok = {self.ok}>"
 
 

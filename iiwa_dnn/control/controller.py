@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import threading
+import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any, Literal
@@ -16,13 +17,9 @@ from iiwa_dnn.control.command import Command, RowLayout
 from iiwa_dnn.control.paths import (
     References,
     by_frame,
+    doubts,
+    far_targets,
     paths_of,
-    warn_if_far,
-    warn_if_lagging,
-    warn_if_outside,
-    warn_if_too_few,
-    warn_if_unstable,
-    warn_if_unwatched,
 )
 from iiwa_dnn.control.policies import POLICIES, Action, Policy
 from iiwa_dnn.control.state import (
@@ -320,10 +317,8 @@ class Controller:
         start = Configuration(self.robot, posture)
         begun = self._kept.now.begun
         self.anchor(start)
-        if not begun:
-            warn_if_lagging(self.program, self.mode, stacklevel=4)
-            if own:
-                self.warn_if_far(start, t, stacklevel=5)
+        if own and not begun:
+            self.warn_if_far(start, t, stacklevel=5)
         return self._laid_out()
 
     def _laid_out(self) -> ControlStep:
@@ -387,18 +382,14 @@ class Controller:
 
     def anchor(self, start: Configuration) -> None:
         """Make a configuration the posture to come back to, if the scheme has none."""
-        first = not self._kept.now.begun
-        if first:
-            warn_if_outside(start, stacklevel=5)
         scheme = self.scheme.anchored(start)
         if scheme is not self.scheme:
             self.scheme = scheme
         self._anchored = self.scheme
         self._kept.now.past[Q] = start.q
-        if first:
-            warn_if_too_few(self.program, stacklevel=5)
-            warn_if_unstable(self.program, self.dt, stacklevel=5)
-            warn_if_unwatched(self.scheme, self.robot, stacklevel=5)
+        if not self._kept.now.begun:
+            for message in doubts(self.program, self.scheme, start, self.dt, self.mode):
+                warnings.warn(message, stacklevel=5)
         self._kept.now = self._kept.now._replace(begun=True)
 
     def warn_if_far(
@@ -411,7 +402,8 @@ class Controller:
         """
         paths = paths_of(self.reference, self.robot.tip, self.program.target_frames)
         targets = self.targets(t)
-        warn_if_far(self.scheme, paths, start, targets, stacklevel + 1, refuses)
+        for message in far_targets(self.scheme, paths, start, targets, refuses):
+            warnings.warn(message, stacklevel=stacklevel)
 
     def reset(self) -> None:
         """Forget the network's state, the last commands and the delay; the home stays."""

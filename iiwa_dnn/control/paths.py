@@ -1,7 +1,6 @@
 """The references of a control loop, one for each frame that tasks track."""
 
-import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
-from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes import OrientationTask, PoseTask, Scheme
+from iiwa_dnn.robot import Configuration
+from iiwa_dnn.schemes import OrientationTask, PoseTask
 from iiwa_dnn.schemes.collisions import unwatched_by
 from iiwa_dnn.schemes.limits import largest_gain
 from iiwa_dnn.schemes.parts import Limit
@@ -54,81 +53,76 @@ def paths_of(reference: References | None, tip: str, frames: Sequence[str]) -> d
     return {name: given[name] for name in frames}
 
 
-def warn_if_outside(start: Configuration, stacklevel: int) -> None:
-    """Warn where a motion begins outside the joint limits."""
-    if problem := start.robot.outside(start.q):
-        warnings.warn(f"the start posture {problem}", stacklevel=stacklevel + 1)
+def doubts(
+    program: StepProgram, scheme: object, start: Configuration, dt: float, mode: str
+) -> Iterator[str]:
+    """State for what reasons a loop is most likely not the wanted one.
+
+    Args:
+        program: The program of its steps.
+        scheme: The scheme of the program.
+        start: Where it begins.
+        dt: Control period [s].
+        mode: ``"converged"`` or ``"continuous"``.
+    """
+    robot = program.robot
+    if problem := robot.outside(start.q):
+        yield f"the start posture {problem}"
+    yield from _too_many_rows(program)
+    yield from _too_high_gain(program, dt)
+    limits = [block.part for block in program.blocks if isinstance(block.part, Limit)]
+    lagging = [type(limit).__name__ for limit in limits if limit.row_count(robot)]
+    if mode == "continuous" and lagging:
+        yield (
+            f"in continuous mode the rows of {', '.join(lagging)} hold where the network has "
+            "settled, not on its way: only bounds of the joints are kept at every step"
+        )
+    if links := unwatched_by(scheme, robot):
+        yield unwatched(links)
 
 
-def warn_if_too_few(program: StepProgram, stacklevel: int) -> None:
-    """Warn where hard tasks have more independent rows than there are variables."""
+def _too_many_rows(program: StepProgram) -> Iterator[str]:
+    """State that hard tasks have more independent rows than there are variables, if so."""
     variables = program.sizes[0]
     # The paper's four rows of an orientation have rank 3; couplings of joints hold always.
     tasks = [task for task in program.tasks if task.row_weight > 0.0]
-    counts = [task.row_count(program.robot) for task in tasks]
-    rows = sum(counts) - sum(getattr(task, "form", "") == "block" for task in tasks)
+    blocks = sum(getattr(task, "form", "") == "block" for task in tasks)
+    rows = sum(task.row_count(program.robot) for task in tasks) - blocks
     if rows > variables:
-        names = ", ".join(type(task).__name__ for task in tasks)
-        turning = any(isinstance(task, _TURNING) for task in tasks)
-        message = f"{variables} joints cannot fulfil the {rows} rows of {names}"
-        if turning:
-            message = f"{variables} joints cannot hold a pose: orientation='none' leaves it free"
-        warnings.warn(message, stacklevel=stacklevel + 1)
+        fault = f"fulfil the {rows} rows of the tasks"
+        if any(isinstance(task, _TURNING) for task in tasks):
+            fault = "hold a pose: orientation='none' leaves it free"
+        yield f"{variables} joints cannot {fault}"
 
 
-def warn_if_unstable(program: StepProgram, dt: float, stacklevel: int) -> None:
-    """Warn where a gain is too high for the acceleration and jerk limits at a period dt [s]."""
+def _too_high_gain(program: StepProgram, dt: float) -> Iterator[str]:
+    """State that a gain is too high for limits on acceleration and jerk at dt [s], if so."""
     if program.rate_limits is None:
         return
-    robot = program.robot
-    rate = 1.0 / dt
-    largest = largest_gain(program.rate_limits.constants(robot), rate)
-    gain = 0.0
-    for block in program.blocks:
-        if isinstance(block.part, GainTask) and block.part.row_weight > 0.0:
-            gain = max(gain, min(block.part.gain, rate))
-    if gain > largest * (1.0 + 1e-9):
-        message = (
-            f"a gain of {gain:.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with these "
-            f"limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
+    largest = largest_gain(program.rate_limits.constants(program.robot), 1.0 / dt)
+    tasks = [block.part for block in program.blocks if isinstance(block.part, GainTask)]
+    gains = [min(task.gain, 1.0 / dt) for task in tasks if task.row_weight > 0.0]
+    if max(gains, default=0.0) > largest * (1.0 + 1e-9):
+        yield (
+            f"a gain of {max(gains):.3g} 1/s is above {largest:.3g} 1/s, up to which a loop with "
+            f"these limits on acceleration and jerk is stable at {dt:g} s a step (docs/limits.md)"
         )
-        warnings.warn(message, stacklevel=stacklevel + 1)
 
 
-def warn_if_lagging(program: StepProgram, mode: str, stacklevel: int) -> None:
-    """Warn where a network that lags behind cannot keep a limit: only bounds hold on its way."""
-    limits = [block.part for block in program.blocks if isinstance(block.part, Limit)]
-    names = [type(limit).__name__ for limit in limits if limit.row_count(program.robot)]
-    if mode == "continuous" and names:
-        message = (
-            f"in continuous mode the rows of {', '.join(names)} hold where the network has "
-            "settled, not on its way: only bounds of the joints are kept at every step"
-        )
-        warnings.warn(message, stacklevel=stacklevel + 1)
-
-
-def warn_if_unwatched(scheme: object, robot: Robot, stacklevel: int) -> None:
-    """Warn where a scheme avoids collisions, but links have no collision geometry."""
-    if links := unwatched_by(scheme, robot):
-        warnings.warn(unwatched(links), stacklevel=stacklevel + 1)
-
-
-def warn_if_far(
-    scheme: Scheme,
+def far_targets(
+    scheme: object,
     references: Mapping[str, Reference],
     start: Configuration,
     targets: Matrix,
-    stacklevel: int,
-    refuses: bool = False,
-) -> None:
-    """Warn where first targets are far from their frames in a configuration.
+    refuses: bool,
+) -> Iterator[str]:
+    """State which first targets are far from their frames in a configuration.
 
     Args:
         scheme: The scheme, of which only an orientation task looks at angles.
         references: References by frame name, in the order of the targets.
         start: The configuration.
         targets: The targets, (k, 18).
-        stacklevel: As of `warnings.warn`.
         refuses: Whether a path of poses that begins elsewhere is refused.
 
     Raises:
@@ -146,13 +140,13 @@ def warn_if_far(
         turned = f", turned by {angle:.3g} rad" if angle > TURNED else ""
         message = f"begins {distance:.3g} m from the {where}{turned}"
         if getattr(reference, "quaternions", None) is None:
-            advice = "reference.anchored(configuration) begins there"
-        else:
-            advice = "start at iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
-            if refuses:
-                problem = f"{message}; {advice}, or pass far_start=True to go there first"
-                raise InvalidInputError("reference", problem, reference)
-        warnings.warn(f"the reference {message}; {advice}", stacklevel=stacklevel)
+            yield f"the reference {message}; reference.anchored(configuration) begins there"
+            continue
+        message += "; start at iiwa_dnn.solve_pose(robot, reference.at(0.0)).q"
+        if refuses:
+            problem = f"{message}, or pass far_start=True to go there first"
+            raise InvalidInputError("reference", problem, reference)
+        yield f"the reference {message}"
 
 
 _TURNING = (OrientationTask, PoseTask)

@@ -31,17 +31,10 @@ Systems, Measurement, and Control 106 (1984); for velocity limits, F. Flacco, A.
 """
 
 from enum import IntEnum
-from typing import Literal, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
-
-from iiwa_dnn.qp import QP, Solution
+from typing import Literal
 
 Policy = Literal["slow", "relax", "stop"]
 POLICIES: tuple[Policy, ...] = ("slow", "relax", "stop")
-
-Sides = NDArray[np.int8]
 
 
 class Action(IntEnum):
@@ -73,29 +66,3 @@ class ProgramKind(IntEnum):
     back, and it is within the step's own bounds and rows."""
     STOPPED = 4
     """The step's own program, which has no answer: the command brakes."""
-
-
-class Resolution(NamedTuple):
-    """Decision of a policy at one step.
-
-    Attributes:
-        action: What was done.
-        qp: The program that was answered: the step's own, or the one with b replaced.
-        solution: The answer to it. One that nothing settled has its large residuals.
-        fraction: By which share of a control period the reference's clock advances, in [0, 1].
-        sides: Bounds that stood in the way, (n,): 1 upper, -1 lower, 0 neither.
-        rows: Inequality rows that stood in the way, (m,): 1 or 0.
-        against: The same bounds and rows in words.
-    """
-
-    action: Action
-    qp: QP
-    solution: Solution
-    fraction: float
-    sides: Sides
-    rows: Sides
-    against: tuple[str, ...] = ()
-
-    def __repr__(self) -> str:
-        way = ", ".join(self.against) or "no limit"
-        return f"<Resolution {self.action.name}: {self.fraction:.3g} of the period, against {way}>"

@@ -40,20 +40,24 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.networks.integrators.base import TOLERANCE, enter_answer
+from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.dense import row_dot
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
-from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.program import StepProgram
 
 BUDGET = 60
 """Linear systems after which a program counts as one without a solution."""
 
 PENALTY = 1e-5
 """w, for a cost whose largest entry is one."""
+
+TINY = 1e-300
+"""Largest entry of a cost below which it is none."""
+
+FEASIBLE = 1.0 - 1e-9
+"""Factor above which all that is asked for is feasible."""
 
 ALMOST = 0.999
 """Part of a largest factor that is asked for: at the very edge of what is feasible the multipliers
@@ -66,8 +70,8 @@ BLEND = 1e-4
 """Epsilon: weight of the scheme's own cost in the softened program."""
 
 DRIFT = 0.02
-"""Speed at most [rad/s] of the drift towards the posture that the cost wishes for. Damped to rest,
-an arm pulled beyond its reach ends up exactly stretched, and finds back too late."""
+"""Speed of a joint at most [rad/s] in the drift towards the posture that the cost wishes for.
+Damped to rest, an arm pulled beyond its reach ends up exactly stretched: it finds back too late."""
 
 FASTEST = 10.0
 """Task velocity [m/s] to which a larger one is cut in the softened program: no arm is so quick."""
@@ -91,8 +95,9 @@ class Yielding(NamedTuple):
         scenes: Beginning and end, among the constants of all parts, of those of each scene that
             braking keeps away from, (scenes, 2).
         dt: Control period [s].
-        answer: Address of the function that settles the network, `enter_answer`.
         stop: Address of `stopping.stopping_time`; 0 without scenes.
+        cubic: Whether the jerk of a joint is limited.
+        coupled: Whether joints follow others.
     """
 
     weights: Vector
@@ -100,24 +105,9 @@ class Yielding(NamedTuple):
     settings: Vector
     scenes: IntMatrix
     dt: float
-    answer: int
-    stop: int = 0
-
-
-def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
-    """Prepare for a scheme that is laid out for a robot, a tolerance and a control period [s]."""
-    limits: Vector = np.zeros(0)
-    if program.rate_limits is not None:
-        limits = program.rate_limits.constants(program.robot)
-    scenes = program.constants_of(CollisionAvoidance)
-    return Yielding(
-        program.row_weights,
-        limits,
-        np.array([tol, float(BUDGET)]),
-        np.array(scenes, dtype=np.int64).reshape(-1, 2),
-        dt,
-        enter_answer.address(settle),
-    )
+    stop: int
+    cubic: bool
+    coupled: bool
 
 
 def relaxed_size(sizes: Sizes) -> int:
@@ -131,37 +121,23 @@ def relaxed_size(sizes: Sizes) -> int:
 
 
 @compiled
-def settled(
-    qp: QPViews,
-    yielding: Yielding,
-    state: Vector,
-    point: Vector,
-    figures: Vector,
-    tolerances: float,
-) -> bool:
-    """Settle the network on a program, and test whether that gave its solution.
-
-    Args:
-        qp: The program.
-        yielding: How the network settles.
-        state: Its state, (size,), advanced.
-        point: The point that the state stands for, (2 n + m + p,), overwritten.
-        figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
-            others are overwritten.
-        tolerances: Residual, in tolerances, up to which the program counts as solved.
-    """
-    settings = yielding.settings
-    systems, time, primal, dual, gap = enter_answer(yielding.answer, qp, 0, settings, state, point)
-    figures[0] += systems
-    figures[1] = time
-    figures[2] = primal
-    figures[3] = dual
-    figures[4] = gap
-    return within(primal, dual, gap, tolerances * settings[TOLERANCE])
+def copied(out: Vector, values: Vector) -> None:
+    """Write values (k,) into the first k of `out`."""
+    for i in range(values.size):
+        out[i] = values[i]
 
 
 @compiled
-def settled_again(
+def largest_entry(values: Vector) -> float:
+    """Return the largest absolute value of an array (k,)."""
+    largest = 0.0
+    for i in range(values.size):
+        largest = max(largest, abs(values[i]))
+    return largest
+
+
+@compiled
+def settled(
     qp: QPViews,
     yielding: Yielding,
     state: Vector,
@@ -171,11 +147,24 @@ def settled_again(
 ) -> bool:
     """Settle the network from its last state or, if need be, from a cold start.
 
-    The state (size,), the point (2 n + m + p,) and the figures (5,) are those of `settled`. Where
-    that fails, the state is cold again.
+    Args:
+        qp: The program.
+        yielding: How the network settles.
+        state: Its state, (size,), advanced; where it does not settle, cold again.
+        point: The point that the state stands for, (2 n + m + p,), overwritten.
+        figures: Figures of the step's answer, (5,): the linear systems are added to the first, the
+            others are overwritten.
+        tolerances: Residual, in tolerances, up to which the program counts as solved.
+
+    Returns:
+        Whether the point is the program's solution.
     """
+    settings = yielding.settings
     for _ in range(2):
-        if settled(qp, yielding, state, point, figures, tolerances):
+        systems, time, primal, dual, gap = settle(qp, 0, settings, state, point)
+        figures[0] += systems
+        figures[1] = time
+        if within(primal, dual, gap, tolerances * settings[TOLERANCE]):
             return True
         for i in range(state.size):
             state[i] = 0.0
@@ -183,10 +172,10 @@ def settled_again(
 
 
 @compiled
-def scaling_factor(
-    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector
+def largest_factor(
+    qp: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector, retreats: bool
 ) -> float:
-    """Compute the largest factor of the task velocity that the limits allow.
+    """Compute the largest factor of what a program asks for that its limits allow.
 
     Args:
         qp: The step's program, of n variables, m inequality and p equality rows.
@@ -195,101 +184,59 @@ def scaling_factor(
         point: Point of the program with the factor as the last variable, (2 n + 2 + m + p,),
             overwritten.
         figures: Figures of the step's answer, (5,), as of `settled`.
+        retreats: Whether the factor is that of the negative right-hand sides h, without the task;
+            else it is the scaling factor of the task.
 
     Returns:
-        The factor in [0, 1]; -1 if not even 0 is feasible, or the network does not settle.
+        1, or `ALMOST` the factor in [0, 1]; -1 if not even 0 is feasible, or the network does not
+        settle.
     """
-    data = np.zeros(data_size(qp.q.size + 1, qp.h.size, qp.b.size))
-    wider = qp_views(data, qp.q.size + 1, qp.h.size, qp.b.size)
-    longest = 0.0
-    for j in range(qp.b.size):
-        if yielding.weights[j] > 0.0:
-            longest = max(longest, abs(qp.b[j]))
-    if longest == 0.0:
+    n = qp.q.size
+    data = np.zeros(data_size(n + 1, qp.h.size, qp.b.size))
+    wider = qp_views(data, n + 1, qp.h.size, qp.b.size)
+    largest = max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n)))
+    weight = PENALTY / max(largest, TINY)
+    for i in range(n):
+        wider.q[i] = weight * qp.q[i]
+        for k in range(n):
+            wider.P[i, k] = weight * qp.P[i, k]
+    _copy_limits(qp, wider)
+    longest = largest_entry(qp.b)
+    if retreats or longest == 0.0:
         longest = 1.0
-    _begin_search(qp, yielding.weights, wider, longest)
+    wider.q[n] = -1.0
+    wider.ub[n] = longest
+    for j in range(qp.h.size):
+        if retreats and qp.h[j] < 0.0:
+            wider.G[j, n] = -qp.h[j]
+            wider.h[j] = 0.0
     for j in range(qp.b.size):
-        if yielding.weights[j] > 0.0:
-            wider.A[j, qp.q.size] = -qp.b[j] / longest
-            for i in range(qp.q.size):
-                wider.A[j, i] = qp.A[j, i]
-    factor: float = _search(wider, yielding, state, point, figures)
-    return factor
+        if yielding.weights[j] == 0.0:
+            copied(wider.A[j], qp.A[j])
+            wider.b[j] = qp.b[j]
+        elif not retreats:
+            copied(wider.A[j], qp.A[j])
+            wider.A[j, n] = -qp.b[j] / longest
+    if not settled(wider, yielding, state, point, figures, STAGNANT):
+        return -1.0
+    factor: float = max(point[n] / longest, 0.0)
+    return 1.0 if factor >= FEASIBLE else ALMOST * factor
 
 
 @compiled
-def retreat_factor(qp: QPViews, yielding: Yielding, point: Vector, figures: Vector) -> float:
-    """Compute the largest factor of the negative right-hand sides h that the other limits allow.
-
-    Arguments and result are those of `scaling_factor`, from a cold start; 1 if no row asks for
-    motion.
-    """
-    asks = 0
+def _copy_limits(qp: QPViews, other: QPViews) -> None:
+    """Write bounds and inequality rows into a program that may have more variables."""
+    copied(other.lb, qp.lb)
+    copied(other.ub, qp.ub)
+    copied(other.h, qp.h)
     for j in range(qp.h.size):
-        asks += qp.h[j] < 0.0
-    if asks == 0:
-        return 1.0
-    data = np.zeros(data_size(qp.q.size + 1, qp.h.size, qp.b.size))
-    wider = qp_views(data, qp.q.size + 1, qp.h.size, qp.b.size)
-    _begin_search(qp, yielding.weights, wider, 1.0)
-    for j in range(qp.h.size):
-        if qp.h[j] < 0.0:
-            wider.G[j, qp.q.size] = -qp.h[j]
-            wider.h[j] = 0.0
-    state = np.zeros(3 * wider.q.size + wider.h.size + wider.b.size)
-    factor: float = _search(wider, yielding, state, point, figures)
-    return factor
+        copied(other.G[j], qp.G[j])
 
 
 @compiled
 def data_size(n: int, m: int, p: int) -> int:
     """Count the numbers of a program, `QP.data`."""
     return (n + m + p) * (n + 1) + 2 * n
-
-
-@compiled
-def _begin_search(qp: QPViews, weights: Vector, wider: QPViews, longest: float) -> None:
-    """Write all of a factor's search but the rows with the factor, its last variable.
-
-    That goes from 0 to `longest`; the equality rows are those that are limits.
-    """
-    n = qp.q.size
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, abs(qp.q[i]))
-        for k in range(n):
-            largest = max(largest, abs(qp.P[i, k]))
-    weight = PENALTY / largest if largest > 0.0 else 0.0
-    for i in range(n):
-        wider.q[i] = weight * qp.q[i]
-        wider.lb[i] = qp.lb[i]
-        wider.ub[i] = qp.ub[i]
-        for k in range(n):
-            wider.P[i, k] = weight * qp.P[i, k]
-        for j in range(qp.h.size):
-            wider.G[j, i] = qp.G[j, i]
-        for j in range(qp.b.size):
-            if weights[j] == 0.0:
-                wider.A[j, i] = qp.A[j, i]
-    for j in range(qp.h.size):
-        wider.h[j] = qp.h[j]
-    for j in range(qp.b.size):
-        if weights[j] == 0.0:
-            wider.b[j] = qp.b[j]
-    wider.q[n] = -1.0
-    wider.ub[n] = longest
-
-
-@compiled
-def _search(
-    wider: QPViews, yielding: Yielding, state: Vector, point: Vector, figures: Vector
-) -> float:
-    """Settle the network on a factor's search, and return the factor, or -1."""
-    n = wider.q.size
-    if not settled_again(wider, yielding, state, point, figures, STAGNANT):
-        return -1.0
-    factor: float = point[n - 1] / wider.ub[n - 1]
-    return min(max(factor, 0.0), 1.0)
 
 
 @compiled
@@ -307,14 +254,8 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
     Its tau is `retreat`.
     """
     n = qp.q.size
-    fastest = FASTEST
-    length = 0.0
-    for j in range(qp.b.size):
-        if weights[j] > 0.0:
-            fastest = max(fastest, abs(qp.b[j]))
-    for i in range(n):
-        length += qp.q[i] * qp.q[i]
-    drift = DRIFT / max(math.sqrt(length), 1.0)
+    shrink = FASTEST / max(FASTEST, largest_entry(qp.b))
+    drift = DRIFT / max(largest_entry(qp.q), 1.0)
     for i in range(n):
         qp.q[i] *= DAMPING * DAMPING * drift
         for k in range(n):
@@ -322,7 +263,7 @@ def soften_task(qp: QPViews, weights: Vector, retreat: float) -> None:
         qp.P[i, i] += DAMPING * DAMPING
     for j in range(qp.b.size):
         if weights[j] > 0.0:
-            _move_into_cost(qp, j, weights[j] * weights[j], FASTEST / fastest)
+            _move_into_cost(qp, j, weights[j] * weights[j], shrink)
     for j in range(qp.h.size):
         if qp.h[j] < 0.0:
             qp.h[j] *= retreat
@@ -354,59 +295,45 @@ def note_blocking(point: Vector, n: int, m: int, extra: int, blocking: Vector) -
         blocking: For each variable the sign of its bound's multiplier, and for each row 1 where its
             multiplier counts, (n + m,), overwritten.
     """
-    at_box = point.size - n - extra
-    at_rows = at_box - m
-    largest = 0.0
+    start = point.size - n - extra - m
+    multipliers = point[start : start + m + n]
+    least = BLOCKING * largest_entry(multipliers)
     for i in range(n + m):
-        largest = max(largest, abs(point[at_box + i if i < n else at_rows + i - n]))
-    for i in range(n + m):
-        value = point[at_box + i if i < n else at_rows + i - n]
+        value = multipliers[m + i if i < n else i - n]
         blocking[i] = 0.0
-        if abs(value) > BLOCKING * largest:
-            blocking[i] = 1.0 if value > 0.0 else -1.0
+        if abs(value) > least:
+            blocking[i] = math.copysign(1.0, value)
 
 
 @compiled
 def nearest_within(qp: QPViews, x: Vector, yielding: Yielding, figures: Vector) -> bool:
-    """Move x (n,) to the nearest point within the bounds and inequality rows of a program.
+    """Move x (n,) into the bounds of a program, and on to the nearest point within its rows too.
 
     The figures (5,) are those of `settled`.
 
     Returns:
-        False if the rows contradict the bounds: x is then the nearest point within the bounds.
+        False if the inequality rows contradict the bounds: x is then within the bounds.
     """
     n = x.size
     m = qp.h.size
-    if _is_within(qp, x):
+    outside = 0
+    for i in range(n):
+        x[i] = min(max(x[i], qp.lb[i]), qp.ub[i])
+    for j in range(m):
+        outside += row_dot(qp.G, j, x) > qp.h[j]
+    if outside == 0:
         return True
     data = np.zeros(data_size(n, m, 0))
     nearest = qp_views(data, n, m, 0)
     for i in range(n):
         nearest.P[i, i] = 1.0
         nearest.q[i] = -x[i]
-        nearest.lb[i] = qp.lb[i]
-        nearest.ub[i] = qp.ub[i]
-        for j in range(m):
-            nearest.G[j, i] = qp.G[j, i]
-    for j in range(m):
-        nearest.h[j] = qp.h[j]
-    state = np.zeros(3 * n + m)
+    _copy_limits(qp, nearest)
     point = np.empty(2 * n + m)
-    found = settled(nearest, yielding, state, point, figures, 1.0)
-    for i in range(n):
-        x[i] = min(max(point[i] if found else x[i], qp.lb[i]), qp.ub[i])
+    found = settled(nearest, yielding, np.zeros(3 * n + m), point, figures, 1.0)
+    if found:
+        copied(x, point[:n])
     return found
-
-
-@compiled
-def _is_within(qp: QPViews, x: Vector) -> bool:
-    """Test whether x (n,) is within the bounds and inequality rows of a program."""
-    outside = 0
-    for i in range(x.size):
-        outside += x[i] < qp.lb[i] or x[i] > qp.ub[i]
-    for j in range(qp.h.size):
-        outside += row_dot(qp.G, j, x) > qp.h[j]
-    return outside == 0
 
 
 @compiled

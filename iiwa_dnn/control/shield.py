@@ -375,5 +375,7 @@ class Shield:
         rest = self._kept.now.past[REST, 0]
         if rest == 0.0:
             moves = float(command.dq.any())
-            rest = max(moves, least_periods(command.dq, command.past[1], self._motion, self.dt))
+            cubic = bool(np.isfinite(self.robot.dddq_max).any())
+            last = command.past[1]
+            rest = max(moves, least_periods(command.dq, last, self._motion, self.dt, cubic))
         return float(self.dt * rest)

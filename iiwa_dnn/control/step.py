@@ -22,7 +22,7 @@ from iiwa_dnn.control.command import (
     RowViews,
     row_views,
 )
-from iiwa_dnn.control.relaxed import Yielding, make_yielding, relaxed_size
+from iiwa_dnn.control.relaxed import Yielding, relaxed_size
 from iiwa_dnn.control.state import (
     BEFORE,
     DELAY,
@@ -33,7 +33,15 @@ from iiwa_dnn.control.state import (
     YIELDS,
     Q,
 )
-from iiwa_dnn.control.yielding import BRAKE, NONE, OWN, STOPPED, guard_step, with_limits, yield_step
+from iiwa_dnn.control.yielding import (
+    BRAKE,
+    NONE,
+    OWN,
+    STOPPED,
+    guard_step,
+    make_yielding,
+    yield_step,
+)
 from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
@@ -112,7 +120,7 @@ class ControlStep:
         arrays = program.arrays(dt)
         if program.rate_limits is not None:
             check_ranges(program.rate_limits.constants(program.robot), arrays.rate)
-        yielding = with_limits(make_yielding(program, solver.tol, dt))
+        yielding = make_yielding(program, solver.tol, dt)
         self.plan = StepPlan(arrays, yielding, policy, is_projection(solver.network))
         self.relaxed_size = relaxed_size(program.sizes)
 
@@ -290,7 +298,7 @@ def finish_step(
     following[DELAY, 0] = past[DELAY, 0]
     following[YIELDS, 0] = 0.0
     following[HALTED, 0] = past[HALTED, 0]
-    if solved and (yielding.stop == 0 or guard_step(plan.arrays, past, following, yielding)):
+    if solved and guard_step(plan.arrays, past, following, yielding):
         return NONE
     views = row_views(row, table[0, 0], table[0, 1], table[0, 2], table[0, 3])
     if not _all_finite(past[Q]) or not _all_finite(row[row.size - views.targets.size :]):
@@ -317,11 +325,13 @@ def _all_finite(values: Vector) -> bool:
 
 @compiled
 def clear_answer(views: RowViews) -> None:
-    """Note that no answer was asked for: no figures, and no decision."""
+    """Note that no answer was asked for: no figures, no decision, and nothing in the way."""
     for k in range(views.figures.size):
         views.figures[k] = 0.0
     for k in range(views.decision.size):
         views.decision[k] = 0.0
+    for k in range(views.blocking.size):
+        views.blocking[k] = 0.0
 
 
 @compiled

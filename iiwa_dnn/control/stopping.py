@@ -34,6 +34,7 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled, entry
 from iiwa_dnn.control.relaxed import Yielding
+from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.references.rotations import combined, dot
@@ -46,6 +47,7 @@ from iiwa_dnn.schemes.distances import (
     scene_views,
 )
 from iiwa_dnn.schemes.motion_bounds import second_order
+from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6
@@ -61,45 +63,13 @@ ROUNDING = 1e-12
 """Part of a velocity that is rounding."""
 
 
-class Instant(NamedTuple):
-    """Joints, kinematics and constants of one step.
-
-    Attributes:
-        q: Joint positions [rad], (dof,).
-        last: Last command [rad/s], (dof,).
-        before: Command before it [rad/s], (dof,).
-        wanted: Velocity that was wanted at the last step [rad/s], (dof,).
-        rest: Periods until the braking motion in hand rests; 0 if there is none.
-        following: `ControllerState.following`, (5, dof), overwritten.
-        jacobian: `Kinematics.jacobian`, (dof, 6).
-        placements: `Kinematics.placements`, (frames, 12).
-        constants: Constants of all parts, (k,).
-    """
-
-    q: Vector
-    last: Vector
-    before: Vector
-    wanted: Vector
-    rest: float
-    following: Matrix
-    jacobian: Matrix
-    placements: Matrix
-    constants: Vector
-
-
-@entry
-def enter_stopping_time(address: int, instant: Instant, yielding: Yielding, x: Vector) -> float:
-    """Enter `stopping_time` at an address, with velocities x (n,) [rad/s]."""
-    raise NotImplementedError
-
-
 class Motion(NamedTuple):
     """A motion to rest, or to a wanted velocity that is taken off.
 
     Attributes:
         first: Velocities at its start [rad/s], (n,).
         bend: b of the cubic [rad/s], (n,); zero for straight lines in time.
-        periods: M; 0 if there is none.
+        periods: M.
         cubic: Whether the velocities are cubic in time.
     """
 
@@ -117,19 +87,25 @@ def bend_of(x: float, before: float, periods: float) -> float:
 
 
 @compiled
+def velocity_at(x: float, b: float, u: float, cubic: bool) -> float:
+    """Compute the velocity [rad/s] at a part u of the periods of a motion that begins with x."""
+    left = 1.0 - u
+    if not cubic:
+        return x * left
+    return left * left * (x * (1.0 + 2.0 * u) + b * u)
+
+
+@compiled
 def next_velocity(x: float, before: float, periods: float, cubic: bool) -> float:
     """Compute the velocity after the first of so many periods on the way to zero [rad/s]."""
     if periods < 1.5:
         return 0.0
-    u = 1.0 / periods
-    if not cubic:
-        return x * (1.0 - u)
-    left = (1.0 - u) * (1.0 - u)
-    return left * (x * (1.0 + 2.0 * u) + bend_of(x, before, periods) * u)
+    b = bend_of(x, before, periods) if cubic else 0.0
+    return velocity_at(x, b, 1.0 / periods, cubic)
 
 
 @compiled
-def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float:
+def least_periods(x: Vector, before: Vector, limits: Vector, dt: float, cubic: bool) -> float:
     """Compute the number of periods in which velocities go to zero together.
 
     It is the least one, or with a jerk limit one that is found from below in steps of a tenth.
@@ -139,128 +115,71 @@ def least_periods(x: Vector, before: Vector, limits: Vector, dt: float) -> float
         before: Velocities of the period before [rad/s], (n,).
         limits: Constants of the acceleration and jerk limits, (6 n,).
         dt: Control period [s].
+        cubic: Whether a jerk is limited.
 
     Returns:
         M, 0 at rest; inf if no number is enough.
     """
-    n = x.size
-    cubic = has_jerk(limits)
+    accelerations = limits[3 * x.size : 4 * x.size]
+    jerks = limits[4 * x.size : 5 * x.size]
     periods = 0.0
-    for i in range(n):
-        accel = limits[3 * n + i]
-        jerk = limits[4 * n + i]
-        periods = max(periods, math.ceil(abs(x[i]) / (accel * dt) * (1.0 - SLACK)))
-        if cubic and (x[i] != 0.0 or before[i] != 0.0):
-            periods = max(periods, 1.0, math.ceil(1.5 * abs(x[i]) / (accel * dt) - 2.0))
-            if jerk < np.inf:
-                periods = max(periods, math.ceil(math.sqrt(3.0 * abs(x[i]) / jerk) / dt - 2.0))
-    if not cubic:
-        return periods
-    k = 0
-    while k < n:
+    for i in range(x.size):
+        fewest = math.ceil(abs(x[i]) / (accelerations[i] * dt) * (1.0 - SLACK))
+        periods = max(periods, fewest)
+    i = 0
+    while cubic and i < x.size:
         if periods > LONGEST:
             return np.inf
-        if within_rates(
-            x[k], before[k], periods, limits[3 * n + k] * dt, limits[4 * n + k] * dt * dt
-        ):
-            k += 1
+        if within_rates(x[i], before[i], periods, accelerations[i] * dt, jerks[i] * dt * dt):
+            i += 1
         else:
-            periods = math.ceil(GROWTH * periods)
-            k = 0
+            periods = max(1.0, math.ceil(GROWTH * periods))
+            i = 0
     return periods
-
-
-@compiled
-def has_jerk(limits: Vector) -> bool:
-    """Test whether the jerk of a joint is limited, by the constants (6 n,) of the limits."""
-    count = 0
-    n = limits.size // 6
-    for i in range(4 * n, 5 * n):
-        count += limits[i] < np.inf
-    return count > 0
 
 
 @compiled
 def within_rates(x: float, before: float, periods: float, accel: float, jerk: float) -> bool:
     """Test whether a cubic keeps its limits per period of acceleration and jerk [rad/s]."""
     if periods < 0.5:
-        return True
+        return x == 0.0 and before == 0.0
     b = bend_of(x, before, periods)
     u = 1.0 / periods
-    most = jerk * (1.0 + SLACK)
-    if abs(6.0 * x + 4.0 * b) * u * u > most:
-        return False
-    if abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)) * u * u > most:
-        return False
-    # The last one, from which the joint is at rest for good.
-    if abs(x * (3.0 - 2.0 * u) + b * (1.0 - u)) * u * u > most:
+    # The first jerk, that of the last period, and that with which the joint is at rest for good.
+    largest = max(abs(6.0 * x + 4.0 * b), abs(x * (6.0 - 12.0 * u) + b * (2.0 - 6.0 * u)))
+    largest = max(largest, abs(x * (3.0 - 2.0 * u) + b * (1.0 - u)))
+    if largest * u * u > jerk * (1.0 + SLACK):
         return False
     most = accel * (1.0 + SLACK)
-    if abs(next_velocity(x, before, periods, True) - x) > most:
+    turn = 12.0 * x + 6.0 * b
+    at = (6.0 * x + 4.0 * b) / turn if turn != 0.0 else 0.0
+    steepest = abs(-6.0 * x * at * (1.0 - at) + b * (1.0 - at) * (1.0 - 3.0 * at)) * u
+    if u <= at < 1.0 and steepest > most:
         return False
-    steepest = 12.0 * x + 6.0 * b
-    at = (6.0 * x + 4.0 * b) / steepest if steepest != 0.0 else 0.0
-    if not u <= at < 1.0:
-        return True
-    return abs(-6.0 * x * at * (1.0 - at) + b * (1.0 - at) * (1.0 - 3.0 * at)) * u <= most
+    return abs(next_velocity(x, before, periods, True) - x) <= most
 
 
 @compiled
-def sums(motion: Motion, count: float) -> tuple[float, float]:
-    """Sum the factors of the first velocities and of b over the first `count` periods."""
-    M = motion.periods
-    if M == 0.0:
-        return 0.0, 0.0
-    first = 0.5 * count * (count - 1.0)
+def way_along(motion: Motion, x: float, b: float, count: float, dt: float) -> float:
+    """Sum the velocities of a motion with x and b over its first `count` periods of dt [s]."""
+    M = max(motion.periods, 1.0)
+    first = 0.5 * count * (count - 1.0) / M
     if not motion.cubic:
-        return count - first / M, 0.0
-    second = first * (2.0 * count - 1.0) / 3.0
-    third = first * first
-    of_first = count - 3.0 * second / (M * M) + 2.0 * third / (M * M * M)
-    of_bend = first / M - 2.0 * second / (M * M) + third / (M * M * M)
-    return of_first, of_bend
+        return dt * x * (count - first)
+    second = first * (2.0 * count - 1.0) / (3.0 * M)
+    third = first * first / M
+    return dt * (x * (count - 3.0 * second + 2.0 * third) + b * (first - 2.0 * second + third))
 
 
 @compiled
-def extremes(motion: Motion, x: float, b: float, dt: float) -> tuple[float, float]:
-    """Compute the least and the largest way along a motion, of its cubic with x and b.
-
-    At its start the way is zero; dt is the control period [s].
-    """
+def least_way(motion: Motion, x: float, b: float, dt: float) -> float:
+    """Compute the least way along a motion with x and b; at its start the way is zero."""
     M = motion.periods
-    of_first, of_bend = sums(motion, M)
-    way = dt * (x * of_first + b * of_bend)
-    least = min(0.0, way)
-    largest = max(0.0, way)
+    least = min(0.0, way_along(motion, x, b, M, dt))
     turn = 2.0 * x + b
     if motion.cubic and x * turn < 0.0:
-        count = min(math.ceil(-x / turn * M), M)
-        of_first, of_bend = sums(motion, count)
-        way = dt * (x * of_first + b * of_bend)
-        least = min(least, way)
-        largest = max(largest, way)
-    return least, largest
-
-
-@compiled
-def motion_to_rest(dq: Vector, last: Vector, bend: Vector, limits: Vector, dt: float) -> Motion:
-    """Compute the motion to rest from a command dq (n,) after the last one (n,) [rad/s].
-
-    Its `bend` (n,) [rad/s] is overwritten. The limits are those of `least_periods`, dt is the
-    control period [s].
-    """
-    for i in range(dq.size):
-        bend[i] = 0.0
-    if limits.size == 0:
-        return Motion(dq, bend, 1.0, False)
-    periods = least_periods(dq, last, limits, dt)
-    cubic = has_jerk(limits)
-    if not periods < np.inf:
-        return Motion(dq, bend, -1.0, cubic)
-    if cubic and periods > 0.0:
-        for i in range(dq.size):
-            bend[i] = bend_of(dq[i], last[i], periods)
-    return Motion(dq, bend, periods, cubic)
+        least = min(least, way_along(motion, x, b, min(math.ceil(-x / turn * M), M), dt))
+    return least
 
 
 @compiled
@@ -269,20 +188,16 @@ def is_straight(motion: Motion) -> bool:
 
     Their velocities keep direction and sign where b is c times the first one with c >= -3.
     """
-    along = 0.0
-    square = 0.0
+    fastest = 0.0
+    factor = 0.0
     for i in range(motion.first.size):
-        along += motion.bend[i] * motion.first[i]
-        square += motion.first[i] * motion.first[i]
-    if square == 0.0:
-        return False
-    factor = along / square
+        if abs(motion.first[i]) > fastest:
+            fastest = abs(motion.first[i])
+            factor = motion.bend[i] / motion.first[i]
     lacking = 0.0
-    largest = 0.0
     for i in range(motion.first.size):
         lacking = max(lacking, abs(motion.bend[i] - factor * motion.first[i]))
-        largest = max(largest, abs(motion.first[i]))
-    return factor >= -3.0 and lacking <= ROUNDING * largest
+    return fastest > 0.0 and factor >= -3.0 and lacking <= ROUNDING * fastest
 
 
 @compiled
@@ -292,16 +207,16 @@ def keeps_joint_limits(motion: Motion, q: Vector, limits: Vector, dt: float) -> 
     for i in range(n):
         x = motion.first[i]
         b = motion.bend[i]
-        least, largest = extremes(motion, x, b, dt)
+        top = q[i] - least_way(motion, -x, -b, dt)
+        bottom = q[i] + least_way(motion, x, b, dt)
         # A joint that is outside already may come back.
-        if q[i] + largest > max(limits[n + i], q[i]) or q[i] + least < min(limits[i], q[i]):
+        if top > max(limits[n + i], q[i]) or bottom < min(limits[i], q[i]):
             return False
         steepest = 6.0 * x + 3.0 * b
         u = b / steepest if steepest != 0.0 else 0.0
-        if 0.0 < u < 1.0:
-            peak = (1.0 - u) * (1.0 - u) * (x * (1.0 + 2.0 * u) + b * u)
-            if abs(peak) > limits[2 * n + i] * (1.0 + SLACK):
-                return False
+        fastest = limits[2 * n + i] * (1.0 + SLACK)
+        if 0.0 < u < 1.0 and abs(velocity_at(x, b, u, True)) > fastest:
+            return False
         if limits[5 * n + i] < limits[3 * n + i] and not keeps_ramp(motion, q, limits, dt, i):
             return False
     return True
@@ -316,22 +231,17 @@ def keeps_ramp(motion: Motion, q: Vector, limits: Vector, dt: float, i: int) -> 
     """
     n = q.size
     at = q[i]
-    before = motion.first[i]
-    x = before
     for k in range(int(motion.periods)):
+        x = velocity_at(motion.first[i], motion.bend[i], k / motion.periods, motion.cubic)
         left = limits[n + i] - at if x > 0.0 else at - limits[i]
         if x * x > 2.0 * limits[5 * n + i] * max(left, 0.0) * (1.0 + SLACK):
             return False
         at += dt * x
-        u = (k + 1.0) / motion.periods
-        x = before * (1.0 - u)
-        if motion.cubic:
-            x = (1.0 - u) * (1.0 - u) * (before * (1.0 + 2.0 * u) + motion.bend[i] * u)
     return True
 
 
 @compiled
-def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: float) -> bool:
+def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt: float) -> bool:
     """Test whether all pairs of a scene keep their distance on a motion to rest.
 
     A pair that is too near, or that a moving obstacle comes too near while the arm brakes, must not
@@ -339,92 +249,95 @@ def keeps_distances(motion: Motion, instant: Instant, constants: Vector, dt: flo
 
     Args:
         motion: The motion.
-        instant: Where it begins.
+        arrays: Arrays of the loop, with the kinematics at its beginning.
         constants: `Scene.constants`, (k,).
         dt: Control period [s].
     """
     n = motion.first.size
     scene = scene_views(constants, n)
     placed = np.empty((len(scene.bodies), 12))
-    place_bodies(scene, instant.placements, placed)
+    place_bodies(scene, arrays.placements, placed)
     straight = is_straight(motion)
-    of_first, of_bend = sums(motion, motion.periods)
+    M = motion.periods
     travel = np.empty(n)
     for i in range(n):
-        travel[i] = dt * (abs(motion.first[i]) * of_first + abs(motion.bend[i]) * of_bend)
-    rates = np.empty(n)
+        travel[i] = way_along(motion, abs(motion.first[i]), abs(motion.bend[i]), M, dt)
     for k in range(len(scene.pairs)):
         contact = contact_of(scene, k, placed)
-        left = contact.distance - scene.pairs[k, SPEED] * dt * motion.periods
-        way = 0.0
+        left = contact.distance - scene.pairs[k, SPEED] * dt * M
+        most = 0.0
         for i in range(n):
-            way += abs(scene.radii[k, i]) * travel[i]
-        if left - way >= scene.least:
+            most += abs(scene.radii[k, i]) * travel[i]
+        if left - most >= scene.least:
             continue
-        normal = contact.normal
         change = np.inf
         lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
         a, b = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
         for end in (a, b):
-            _write_rates(instant.jacobian, scene.moves, k, end, normal, rates)
+            x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
+            way = way_along(motion, x, bend, M, dt)
+            least = min(0.0, way - lacking)
+            if not straight:
+                least = least_way(motion, x, bend, dt) - lacking
             # No end is below the nearest point, but rounding would hold an arm that is too near.
-            height = max(0.0, dot(combined(1.0, end, -1.0, contact.second), normal))
-            change = min(change, height + _least_rise(motion, rates, dt, lacking, straight))
+            height = max(0.0, dot(combined(1.0, end, -1.0, contact.second), contact.normal))
+            change = min(change, height + least)
         if left + change < min(scene.least, left):
             return False
     return True
 
 
 @compiled
-def _write_rates(
-    jacobian: Matrix, moves: Matrix, k: int, point: Triple, normal: Triple, rates: Vector
-) -> None:
-    """Write at which rate each joint (n,) moves a point of pair k's second body along a normal."""
-    for j in range(rates.size):
-        rates[j] = 0.0
-        if moves[k, j] != 0.0:
-            rates[j] = moves[k, j] * rate_along(jacobian, j, point, normal)
-
-
-@compiled
-def _least_rise(motion: Motion, rates: Vector, dt: float, lacking: float, straight: bool) -> float:
-    """Bound the way of a point on a motion to rest from below.
-
-    Args:
-        motion: The motion.
-        rates: Rate of the point for each joint, (n,) [m/rad].
-        dt: Control period [s].
-        lacking: Bound on what the whole way lacks to be linear in the joints' [m].
-        straight: `is_straight` of the motion.
-    """
+def _along(
+    motion: Motion, jacobian: Matrix, moves: Matrix, k: int, point: Triple, normal: Triple
+) -> tuple[float, float]:
+    """Compute first velocity and b along a normal (3,) of a point (3,) of pair k's second body."""
     x = 0.0
     b = 0.0
-    for j in range(rates.size):
-        x += rates[j] * motion.first[j]
-        b += rates[j] * motion.bend[j]
-    if straight:
-        of_first, of_bend = sums(motion, motion.periods)
-        return min(0.0, dt * (x * of_first + b * of_bend) - lacking)
-    least, _ = extremes(motion, x, b, dt)
-    return least - lacking
+    for j in range(motion.first.size):
+        if moves[k, j] != 0.0:
+            rate = moves[k, j] * rate_along(jacobian, j, point, normal)
+            x += rate * motion.first[j]
+            b += rate * motion.bend[j]
+    return x, b
+
+
+@entry
+def enter_stopping_time(
+    address: int, arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: Vector
+) -> float:
+    """Enter `stopping_time` at an address: controllers without scenes are exported without it."""
+    raise NotImplementedError
 
 
 @compiled
-def stopping_time(instant: Instant, yielding: Yielding, dq: Vector) -> float:
-    """Compute the periods of the motion to rest from a command dq (dof,) [rad/s].
+def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: Vector) -> float:
+    """Compute the periods of the motion to rest from a command.
 
-    It is -1 if the motion breaks a limit, or brings a pair too near.
+    Args:
+        arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
+        past: `ControllerState.past`, (5, dof).
+        yielding: Limits and scenes.
+        dq: The command [rad/s], (dof,).
+
+    Returns:
+        M; -1 if the motion breaks a limit, or brings a pair too near.
     """
-    dt = yielding.dt
-    bend = np.empty(dq.size)
-    motion = motion_to_rest(dq, instant.last, bend, yielding.limits, dt)
-    if motion.periods < 0.0:
+    limits = yielding.limits
+    bend = np.zeros(dq.size)
+    periods = 1.0
+    if limits.size:
+        periods = least_periods(dq, past[LAST], limits, yielding.dt, yielding.cubic)
+    if periods == np.inf:
         return -1.0
-    if yielding.limits.size and not keeps_joint_limits(motion, instant.q, yielding.limits, dt):
+    if yielding.cubic and periods > 0.0:
+        for i in range(dq.size):
+            bend[i] = bend_of(dq[i], past[LAST, i], periods)
+    motion = Motion(dq, bend, periods, yielding.cubic)
+    if limits.size and not keeps_joint_limits(motion, past[Q], limits, yielding.dt):
         return -1.0
-    scenes = yielding.scenes
-    for k in range(len(scenes)):
-        scene = instant.constants[scenes[k, 0] : scenes[k, 1]]
-        if not keeps_distances(motion, instant, scene, dt):
+    for k in range(len(yielding.scenes)):
+        scene = arrays.constants[yielding.scenes[k, 0] : yielding.scenes[k, 1]]
+        if not keeps_distances(motion, arrays, scene, yielding.dt):
             return -1.0
-    return motion.periods
+    return periods

@@ -29,6 +29,7 @@ from iiwa_dnn.export.kernels import move_centers
 from iiwa_dnn.export.scratch import scratch_size
 from iiwa_dnn.networks.base import Network
 from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
+from iiwa_dnn.networks.integrators.implicit import settle_address
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.qp.program import QP
@@ -157,17 +158,16 @@ class _Code:
         self._tables: list[str] = []
         self._numbers = {0: 0}
         arrays = step.plan.arrays
-        yielding = step.plan.yielding
         table: IntMatrix = arrays.table.copy()
+        network = table[1 + table[0, 4]]
+        settles = network[1] == settle_address()  # and does not enter the network's rates
+        network[2] = 0 if settles else self._part(int(network[2]))
         for row in table[1:]:
             row[1] = self._part(int(row[1]))
-        network = table[1 + table[0, 4]]
-        answer = self._part(yielding.answer)
-        settles = network[1] == answer  # and does not enter the network's rates
-        network[2] = 0 if settles else self._part(int(network[2]))
+        yielding = step.plan.yielding
         self.plan = step.plan._replace(
             arrays=arrays._replace(table=table),
-            yielding=yielding._replace(answer=answer, stop=self._part(yielding.stop)),
+            yielding=yielding._replace(stop=self._part(yielding.stop)),
         )
         self.centers = _centers(step)
         self._fields = {"jacobian": "c->jacobian", "placements": "c->placements"}

@@ -171,14 +171,13 @@ class Recorder:
         if outcome.action is not Action.NONE:
             self._array("action")[k] = outcome.action
         command = outcome.commands[0]
-        resolution = command.resolution
-        if resolution is None:
+        if command.action is Action.NONE:
             return
-        self._array("fraction")[k] = resolution.fraction
-        blocking = self._names.codes(command.bounds, resolution.sides, command.past)
+        self._array("fraction")[k] = command.fraction
+        blocking = self._names.codes(command.bounds, command.sides, command.past)
         self._array("blocking")[k] = blocking
-        if resolution.rows.any():
-            self._array("blocking_rows", m=resolution.rows.size)[k] = resolution.rows
+        if command.rows.any():
+            self._array("blocking_rows", m=command.rows.size)[k] = command.rows
 
     def _add_kinds(self, k: int, command: Command) -> None:
         """Note of what kind the active bounds are in step k."""

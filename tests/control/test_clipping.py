@@ -9,8 +9,6 @@ from scipy.optimize import linprog
 
 from iiwa_dnn.control.clipping import ROW_TOLERANCE, clip_command
 from iiwa_dnn.control.relaxed import Yielding
-from iiwa_dnn.networks.integrators.base import enter_answer
-from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import QP
 
 
@@ -22,7 +20,9 @@ def settling(tol: float = 1e-9, budget: float = 60.0) -> Yielding:
         settings=np.array([tol, budget, 1e8]),
         scenes=np.zeros((0, 2), np.int64),
         dt=1e-3,
-        answer=enter_answer.address(settle),
+        stop=0,
+        cubic=False,
+        coupled=False,
     )
 
 

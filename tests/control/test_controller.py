@@ -128,9 +128,6 @@ def test_a_command_says_in_words_what_it_is() -> None:
     reason = "no solution: stopped, against joint 4 lower velocity limit; ok = False>"
     assert stopped.endswith(reason)
     controller.policy = "relax"
-    assert repr(command.resolution) == (
-        "<Resolution STOP: 0 of the period, against joint 4 lower velocity limit>"
-    )
     assert repr(command.qp) == "<QP of 7 variables: 0 inequalities, 6 equalities, 14 bounds>"
     assert "as near to the task as the limits allow, against" in repr(
         controller.step(PAPER_Q0, 0.0, far)

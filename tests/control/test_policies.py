@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,8 +22,6 @@ from iiwa_dnn import (
     robot_from_dh,
 )
 from iiwa_dnn.control.policies import Action, Policy, ProgramKind
-from iiwa_dnn.control.relaxed import BUDGET
-from iiwa_dnn.control.yielding import ATTEMPTS
 from iiwa_dnn.results.metrics import ACTIONS
 
 WEIGHTS = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
@@ -83,14 +79,13 @@ def test_the_scaled_program_in_closed_form(sign: float) -> None:
     assert (command.action, command.kind) == (Action.SLOW, ProgramKind.SCALED)
     assert command.fraction == pytest.approx(0.999 * 0.25, abs=1e-9)
     assert command.qp.b[0] == pytest.approx(command.fraction * 12.0 * sign, rel=1e-12)
-    assert command.resolution is not None
-    assert command.resolution.sides.tolist() == [sign, sign]
+    assert command.sides.tolist() == [sign, sign]
 
 
 def test_the_scaling_factor_is_the_linear_programs() -> None:
     checked = 0
-    for seed in range(60):
-        controller, q, target = posed(seed, velocity=0.05 + 0.01 * seed)
+    for seed in range(80):
+        controller, q, target = posed(seed, velocity=0.05 + 0.01 * (seed % 60))
         own = own_program(controller, q, target)
         command = controller.step(q, 0.0, target)
         factor = linear_factor(own)
@@ -99,8 +94,8 @@ def test_the_scaling_factor_is_the_linear_programs() -> None:
             checked += 1
         else:
             assert command.kind is (ProgramKind.OWN if factor == 1.0 else ProgramKind.SOFTENED)
-            races = np.linalg.norm(own.A @ command.dq) < 0.05 * np.linalg.norm(command.dq)
-            assert factor == 1.0 or factor < 0.1 or races
+            races = np.abs(own.A @ command.dq).max() < 0.05 * np.abs(command.dq).max()
+            assert factor == 1.0 or 0.999 * factor < 0.1 or races
     assert checked > 20
 
 
@@ -133,7 +128,7 @@ def test_the_softened_program_is_the_pages(policy: Policy) -> None:
         assert (command.action, command.kind) == (Action.RELAX, ProgramKind.SOFTENED)
         own.b[:] *= min(1.0, 10.0 / np.abs(own.b).max())  # no arm is quicker
         rows = WEIGHTS @ own.A
-        drift = -0.02 * own.q / max(1.0, np.linalg.norm(own.q))
+        drift = -0.02 * own.q / max(1.0, np.abs(own.q).max())
         cost = rows.T @ rows + 0.05**2 * np.eye(7) + 1e-4 * own.P
         linear = -rows.T @ WEIGHTS @ own.b - 0.05**2 * drift
         np.testing.assert_allclose(command.qp.P, cost, rtol=1e-12, atol=1e-15)
@@ -155,14 +150,13 @@ def test_the_bounds_in_the_way_are_those_that_help_when_widened() -> None:
         command = controller.step(q, 0.0, target)
         if command.kind is not ProgramKind.SCALED:
             continue
-        assert command.resolution is not None
         for i in range(7):
             wider = QP.from_data(qp.data.copy(), qp.sizes)
             wider.lb[i] -= 1e-3
             wider.ub[i] += 1e-3
             gain = linear_factor(wider) - linear_factor(qp)
-            assert (gain > 1e-8) == (command.resolution.sides[i] != 0)
-            blamed += int(command.resolution.sides[i] != 0)
+            assert (gain > 1e-8) == (command.sides[i] != 0)
+            blamed += int(command.sides[i] != 0)
     assert blamed > 10
 
 
@@ -187,8 +181,7 @@ def test_no_policy_goes_through_a_wall(policy: Policy, h: float) -> None:
     assert command.dq.sum() <= h + 1e-9
     assert (np.abs(command.dq) <= 1.0).all()
     np.testing.assert_array_equal(command.qp.h, [h])
-    assert command.resolution is not None
-    assert command.resolution.rows.tolist() == [1]
+    assert command.rows.tolist() == [1]
 
 
 @pytest.mark.parametrize(("asked", "given"), [(-0.5, -0.5), (-2.0, -2.0), (-5.0, -2.0)])
@@ -202,8 +195,7 @@ def test_a_row_that_asks_for_motion_gets_what_the_joints_can(
     part = 1.0 if asked == given else 0.999
     assert command.qp.h[0] == pytest.approx(part * given, abs=1e-8)
     assert command.dq.sum() <= part * given + 1e-8
-    assert command.resolution is not None
-    assert command.resolution.rows.tolist() == [1]
+    assert command.rows.tolist() == [1]
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
@@ -214,8 +206,7 @@ def test_limits_that_contradict_each_other_stop_the_arm(policy: Policy) -> None:
     assert (command.action, command.kind) == (Action.STOP, ProgramKind.STOPPED)
     assert not command.dq.any()
     np.testing.assert_array_equal(command.qp.data, qp.data)  # its own program is handed out
-    assert command.resolution is not None
-    assert command.resolution.rows.tolist() == [1]
+    assert command.rows.tolist() == [1]
 
 
 def test_a_reference_at_rest_is_gone_to_directly() -> None:
@@ -231,8 +222,7 @@ def test_stop_is_no_velocity_and_names_the_bounds() -> None:
     assert (command.action, command.fraction) == (Action.STOP, 0.0)
     assert not command.dq.any()
     assert not command.solution.found
-    assert command.resolution is not None
-    assert command.resolution.sides.tolist() == [1, 1]
+    assert command.sides.tolist() == [1, 1]
 
 
 @pytest.mark.parametrize(
@@ -287,13 +277,6 @@ def test_the_codes_in_a_record_stay_what_they_are() -> None:
     assert codes == {"none": 0, "slow": 2, "relax": 3, "stop": 4, "euler": 5}
     assert {code: name for name, code in codes.items() if code} == ACTIONS
     assert [kind.name for kind in ProgramKind] == ["OWN", "SCALED", "SOFTENED", "HELD", "STOPPED"]
-
-
-def test_the_page_says_how_many_systems_a_step_takes() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "robustness.md").read_text(encoding="utf-8")
-    said = re.search(r"at most (\d+) further solves of at most (\d+) linear systems", page)
-    assert said is not None
-    assert [int(number) for number in said.groups()] == [ATTEMPTS - 1, BUDGET]
 
 
 @pytest.mark.parametrize("policy", ["slow", "relax", "stop"])

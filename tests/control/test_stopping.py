@@ -29,11 +29,11 @@ from iiwa_dnn.control.state import REST
 from iiwa_dnn.control.stopping import (
     Motion,
     bend_of,
-    extremes,
-    has_jerk,
     least_periods,
+    least_way,
     next_velocity,
-    sums,
+    velocity_at,
+    way_along,
     within_rates,
 )
 from iiwa_dnn.schemes.motion_bounds import second_order
@@ -44,11 +44,16 @@ ACCELERATION = (AccelerationLimits(),)
 JERK = (AccelerationLimits(), JerkLimits(500.0))
 
 
-def way_to_rest(x: np.ndarray, before: np.ndarray, limits: np.ndarray, dt: float) -> np.ndarray:
+def limits_of(jerk: float) -> np.ndarray:
+    """Limits of three joints."""
+    return np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
+
+
+def way_to_rest(x: np.ndarray, before: np.ndarray, jerk: float, dt: float) -> np.ndarray:
     """Velocities from before x to rest, each from the two before it, as a controller has them."""
-    periods = least_periods(x, before, limits, dt)
+    periods = least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
     assert np.isfinite(periods)
-    cubic = has_jerk(limits)
+    cubic = jerk < np.inf
     path = [before, x]
     while periods > 0:
         pairs = zip(path[-1], path[-2], strict=True)
@@ -61,18 +66,17 @@ def way_to_rest(x: np.ndarray, before: np.ndarray, limits: np.ndarray, dt: float
 @pytest.mark.parametrize("dt", [1e-3, 1e-2])
 def test_a_motion_to_rest_keeps_acceleration_and_jerk(jerk: float, dt: float) -> None:
     random = np.random.default_rng(3)
-    limits = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
     for k in range(400):
         # Slow ones too: the last step to rest, of one period or two, was above the jerk limit.
         largest = 2.0 if k < 200 else 3.0 * min(10.0, jerk * dt) * dt
         x = random.uniform(-largest, largest, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, jerk * dt) * dt
-        path = way_to_rest(x, before, limits, dt)
+        path = way_to_rest(x, before, jerk, dt)
         assert not path[-1].any()
-        rates = np.diff(path, axis=0) / dt
-        assert (np.abs(rates) <= 10.0 * (1.0 + 1e-8)).all()
+        found = np.diff(path, axis=0) / dt
+        assert (np.abs(found) <= 10.0 * (1.0 + 1e-8)).all()
         if jerk < np.inf:
-            rested = np.vstack([rates, np.zeros((2, 3))])
+            rested = np.vstack([found, np.zeros((2, 3))])
             assert (np.abs(np.diff(rested, axis=0)) / dt <= jerk * (1.0 + 1e-8)).all()
 
 
@@ -83,8 +87,7 @@ def test_the_periods_to_rest_are_the_least_or_an_eighth_more(jerk: float) -> Non
     for _ in range(200):
         x = 10.0 ** random.uniform(-2.0, 0.0) * random.uniform(-2.0, 2.0, 3)
         before = x - random.uniform(-1.0, 1.0, 3) * min(10.0, 30.0 * jerk * dt) * dt
-        limits = np.repeat([-3.0, 3.0, 3.0, 10.0, jerk, 10.0], 3)
-        periods = least_periods(x, before, limits, dt)
+        periods = least_periods(x, before, limits_of(jerk), dt, jerk < np.inf)
         least = float(np.ceil(np.abs(x).max() / (10.0 * dt)))
         if jerk < np.inf:
             pairs = list(zip(x, before, strict=True))
@@ -107,12 +110,11 @@ def test_the_way_along_a_motion_is_the_sum_of_its_velocities(cubic: bool) -> Non
         velocities = x * (1 - u)
         if cubic:
             velocities = (1 - u) ** 2 * (x * (1 + 2 * u) + b * u)
+        found = [velocity_at(x, b, at, cubic) for at in u]
+        np.testing.assert_allclose(found, velocities, rtol=0, atol=1e-12)
         ways = np.append(0.0, np.cumsum(velocities)) * 1e-3
-        least, largest = extremes(motion, x, b, 1e-3)
-        assert least == pytest.approx(ways.min(), abs=1e-12)
-        assert largest == pytest.approx(ways.max(), abs=1e-12)
-        of_first, of_bend = sums(motion, M)
-        assert 1e-3 * (x * of_first + b * of_bend) == pytest.approx(ways[-1], abs=1e-12)
+        assert least_way(motion, x, b, 1e-3) == pytest.approx(ways.min(), abs=1e-12)
+        assert way_along(motion, x, b, M, 1e-3) == pytest.approx(ways[-1], abs=1e-12)
 
 
 def pressed(

@@ -60,10 +60,8 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
             ]
         )
         names = repr(command)
-        found = command.resolution
-        sides = np.zeros(7) if found is None else found.sides
-        for joint in np.flatnonzero(sides):
-            bound = command.bounds[int(sides[joint] > 0), joint]
+        for joint in np.flatnonzero(command.sides):
+            bound = command.bounds[int(command.sides[joint] > 0), joint]
             if abs(command.dq[joint] - bound) > 1e-9:
                 continue
             word = names.split(f"joint {joint + 1} ")[1].split()[1]
