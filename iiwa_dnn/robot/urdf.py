@@ -95,7 +95,7 @@ def weld(root: ET.Element, robot: Robot) -> None:
         name = joint.get("name", "")
         for mimic in joint.findall("mimic"):
             joint.remove(mimic)
-        if held.get(name):
+        if name in held:
             # In Pinocchio's model both links have become frames of one joint.
             ends = [*joint.findall("parent"), *joint.findall("child")]
             frames = [robot.model.frames[robot.frame_id(end.get("link", ""))] for end in ends]
@@ -105,5 +105,4 @@ def weld(root: ET.Element, robot: Robot) -> None:
             xyz = " ".join(map(repr, pose.translation.tolist()))
             rpy = " ".join(map(repr, pin.rpy.matrixToRpy(pose.rotation).tolist()))
             ET.SubElement(joint, "origin", xyz=xyz, rpy=rpy)
-        if name in held:
             joint.set("type", "fixed")

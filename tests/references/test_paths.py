@@ -177,6 +177,16 @@ def test_a_tilting_tool_tilts_to_both_sides_along_the_same_path(reference: d.Til
     np.testing.assert_allclose(targets.rotation, tilted, rtol=0, atol=1e-14)
 
 
+def test_the_rotation_vector_is_the_shortest() -> None:
+    random = np.random.default_rng(3)
+    for angle in (0.0, 1e-9, 0.5, 3.0, np.pi - 1e-9, 4.0, 6.0):
+        for axis in random.standard_normal((20, 3)):
+            turn = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+            found = np.empty(3)
+            rotations.rotation_log(turn.as_matrix(), found)
+            np.testing.assert_allclose(found, turn.as_rotvec(), rtol=0, atol=1e-12)
+
+
 class Nodding(d.Heart):
     """A heart with an orientation of one's own, in Python."""
 

@@ -185,6 +185,9 @@ def test_with_limits(robot: Robot) -> None:
     assert (other.name, other.tip, other.tip_id) == (robot.name, robot.tip, robot.tip_id)
     assert robot.q_upper[0] == np.radians(170)
     np.testing.assert_array_equal(robot.with_limits(velocity=2).q_lower, robot.q_lower)
+    for side in (-1.0, 1.0):  # the iiwa's limits are symmetric
+        assert robot.outside(side * (robot.q_upper + 5e-10)) == ""
+        assert "joint 1 is at" in robot.outside(side * (robot.q_upper + 1e-6))
 
 
 BODY = """<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>

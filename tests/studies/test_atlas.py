@@ -48,6 +48,8 @@ def test_networks_keep_the_path_under_every_disturbance(
         assert len(once["rms_error_m"]) == 2
         assert max(once["rms_error_m"]) < 2e-3
         assert once == again  # the seed draws all of it
+        quiet = atlas.measure(atlas.Cell(name, most=most, share=0.4))
+        assert (once["residual"][:1] == quiet["residual"]) == (kind == "none")
 
 
 def test_disturbances_are_as_large_as_they_are_said_to_be() -> None:
