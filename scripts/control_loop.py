@@ -1,10 +1,8 @@
 """A control loop at 1 kHz: encoders in, joint velocities out.
 
-One sees the time of a step, which has to be far below the period, and the tracking error. A real
-robot takes the places of `read_encoders` and `send`; everything else stays as it is. With noise of
-the encoders, such as ``--noise 1e-4``, or drives that are late, such as ``--delay 2``, an estimator
-knows where the arm is when the command begins; with a jerk limit, such as ``--jerk 100``, the arm
-takes a while to reach the speed of the path.
+A real robot takes the places of `read_encoders` and `send`. With noise of the encoders or drives
+that are late, an estimator knows where the arm is when the command begins; with a jerk limit the
+arm takes a while to reach the speed of the path.
 """
 
 import math

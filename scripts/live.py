@@ -1,7 +1,6 @@
 """Drag a target in the browser and let the arm follow it: python scripts/live.py [ROBOT].
 
-Controller, limits and cross-check run live. Beside the target there is a ball to drag against the
-arm, which gives way to it by its redundancy first.
+Beside the target there is a ball to drag against the arm, which gives way by its redundancy first.
 """
 
 import sys
@@ -79,14 +78,9 @@ class Live:
         self.arm.display(self.q)
         self.sphere.position = self.center
         gap = self.check.check(command.qp, command.solution.x).solution_gap[0, 0]
-        tip = iiwa_dnn.Configuration(self.robot, self.q).position
-        distance = np.linalg.norm(tip - self.target.position)
         against = ", ".join(command.against)
         done = "as wanted" if command.ok else f"held back by {against or 'a singular pose'}"
-        self.state.content = (
-            f"distance to the target {distance:.2g} m\n\n"
-            f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
-        )
+        self.state.content = f"gap to ProxQP {gap:.1e} rad/s\n\nlast step {done}"
 
 
 def main(
@@ -95,7 +89,7 @@ def main(
     port: int = 8080,
     seconds: float = np.inf,
 ):
-    """Serve the page for so many seconds, or until Ctrl-C; 0.0.0.0 as host lets others in."""
+    """Serve the page for so many seconds, or until Ctrl-C."""
     page = Live(iiwa_dnn.load_robot(robot), host, port)
     print(f"open http://{host}:{page.server.get_port()} in a browser; Ctrl-C ends it", flush=True)
     end = time.monotonic() + seconds

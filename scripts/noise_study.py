@@ -2,9 +2,8 @@
 
     python scripts/noise_study.py runs/noise --seeds 10
 
-Every countermeasure meets every disturbance on the paper's heart, converged. Runs with chance in
-them share their seeds, so a countermeasure is compared with none run by run. Finished runs are kept
-in the folder, beside the tables, noise.md.
+Every countermeasure meets every disturbance on the paper's heart, converged, with the same seeds.
+Finished runs are kept in the folder, beside the tables, noise.md.
 """
 
 import sys
@@ -28,8 +27,7 @@ ENCODER_NOISE = 1e-4  # standard deviation of the measured joint positions [rad]
 SETTLED_AFTER = 1.0  # time after which errors and roughness are counted [s]
 GAIN = noise_gain(paper.NOISE, 0.0, paper.DT)  # that the paper's noise asks for [1/s]
 
-# Noise of each disturbance at some times (k,), for a joint; a number is its standard deviation.
-# 0.01 rad/s is the paper's amplitude; the ramp reaches it within 1 s, the sinusoid has 1 Hz.
+# Noise of each disturbance at some times (k,), in 0.01 rad/s; a number is its standard deviation.
 DISTURBANCES = {
     "none": 0.0,
     "white, the paper's": paper.NOISE,
@@ -55,8 +53,7 @@ COUNTERMEASURES = {
 def measure(cell):
     """Carry out a run, (disturbance, countermeasure, seed, duration), and sum it up.
 
-    Returns the mean squared error over samples and axes [m^2], the largest and the last error [m],
-    and the total variation per second and joint of command and motion [rad/s per s].
+    Returns mean squared, largest and last error [m], and the total variation of command and motion.
     """
     kind, means, seed, duration = cell
     noise = DISTURBANCES[kind]
@@ -81,19 +78,12 @@ def measure(cell):
     settled = record.t >= SETTLED_AFTER
     error = position_error(record)
     distance = np.linalg.norm(error, axis=1)
-    commands, motion = (
-        float(np.abs(np.diff(dq[settled[:-1]], axis=0)).sum(axis=0).mean())
-        for dq in (record.dq_solver, record.dq)
-    )
+    signals = (record.dq_solver[settled[:-1]], record.dq[settled[:-1]])
+    commands, motion = (np.abs(np.diff(dq, axis=0)).sum() / record.dof for dq in signals)
     span = duration - SETTLED_AFTER
+    largest = float(distance[settled].max())
     mse = float(np.mean(error[settled] ** 2))
-    return [
-        mse,
-        float(distance[settled].max()),
-        float(distance[-1]),
-        commands / span,
-        motion / span,
-    ]
+    return [mse, largest, float(distance[-1]), float(commands / span), float(motion / span)]
 
 
 def main(
@@ -104,31 +94,26 @@ def main(
 ):
     """Run every disturbance with every countermeasure, and print a table for each disturbance.
 
-    Args:
-        folder: folder of the finished runs and of the tables
-        seeds: number of noises
-        duration: length of each run [s], above 1
-        workers: number of processes (one for each core)
+    Runs last `duration` [s], above 1; those with chance in them are drawn for so many seeds.
     """
     cells = [
         (kind, means, seed, duration)
         for kind, means in product(DISTURBANCES, COUNTERMEASURES)
         for seed in range(seeds if kind in CHANCE else 1)
     ]
-    results = np.array(sweep(measure, cells, Path(folder) / "cells", workers=workers))
-    found = {}
+    results = sweep(measure, cells, Path(folder) / "cells", workers=workers)
+    found = {cell[:2]: [] for cell in cells}
     for cell, result in zip(cells, results, strict=True):
-        found.setdefault(cell[:2], []).append(result)
+        found[cell[:2]].append(result)
     head = ("countermeasure", "MSE [m²]", "max [m]", "last [m]", "command", "motion [rad/s²]")
     parts = []
     for kind in DISTURBANCES:
         rows = []
         for means in COUNTERMEASURES:
-            mse, *others = np.transpose(found[kind, means])
-            shown = f"{mse.mean():.3g}"
-            if len(mse) > 1:
-                shown += f" ± {estimate(mse).half_width:.1g}"
-            rows.append([means, shown, *(f"{values.mean():.3g}" for values in others)])
+            values = np.array(found[kind, means])
+            range_ = f" ± {estimate(values[:, 0]).half_width:.1g}" if len(values) > 1 else ""
+            mse, *others = (f"{value:.3g}" for value in values.mean(axis=0))
+            rows.append([means, mse + range_, *others])
         parts += [f"## {kind}", tabulate(rows, head, "pipe", disable_numparse=True)]
     text = "\n\n".join(parts)
     (Path(folder) / "noise.md").write_text(text + "\n", encoding="utf-8")

@@ -1,8 +1,7 @@
 """Strict priorities: the heart first, then the tool's direction, then three joints.
 
 Eight rows for seven joints. Each level is a program of its own, which may not change what the
-levels above it have attained: the first two hold to rounding, and the third gets as near as they
-let it.
+levels above it have attained.
 
 Source: O. Kanoun, F. Lamiraux, P.-B. Wieber, "Kinematic control of redundant manipulators:
 generalizing the task-priority framework to inequality task", IEEE Trans. Robotics 27 (2011).
@@ -45,9 +44,7 @@ def main(duration: tyro.conf.Positional[float] = 4.0, dt: tyro.conf.Positional[f
         "direction": iiwa_dnn.AxisTask(direction=start.rotation[:, 2]),
         "joints": iiwa_dnn.PostureTask(dict.fromkeys(HELD, 0.3), gain=1.0),
     }
-    cost = [iiwa_dnn.KineticEnergy()]
-    limits = [iiwa_dnn.JointLimits()]
-    schemes = [iiwa_dnn.Scheme(cost, [task], limits) for task in levels.values()]
+    schemes = [iiwa_dnn.Scheme([], [task], [iiwa_dnn.JointLimits()]) for task in levels.values()]
     heart = iiwa_dnn.Heart(period=duration).anchored(start)
     q = np.array(START)
     found = []

@@ -46,7 +46,7 @@ def number(pattern: str, text: str) -> float:
     return float(found[1])
 
 
-@pytest.mark.parametrize("name", ["control_loop.py", "own_parts.py", "sweep_weight.py"])
+@pytest.mark.parametrize("name", ["control_loop.py", "priorities.py"])
 def test_what_an_example_takes_is_told(name: str, example: Example, tmp_path: Path) -> None:
     assert "positional arguments" in example(name, "--help")
     assert not any(tmp_path.iterdir())
@@ -56,8 +56,7 @@ def test_what_an_example_takes_is_told(name: str, example: Example, tmp_path: Pa
     ("arguments", "said"),
     [
         ("control_loop.py 0", "steps: must be a whole number of at least 1"),
-        ("own_parts.py x", "'x'"),
-        ("faulty_joints.py 1 2", "Unrecognized options: 2"),
+        ("priorities.py x", "'x'"),
     ],
 )
 def test_what_an_example_does_not_take_is_told(
@@ -84,74 +83,11 @@ def test_a_control_loop_with_noise_and_a_jerk_limit(example: Example) -> None:
     assert 0.0 < number(r"largest (\S+) m\b", text) < 1e-3
 
 
-def test_a_limit_of_ones_own(example: Example) -> None:
-    text = example("own_parts.py", "10", "5e-3")
-    assert 0.1999 <= number(r"smallest distance ([\d.]+) m", text) < 0.2001
-    assert 100 < number(r"active in (\d+) of 2000", text) < 1000
-    assert number(r"turned by (\S+) rad", text) == pytest.approx(0.5, abs=1e-3)
-    assert "failures []" in text
-
-
-def test_a_network_of_ones_own(example: Example) -> None:
-    text = example("own_network.py", "100")
-    assert text.count("failures []") == 2
-    errors = re.findall(r"largest error (\S+) m", text)
-    assert float(errors[0]) == pytest.approx(float(errors[1]), rel=1e-3)
-    assert number(r"velocities (\S+) rad/s", text) < 1e-7
-
-
-def test_a_second_paper(example: Example, tmp_path: Path) -> None:
-    text = example("posture_obstacle.py", "out", "1e-3", "0.1")
-    assert text.count("| authors |") == text.count("| ours |") == 4
-    assert (tmp_path / "out" / "posture_obstacle.png").stat().st_size > 10_000
-
-
-def test_a_published_network(example: Example) -> None:
-    text = example("faulty_joints.py", "0.05")
-    shares = re.search(r"bounds: (.*)", text)
-    assert shares is not None
-    assert 0.3 < max(map(float, shares[1].split())) < 0.62
-    assert number(r"(\S+) m at the end", text) < number(r"(\S+) m at first", text)
-
-
-def test_a_sweep_over_the_weight(example: Example, tmp_path: Path) -> None:
-    text = example("sweep_weight.py", "runs/sweep_weight", "5e-2")
-    drift = [float(value) for value in re.findall(r"joint drift (\S+) rad", text)]
-    index = [float(value) for value in re.findall(r"kinetic index (\S+) rad", text)]
-    assert len(drift) == len(index) == 7
-    assert drift[-1] > 10.0 * drift[0]
-    assert index == sorted(index, reverse=True)
-    figure = tmp_path / "runs" / "sweep_weight" / "weight.png"
-    assert figure.read_bytes().startswith(b"\x89PNG")
-    assert figure.stat().st_size > 10_000
-
-
-def test_two_arms(example: Example) -> None:
-    text = example("two_arms.py", "0.5")
-    assert number(r"left (\S+) m", text) < 1e-6
-    assert number(r"right (\S+) m", text) < 1e-6
-    assert number(r"changes by (\S+) m", text) < 1e-6
-    assert number(r"and (\S+) rad", text) < 1e-6
-
-
-def test_a_shaft_through_a_point(example: Example) -> None:
-    text = example("remote_centre.py", "5")
-    assert number(r"at most (\S+) m from the point", text) < 1e-7
-    assert number(r"tilted by (\S+) deg", text) > 10.0
-
-
 def test_priorities(example: Example) -> None:
     text = example("priorities.py", "4", "4e-3")
     left = [float(value) for value in re.findall(r"residual at most (\S+)", text)]
     assert max(left[:2]) < 1e-8
     assert left[2] > 0.1
-
-
-def test_an_orientation_of_ones_own(example: Example) -> None:
-    text = example("own_orientation.py", "1")
-    assert number(r"error (\S+) m,", text) < 3e-8
-    assert number(r"m, (\S+) rad,", text) < 2e-7
-    assert "failures []" in text
 
 
 def test_the_heart_around_an_obstacle(example: Example, tmp_path: Path) -> None:
@@ -165,9 +101,6 @@ def test_the_heart_around_an_obstacle(example: Example, tmp_path: Path) -> None:
     assert (tmp_path / "figures" / "obstacle.png").exists()
 
 
-def test_arms_of_other_libraries_examples(example: Example) -> None:
-    text = example("arm_scenes.py", "4", "1e-2")
-    assert text.count("gap to ProxQP") == 8
-    assert number(r"arm_ur5 +error (\S+) m", text) < 5e-5
-    assert number(r"dual_iiwa +error (\S+) m", text) < 5e-6
-    assert "failures []" in text
+def test_a_second_paper(example: Example) -> None:
+    text = example("posture_obstacle.py", "1e-3", "0.1")
+    assert text.count(" authors: ") == text.count(" ours: ") == 4

@@ -115,19 +115,5 @@ def test_tilt_and_distance_are_kept() -> None:
     assert record.settings["status"] == "completed"
     distance, posture = study.over_time(record.q)
     assert study.INNER < distance.min() < study.OUTER
-    assert posture.max() < study.POSTURE
-    assert study.measure(record.t, record.q)[4] < study.PATH
-
-
-def test_verdicts() -> None:
-    theirs = study.RECORDED["AOA-2PF"]
-    assert study.judge("AOA-2PF", theirs) == "reproduced"
-    assert study.judge("AOA-2PF", (*theirs[:3], theirs[3] + 0.06, *theirs[4:])) == "same findings"
-    assert study.judge("AOA-2PF", (*theirs[:5], theirs[5] / 3, theirs[6])) == "same findings"
-    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] / 9, *theirs[5:])) == "reproduced"
-    assert study.judge("AOA-2PF", (*theirs[:4], theirs[4] * 3, *theirs[5:])) == "same findings"
-    assert study.judge("AOA-2PF", (*theirs[:6], 0.041)) == "not reproduced"
-    assert study.judge("UOA-UPF", (*study.RECORDED["UOA-UPF"][:6], 0.06)) == "not reproduced"
-    lines = study.table({"AOA-2PF": theirs}).splitlines()
-    assert len(lines) == 4
-    assert lines[3].endswith("| 0.0839 | reproduced |")
+    assert posture.max() < np.deg2rad(1.0)
+    assert np.linalg.norm(record.position - record.position_desired, axis=1).max() < 1e-3

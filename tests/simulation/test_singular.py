@@ -2,20 +2,67 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from helpers_kinematics import rotation_angle
-from helpers_simulation import paper_robot
+from helpers_simulation import UNCHECKED, paper_robot
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.references import Target
+from iiwa_dnn.references import Line, Target
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
 from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
-from scripts.draw_singular_poses import stretched_run, tilted_run, vertical_start
+from iiwa_dnn.simulation import simulate
 
 JERK = JerkLimits(500.0)
+TILT = 0.05  # between the tool and its desired orientation at the start [rad]
+STILL = Line(offset=(1e-12, 0.0, 0.0), period=1e3)
+
+
+def vertical_start() -> Configuration:
+    """A bent arm whose tool points straight down."""
+    # In the arm's own plane, joints 2, 4 and 6 turn the tool by q2 - q4 + q6.
+    return Configuration(paper_robot(), [0.3, 0.5, 0.0, -1.6, 0.0, np.pi - 2.1, 0.2])
+
+
+def tilted_run(orientation: str, mode: Any) -> Record:
+    """Hold the vertical orientation for half a second, from a start tilted by `TILT`."""
+    desired = vertical_start()
+    q0 = desired.q.copy()
+    q0[5] += TILT
+    scheme = DoubleIndicator(orientation=orientation, weight=1.0)
+    return simulate(
+        paper_robot(),
+        scheme,
+        STILL.anchored(desired),
+        q0,
+        dt=1e-4,
+        duration=0.5,
+        mode=mode,
+        check=UNCHECKED,
+    )
+
+
+def stretched_run(policy: Any, dt: float = 1e-3, duration: float = 4.0) -> Record:
+    """Follow a line of 4 s, 0.3 m beyond the outstretched arm and back, in steps of dt [s]."""
+    start = vertical_start()
+    outward = start.position * [1.0, 1.0, 0.0]
+    stretch = 0.8 - float(np.linalg.norm(outward))
+    x, y, z = ((stretch + 0.3) * outward / np.linalg.norm(outward)).tolist()
+    line = Line(offset=(x, y, z), period=4.0).anchored(start)
+    return simulate(
+        paper_robot(),
+        DoubleIndicator(orientation="none"),
+        line,
+        start.q,
+        dt=dt,
+        duration=duration,
+        policy=policy,
+        check=UNCHECKED,
+    )
 
 
 def tilt(record: Record) -> np.ndarray:
