@@ -7,7 +7,7 @@ import scipy.linalg
 
 from helpers_simulation import block_map
 from iiwa_dnn.references.rotations import rotation_log
-from iiwa_dnn.schemes.block_form import project_on_range
+from iiwa_dnn.schemes.tasks import project_on_range
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-14, 1e-8, 1e-3, 1.0, 2.5, np.pi - 1e-3, np.pi - 1e-7])

@@ -75,7 +75,7 @@ CALLS: dict[str, tuple[Callable[[], Any], str]] = {
     "no rotation": (lambda: d.Target(EYE[0], 2.0 * EYE), "rotation: is not a rotation matrix"),
     "path that tilts": (lambda: d.Tilting(d.Circle), "along: must be one of Still"),
     "no list of costs": (lambda: d.Scheme(3), "costs: must be a list of parts"),
-    "obstacles": (lambda: d.CollisionAvoidance(3), "obstacles: number 1 must be a Sphere"),
+    "obstacles": (lambda: d.CollisionAvoidance(3), "obstacles: must be an iiwa_dnn.Obst"),
     "solvers": (lambda: d.CrossCheck(3), "solvers: must be a tuple of names, not 3"),
     "disturbances": (lambda: d.MujocoPlant(3), "disturbances: must be an iiwa_dnn.Disturbances"),
     "frame": (lambda: paper_robot().frame_id(None), "no frame 'None'"),

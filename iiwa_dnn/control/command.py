@@ -11,7 +11,7 @@ from iiwa_dnn.compiling.library import inlined
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.qp import QP, Matrix, Solution, Status, Vector
 from iiwa_dnn.qp.layout import Sizes, offsets
-from iiwa_dnn.schemes.limit_names import ACCELERATION, LimitNames
+from iiwa_dnn.schemes.program import ACCELERATION, LimitNames
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 FIGURES = 5

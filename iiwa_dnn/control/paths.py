@@ -12,8 +12,9 @@ from iiwa_dnn.naming import unwatched
 from iiwa_dnn.qp import Matrix
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration
+from iiwa_dnn.robot.collision import unwatched_links
 from iiwa_dnn.schemes import OrientationTask, PoseTask
-from iiwa_dnn.schemes.collisions import unwatched_by
+from iiwa_dnn.schemes.collisions import avoidance_of
 from iiwa_dnn.schemes.limits import largest_gain
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.program import StepProgram
@@ -77,7 +78,7 @@ def doubts(
             f"in continuous mode the rows of {', '.join(lagging)} hold where the network has "
             "settled, not on its way: only bounds of the joints are kept at every step"
         )
-    if links := unwatched_by(scheme, robot):
+    if avoidance_of(scheme) is not None and (links := unwatched_links(robot)):
         yield unwatched(links)
 
 

@@ -51,9 +51,8 @@ from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
 from iiwa_dnn.references.rotations import set_mean_twist
-from iiwa_dnn.schemes.limit_names import LimitNames
 from iiwa_dnn.schemes.limits import check_ranges
-from iiwa_dnn.schemes.program import ProgramArrays, StepProgram, assemble, step_views
+from iiwa_dnn.schemes.program import LimitNames, ProgramArrays, StepProgram, assemble
 
 FEASIBLE_BUDGET = 60.0
 """Linear systems after which a program with acceleration or jerk limits counts as infeasible."""
@@ -245,7 +244,7 @@ def begin_step(
             views.past[k, i] = past[k, i]
     if samples:
         sample_targets(arrays, t - past[DELAY, 0], views.targets)
-    assemble(step_views(arrays, past, views.targets, t), arrays, qp)
+    assemble(views.program, arrays, past, views.targets, t)
     for i in range(dof):
         views.bounds[0, i] = qp.lb[i]
         views.bounds[1, i] = qp.ub[i]

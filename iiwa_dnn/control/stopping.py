@@ -45,8 +45,8 @@ from iiwa_dnn.schemes.distances import (
     ends_of,
     place_bodies,
     scene_views,
+    second_order,
 )
-from iiwa_dnn.schemes.motion_bounds import second_order
 from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.step import rate_along
 

@@ -116,8 +116,7 @@ def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
     first = _at(incidents["first"])
-    own = " or ".join(metrics["settings"].get("own_tasks") or ())
-    pose = "no bound, a singular pose" + (f" or {own} against other tasks" if own else "")
+    pose = "no bound, a singular pose or tasks against each other"
     parts = [
         f"{counted(sum(done.values()))} without a solution ({counts}), the first at {first}",
         f"most often in the way: {_named(incidents['blocking']) or pose}",

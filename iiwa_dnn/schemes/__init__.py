@@ -11,8 +11,6 @@ from iiwa_dnn.schemes.base import Scheme as Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance as CollisionAvoidance
 from iiwa_dnn.schemes.costs import (
     CyclicMotion as CyclicMotion,
-    JointAcceleration as JointAcceleration,
-    JointTorque as JointTorque,
     KineticEnergy as KineticEnergy,
     Manipulability as Manipulability,
 )
@@ -20,23 +18,21 @@ from iiwa_dnn.schemes.double_indicator import (
     DoubleIndicator as DoubleIndicator,
     PseudoInverse as PseudoInverse,
 )
-from iiwa_dnn.schemes.joint_tasks import (
-    JointCouplingTask as JointCouplingTask,
-    PostureTask as PostureTask,
-)
 from iiwa_dnn.schemes.limits import (
     AccelerationLimits as AccelerationLimits,
     JerkLimits as JerkLimits,
     JointLimits as JointLimits,
+    TipSpeedLimit as TipSpeedLimit,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import (
     AxisTask as AxisTask,
+    JointCouplingTask as JointCouplingTask,
     OrientationTask as OrientationTask,
     PoseTask as PoseTask,
     PositionTask as PositionTask,
+    PostureTask as PostureTask,
     RelativePoseTask as RelativePoseTask,
     RemoteCenterTask as RemoteCenterTask,
 )
-from iiwa_dnn.schemes.tip_speed import TipSpeedLimit as TipSpeedLimit

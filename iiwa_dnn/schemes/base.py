@@ -1,5 +1,6 @@
 """Schemes: costs, tasks and limits composed into the program of a control step."""
 
+import copy
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
@@ -57,19 +58,12 @@ class Scheme:
     def _compose(
         self, costs: Sequence[Cost], tasks: Sequence[Task], limits: Sequence[Limit]
     ) -> None:
-        for name, parts, kind in (
-            ("costs", costs, Cost),
-            ("tasks", tasks, Task),
-            ("limits", limits, Limit),
-        ):
-            if isinstance(parts, Part) or not isinstance(parts, Iterable):
+        kinds = (Cost, Task, Limit)
+        for name, parts, kind in zip(_LISTS, (costs, tasks, limits), kinds, strict=True):
+            if not isinstance(parts, Iterable):
                 raise InvalidInputError(name, f"must be a list of parts, not {parts!r}", parts)
-            for part in parts:
-                if not isinstance(part, kind):
-                    problem = f"must hold iiwa_dnn.{kind.__name__} objects, not {part!r}"
-                    raise InvalidInputError(name, problem, part)
-            # A scheme may be a frozen dataclass.
-            object.__setattr__(self, name, tuple(parts))
+            checked = tuple(checks.instance(name, part, kind) for part in parts)
+            object.__setattr__(self, name, checked)  # a scheme may be a frozen dataclass
 
     @property
     def parts(self) -> tuple[Part, ...]:
@@ -78,14 +72,11 @@ class Scheme:
 
     def anchored(self: SchemeT, conf: Configuration) -> SchemeT:
         """Return the scheme with `conf` as the posture to come back to, where a part lacks one."""
-        costs = [part.anchored(conf) for part in self.costs]
-        tasks = [part.anchored(conf) for part in self.tasks]
-        limits = [part.anchored(conf) for part in self.limits]
-        if all(a is b for a, b in zip((*costs, *tasks, *limits), self.parts, strict=True)):
+        lists = [[part.anchored(conf) for part in getattr(self, name)] for name in _LISTS]
+        if lists == [list(getattr(self, name)) for name in _LISTS]:
             return self
-        scheme = object.__new__(type(self))
-        scheme.__dict__.update(self.__dict__)
-        scheme._compose(costs, tasks, limits)
+        scheme = copy.copy(self)
+        scheme._compose(*lists)
         return scheme
 
     def program(self, robot: Robot) -> StepProgram:

@@ -26,14 +26,20 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.errors import FileError, IiwaDnnError, InvalidInputError
+from iiwa_dnn.errors import FileError, IiwaDnnError
 from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
-from iiwa_dnn.schemes.distances import SPEED, Contact, contact_of, place_bodies, scene_views
-from iiwa_dnn.schemes.motion_bounds import second_order
+from iiwa_dnn.schemes.distances import (
+    SPEED,
+    Contact,
+    contact_of,
+    place_bodies,
+    scene_views,
+    second_order,
+)
 from iiwa_dnn.schemes.parts import Checks, Limit
 from iiwa_dnn.schemes.scene import Scene, make_scene
 from iiwa_dnn.schemes.step import Step, StepViews, rate_along
@@ -111,13 +117,8 @@ def _write_gradient(
 
 def tuple_of_obstacles(argument: str, value: Any) -> tuple[Obstacle, ...]:
     """Return obstacles, or the one that is given alone, as a tuple; refuse any other value."""
-    one = isinstance(value, Obstacle) or not isinstance(value, Iterable)
-    obstacles: tuple[Any, ...] = (value,) if one else tuple(value)
-    for number, obstacle in enumerate(obstacles, 1):
-        if not isinstance(obstacle, Obstacle):
-            problem = f"number {number} must be a Sphere, Capsule, Box or HalfSpace"
-            raise InvalidInputError(argument, f"{problem}, not {obstacle!r}", obstacle)
-    return obstacles
+    obstacles = value if isinstance(value, Iterable) else (value,)
+    return tuple(checks.instance(argument, obstacle, Obstacle) for obstacle in obstacles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,11 +207,6 @@ def avoidance_of(scheme: object) -> CollisionAvoidance | None:
     """Return the first `CollisionAvoidance` among the limits of a scheme."""
     limits = getattr(scheme, "limits", ())
     return next((part for part in limits if isinstance(part, CollisionAvoidance)), None)
-
-
-def unwatched_by(scheme: object, robot: Robot) -> tuple[str, ...]:
-    """Name the links that a scheme which avoids collisions does not watch (`unwatched_links`)."""
-    return () if avoidance_of(scheme) is None else unwatched_links(robot)
 
 
 def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:

@@ -126,49 +126,6 @@ class CyclicMotion(WeightedCost):
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointAcceleration(WeightedCost):
-    r"""Joint acceleration, with :math:`\ddot q = (x - \dot q) / dt` from the last command to x.
-
-    .. math::  \tfrac12 w\,dt^2\,\|\ddot q + \lambda\,\dot q\|^2
-
-    Source: J. M. Hollerbach, K. C. Suh, "Redundancy resolution of manipulators through torque
-    optimization", IEEE J. Robotics and Automation 3 (1987).
-
-    Attributes:
-        weight: w, at least 0.
-        damping: :math:`\lambda` [1/s], at least 0: rate at which motion that no task sees dies out;
-            it needs a control period.
-    """
-
-    _checks: ClassVar[Checks] = {"damping": checks.not_negative}
-    damping: float = 0.0
-
-    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return P (n, n) and q (n,)."""
-        fading = self.damping * step.dt if self.damping else 0.0
-        return self.weight * np.eye(step.q.size), -self.weight * (1.0 - fading) * step.dq
-
-
-@dataclass(frozen=True, kw_only=True)
-class JointTorque(WeightedCost):
-    r"""Joint torque of the coming period, :math:`\tau = M \ddot q + h(q, \dot q)`.
-
-    .. math::  \tfrac12 w\,dt^2\,\|\tau\|^2
-
-    Alone it lets the joints race before long (the source of `JointAcceleration`, which beside it
-    keeps them in check). It needs a control period.
-
-    Attributes:
-        weight: w, at least 0.
-    """
-
-    def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
-        """Return P (n, n) and q (n,)."""
-        M = step.inertia
-        return self.weight * M @ M, self.weight * M @ (step.dt * step.bias - M @ step.dq)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Manipulability(WeightedCost):
     r"""Motion towards postures in which the tool moves with equal ease in all directions.
 
@@ -197,18 +154,15 @@ class Manipulability(WeightedCost):
 
 def manipulability_gradient(J: Matrix) -> tuple[float, Vector]:
     """Compute Yoshikawa's measure of a chain's Jacobian J (6, n), n >= 6, and its gradient (n,)."""
-    linear = J[:3].T
-    angular = J[3:].T
-    joints = np.arange(len(linear))
-    first = np.minimum.outer(joints, joints)
-    last = np.maximum.outer(joints, joints)
-    # d column j / d q_i: the joint nearer to the base turns what the other one moves.
-    turned = np.cross(angular[first], linear[last])
-    spun = np.cross(angular[:, np.newaxis], angular[np.newaxis])
-    spun[np.tril_indices(len(linear))] = 0.0
-    change = np.concatenate([turned, spun], axis=2)  # (i, j, row)
     gram = J @ J.T
     measure = float(np.sqrt(max(np.linalg.det(gram), 0.0)))
     if measure == 0.0:
-        return 0.0, np.zeros(len(linear))
-    return measure, measure * np.einsum("ijr,rj->i", change, np.linalg.solve(gram, J))
+        return 0.0, np.zeros(J.shape[1])
+    linear = J[:3].T
+    angular = J[3:].T
+    # About a fixed point, which the measure does not depend on, a joint i moves the axis of each
+    # joint j after it, and no other: d column j / d q_i, (i, j, row).
+    turned = np.cross(angular[:, np.newaxis], linear) + np.cross(linear[:, np.newaxis], angular)
+    change = np.concatenate([turned, np.cross(angular[:, np.newaxis], angular)], axis=2)
+    moved = np.einsum("ijr,rj->ij", change, np.linalg.solve(gram, J))
+    return measure, measure * np.triu(moved).sum(axis=1)

@@ -44,8 +44,10 @@ class SceneViews(NamedTuple):
         bodies: Of each body the index of its frame, half-extents [m], and placement in the frame
             as of `Kinematics.placements`, (b, 16).
         pairs: Numbers of each pair, (k, 4).
-        moves: `MotionBounds.moves` of each pair, (k, n).
-        radii: `MotionBounds.radii` of each pair, (k, n).
+        moves: For each pair and joint 1 if it moves the second body alone, -1 if it moves the
+            first alone, else 0, (k, n).
+        radii: For each pair and joint the largest distance of the second body from its axis [m], -1
+            for a prismatic joint, 0 for one that moves neither alone, (k, n).
     """
 
     least: float
@@ -153,6 +155,31 @@ def write_distances(constants: Vector, dof: int, placements: Matrix, distances: 
     place_bodies(scene, placements, placed)
     for k in range(distances.size):
         distances[k] = contact_of(scene, k, placed).distance
+
+
+@compiled
+def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
+    """Compute B [m] for pair k, whose joints travel by `travel` (n,) [rad].
+
+    Args:
+        moves: `SceneViews.moves`, (pairs, n).
+        radii: `SceneViews.radii`, (pairs, n).
+        k: Index of the pair.
+        travel: Way of each joint, at least 0, (n,) [rad].
+    """
+    n = travel.size
+    B = 0.0
+    turning = 0.0
+    for step in range(2 * n):  # from the first body up to the common base, then down
+        j = n - 1 - step if step < n else step - n
+        if moves[k, j] == 0.0 or (moves[k, j] < 0.0) != (step < n):
+            continue
+        if radii[k, j] < 0.0:
+            B += 2.0 * travel[j] * turning
+        else:
+            B += travel[j] * radii[k, j] * (2.0 * turning + travel[j])
+            turning += travel[j]
+    return B
 
 
 @compiled

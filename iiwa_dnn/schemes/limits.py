@@ -48,9 +48,13 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.references.rotations import combined, dot, scaled
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes.parts import Checks, Limit
-from iiwa_dnn.schemes.step import StepViews
+from iiwa_dnn.schemes.step import StepViews, point_rate, rate_along, vector_at
+
+NEGLIGIBLE = 1e-6
+"""Contribution of a joint to the speed that is rounding, as of one whose axis meets the tip [m]."""
 
 MARGIN = 0.2
 """Margin that is kept free at a position limit, in units of J' dt^3; 1 / sqrt(27) is needed."""
@@ -66,6 +70,8 @@ REST = 0.25
 
 TANGENT = 1.0
 """Speed at which the parabola of braking touches a ramp [rad/s]."""
+
+TINY = np.finfo(float).tiny
 
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
@@ -271,14 +277,11 @@ def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
         K [rad], (n,).
     """
     offset, deceleration = ramps
-    has_ramp = deceleration < np.inf
-    tangent = np.where(has_ramp, deceleration, 0.0) * TANGENT / (offset + TANGENT)
-    braking = np.where(has_ramp, np.minimum(acceleration, tangent), acceleration)
-    room = np.zeros(braking.size)
-    spare = deceleration[has_ramp] - braking[has_ramp]
+    braking = np.minimum(acceleration, deceleration * TANGENT / (offset + TANGENT))
+    with np.errstate(invalid="ignore"):  # of a joint without both
+        spare = deceleration - braking
     # Without an offset the ramp is a parabola itself.
-    room[has_ramp] = offset[has_ramp] ** 2 / np.maximum(2.0 * spare, np.finfo(float).tiny)
-    return braking, room
+    return braking, np.where(offset > 0.0, offset**2 / np.maximum(2.0 * spare, TINY), 0.0)
 
 
 def check_ranges(constants: Vector, rate: float) -> None:
@@ -502,3 +505,71 @@ def _ceiling(
         else:
             top = middle
     return bottom
+
+
+@compiled
+def tip_speed_bounds(
+    step: StepViews, constants: Vector, G: Matrix, h: Vector, lb: Vector, ub: Vector
+) -> None:
+    """Tighten the bounds to those of `TipSpeedLimit`, whose constants these are."""
+    frame = int(constants[0])
+    gain = min(constants[2], step.rate)
+    point = vector_at(step.placements[frame], 9)
+    velocity = (0.0, 0.0, 0.0)
+    for j in range(step.q.size):
+        share = step.last[j] * step.moves[frame, j]
+        velocity = combined(1.0, velocity, share, point_rate(step.jacobian, j, point))
+    speed = math.sqrt(dot(velocity, velocity))
+    if not (speed > 0.0 and step.rate < np.inf):
+        return
+    direction = scaled(1.0 / speed, velocity)
+    along = np.empty(step.q.size)
+    total = 0.0
+    for j in range(step.q.size):
+        along[j] = step.moves[frame, j] * rate_along(step.jacobian, j, point, direction)
+        total += abs(along[j])
+    growth = gain / step.rate * (constants[1] - speed) / total
+    for j in range(step.q.size):
+        if along[j] > NEGLIGIBLE:
+            ub[j] = max(min(ub[j], step.last[j] + growth), lb[j])
+        elif along[j] < -NEGLIGIBLE:
+            lb[j] = min(max(lb[j], step.last[j] - growth), ub[j])
+
+
+@dataclass(frozen=True)
+class TipSpeedLimit(Limit):
+    r"""Joint velocity bounds that keep the speed of a frame's origin; beside acceleration limits.
+
+    A frame that the joints move at :math:`v = J \dot q` with the last command has the speed
+    :math:`s = \|v\|`, to which joint j contributes :math:`g_j \dot q_j`, :math:`g = J^T v / s`.
+    Each joint may add an equal part of what is left to the limit V,
+
+    .. math::
+
+        \operatorname{sign}(g_j)\,(\dot q_j - \dot q_j^{last}) \;\le\;
+            \gamma\,dt\,\frac{V - s}{\sum_i |g_i|},
+
+    so that the speed along v grows by at most :math:`\gamma\,dt\,(V - s)` in a step, and shrinks by
+    as much above the limit. What is left shrinks exponentially, as the way to a position limit
+    does.
+
+    The bounds give way to those of acceleration and jerk, without which nothing ties a command to
+    the last one, and to position limits. The speed may then be above V for a while: by what the
+    pose adds, :math:`\dot J \dot q / \gamma`, and by what jerk takes to turn an acceleration. A
+    limit of 0.9 times the robot's own has room for both.
+
+    Attributes:
+        limit: Largest speed [m/s], above 0.
+        frame: The frame; None takes the tip.
+        gain: Rate at which the speed may come near to the limit [1/s], above 0.
+    """
+
+    kernel = staticmethod(tip_speed_bounds)
+    _checks: ClassVar[Checks] = {"limit": checks.positive, "gain": checks.positive}
+    limit: float
+    frame: str | None = None
+    gain: float = 100.0
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return the index of the frame, the limit [m/s] and the gain [1/s], (3,)."""
+        return np.array([robot.frame_id(self.frame_name(robot)), self.limit, self.gain])

@@ -63,6 +63,8 @@ _IDLE = {"h": np.inf, "lb": -np.inf, "ub": np.inf}
 """Values that an answer may hold though they are infinite, and that variables which it leaves out
 have, by its name; others are zero."""
 
+COMPILED = "no method in numpy; Scheme.build_qp shows the rows of a compiled part"
+
 _ROUNDING = 1e-9
 """Asymmetry and negative curvature of P that are forgiven, by its largest entry."""
 
@@ -150,11 +152,6 @@ class Part:
         names = [field.name for field in parameters if field.init]
         return {"name": type(self).__name__} | {name: getattr(self, name) for name in names}
 
-    def _missing(self, method: str) -> NotImplementedError:
-        """Return the error of a part that is asked by a method in numpy which it does not have."""
-        problem = f"{type(self).__name__} does not override {method}"
-        return NotImplementedError(f"{problem}; `Scheme.build_qp` shows a compiled part's rows")
-
 
 def answer_size(part: Part, n: int, rows: int) -> int:
     """Return the length of `answer_of`."""
@@ -173,7 +170,7 @@ def answer_of(part: Part, step: Step, n: int, rows: int) -> Vector:
 
     Raises:
         InvalidInputError: An answer is no pair of arrays, has a wrong shape, is not finite
-            where it has to be, is a P that is not convex, or bounds that cross.
+            where it has to be, or is a P that is not convex.
     """
     arrays: dict[str, Matrix] = {}
     for method, names in part._methods.items():
@@ -259,7 +256,7 @@ class Cost(Part):
         n counts the scheme's variables, the joints and then its slack variables, or the joints
         alone: slack variables may be left out of any part.
         """
-        raise self._missing("quadratic")
+        raise NotImplementedError(COMPILED)
 
     def _check(self, arrays: dict[str, Matrix]) -> None:
         P = arrays["P"]
@@ -290,7 +287,7 @@ class Task(Part):
 
     def equations(self, step: Step) -> tuple[Matrix, Vector]:
         """Return A (rows, n) and b (rows,)."""
-        raise self._missing("equations")
+        raise NotImplementedError(COMPILED)
 
 
 class Limit(Part):
@@ -313,18 +310,11 @@ class Limit(Part):
     def inequalities(self, step: Step) -> tuple[Matrix, Vector]:
         """Return G (rows, n) and h (rows,), by default none."""
         if self.rows or not self.copies:
-            raise self._missing("inequalities")
+            raise NotImplementedError(COMPILED)
         return np.zeros((0, step.q.size)), np.zeros(0)
 
     def bounds(self, step: Step) -> tuple[Vector, Vector]:
         """Return lb (n,) and ub (n,), infinite by default; those of all limits are intersected."""
         if not self.copies:
-            raise self._missing("bounds")
+            raise NotImplementedError(COMPILED)
         return np.full(step.q.size, -np.inf), np.full(step.q.size, np.inf)
-
-    def _check(self, arrays: dict[str, Matrix]) -> None:
-        lower = arrays["lb"]
-        upper = arrays["ub"]
-        if (lower > upper).any():
-            problem = f"lb is above ub: {lower} and {upper}"
-            raise InvalidInputError(type(self).__name__, problem, (lower, upper))

@@ -8,18 +8,20 @@ call, each part by its own kernel; what a part's kernel reads is brought up to d
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from iiwa_dnn.compiling.library import compiled, inlined
+from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, qp_views
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
-from iiwa_dnn.schemes.limits import MotionLimits, merged
+from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach, merged
 from iiwa_dnn.schemes.parts import (
     Limit,
     Part,
@@ -57,6 +59,14 @@ class ProgramArrays(NamedTuple):
     inertia: Matrix
     rate: float
 
+
+POSITION, VELOCITY, ACCELERATION, JERK = range(1, 5)
+
+_KINDS = (JERK, ACCELERATION, VELOCITY)
+"""Kinds that a bound may have beside that of a position; of several the last counts."""
+
+_CLOSE = 1e-9
+"""Difference of two bounds that is rounding, in units of the velocity limit."""
 
 COSTS, TASKS, SOFT_TASKS, LIMITS = range(4)
 """Kinds of blocks, in the order in which they stand."""
@@ -275,7 +285,7 @@ class StepProgram:
             InvalidInputError: The answer of a part written in numpy is wrong; the part is named.
         """
         self.refresh(past[0], past[1], targets, t, dt)
-        write_program(data, self.arrays(dt), past, targets, float(t))
+        assemble(data, self.arrays(dt), past, targets, float(t))
 
     def row_names(self) -> list[dict[str, object]]:
         """Return for each inequality row its part, its number in it from 1, and its name if any."""
@@ -288,25 +298,10 @@ class StepProgram:
         return found
 
     def settings(self) -> dict[str, object]:
-        """Return the inequality rows and the names of unusual parts, for a run's settings.
-
-        ``bounding`` names the limits with bounds, unless `JointLimits` alone; ``own_tasks`` the
-        tasks that are not the package's.
-        """
-        bounding = [
-            type(limit).__name__
-            for limit in self.scheme.limits
-            if type(limit).bounds is not Limit.bounds
-            or not (limit.copies or limit.row_count(self.robot))
-        ]
-        kinds = [type(task) for task in self.scheme.tasks]
-        own = [kind.__name__ for kind in kinds if not kind.__module__.startswith("iiwa_dnn.")]
-        found: dict[str, object] = {"rows": self.row_names()}
-        if bounding != ["JointLimits"]:
-            found["bounding"] = bounding
-        if own:
-            found["own_tasks"] = own
-        return found
+        """Return the inequality rows, and the names of the limits without any, as they bound."""
+        limits = self.scheme.limits
+        names = [type(limit).__name__ for limit in limits if not limit.row_count(self.robot)]
+        return {"rows": self.row_names(), "bounding": names}
 
 
 def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
@@ -317,7 +312,7 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
 
 @inlined
 def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
-    """Make the views of one instant, from past (3, dof) and targets (k, 18) of `write_program`."""
+    """Make the views of one instant, from past (3, dof) and targets (k, 18) of `assemble`."""
     return StepViews(
         t,
         arrays.rate,
@@ -333,10 +328,8 @@ def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -
 
 
 @compiled
-def write_program(
-    data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float
-) -> None:
-    """Write the rows of all parts with a kernel.
+def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> None:
+    """Write the rows of all parts into a program.
 
     Args:
         data: The program, `QP.data`, (size,), overwritten.
@@ -346,16 +339,12 @@ def write_program(
         t: Time [s].
     """
     table = arrays.table
-    qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
-    assemble(step_views(arrays, past, targets, t), arrays, qp)
-
-
-@compiled
-def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
-    """Write the rows of all parts with a kernel into a program; arguments as `write_program`."""
-    table = arrays.table
     constants = arrays.constants
-    _clear(qp)
+    step = step_views(arrays, past, targets, t)
+    qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
+    data[:] = 0.0
+    qp.lb[:] = -np.inf
+    qp.ub[:] = np.inf
     for k in range(1, 1 + table[0, 4]):
         kind = table[k, 0]
         address = table[k, 1]
@@ -379,23 +368,6 @@ def assemble(step: StepViews, arrays: ProgramArrays, qp: QPViews) -> None:
 
 
 @compiled
-def _clear(qp: QPViews) -> None:
-    """Set all rows and costs to zero, and all bounds to infinity."""
-    for i in range(qp.q.size):
-        qp.q[i] = 0.0
-        qp.lb[i] = -np.inf
-        qp.ub[i] = np.inf
-        for k in range(qp.q.size):
-            qp.P[i, k] = 0.0
-        for j in range(qp.h.size):
-            qp.h[j] = 0.0
-            qp.G[j, i] = 0.0
-        for j in range(qp.b.size):
-            qp.b[j] = 0.0
-            qp.A[j, i] = 0.0
-
-
-@compiled
 def _add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
     """Add weight A^T A to P and -weight A^T b to q, for rows A (rows, n) and b (rows,)."""
     for k in range(b.size):
@@ -404,3 +376,64 @@ def _add_soft(qp: QPViews, A: Matrix, b: Vector, weight: float) -> None:
             qp.q[i] -= scaled * b[k]
             for j in range(qp.q.size):
                 qp.P[i, j] += scaled * A[k, j]
+
+
+class LimitNames:
+    """Names of the bounds and inequality rows of a controller's programs.
+
+    Attributes:
+        dt: Control period [s].
+    """
+
+    def __init__(self, program: StepProgram, dt: float) -> None:
+        """Take the limits of a step program and its control period [s]."""
+        self._settings = program.settings()
+        self.dt = dt
+        motion = program.rate_limits or MotionLimits()
+        self._limits = motion.constants(program.robot).reshape(6, -1)
+
+    def in_words(
+        self, bounds: Matrix, sides: NDArray[Any], rows: NDArray[Any], past: Matrix
+    ) -> list[str]:
+        """Name bounds and rows of a program; arguments as `codes`, and (m,) not 0 for a row."""
+        return [*map(describe, in_the_way(self._settings, self.codes(bounds, sides, past), rows))]
+
+    def codes(self, bounds: Matrix, sides: NDArray[Any], past: Matrix) -> NDArray[np.int8]:
+        """Give the bounds on some sides of a program's joints their codes.
+
+        Args:
+            bounds: Lower and upper bounds of the joints [rad/s], (2, n).
+            sides: Above 0 for an upper bound, below for a lower one, 0 for neither, (n,).
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n).
+
+        Returns:
+            Places in `naming.KINDS`, from 1, negative for lower bounds; 0 where `sides` is, (n,).
+        """
+        dof = past.shape[1]
+        sign = np.sign(sides[:dof])
+        lower, upper = bounds[:, :dof]
+        value = np.where(sign > 0.0, upper, -lower)
+        kinds = np.full(dof, POSITION)
+        # Crossed bounds are others' than the robot's.
+        close = np.where(lower > upper, -1.0, _CLOSE * self._limits[2])
+        with np.errstate(invalid="ignore"):  # joints without limits
+            for kind, candidate in zip(_KINDS, self._candidates(sign * past), strict=True):
+                kinds[np.abs(candidate - value) <= close] = kind
+        return np.asarray(sign * kinds, np.int8)
+
+    def _candidates(self, past: Matrix) -> list[Vector]:
+        """Return the upper bounds that the limit of each of `_KINDS` alone makes, (n,) [rad/s].
+
+        Args:
+            past: Joint positions [rad], last command and the one before [rad/s], (3, n); of the
+                joints whose lower bounds are meant they have the other sign.
+        """
+        _, last, before = past
+        _, _, velocity, acceleration, jerk, braking = self._limits
+        dt = self.dt
+        unit = dt * dt * np.fmin(jerk, np.fmin(braking / dt, velocity / (dt * dt)) / SHARE)
+        room = [approach(x) for x in (velocity - last) / unit]
+        # The velocity after which the acceleration can still be taken back in time.
+        fastest = np.where(jerk < np.inf, last + unit * room, velocity)
+        rates = [2.0 * last - before + jerk * dt * dt, last + acceleration * dt]
+        return [*rates, fastest]

@@ -1,4 +1,17 @@
-"""Bodies and pairs of a scene, laid out for compiled code."""
+r"""Bodies and pairs of a scene, laid out for compiled code, and bounds on their motion.
+
+Along the joints :math:`1 \dots n` between a body at rest and the link, which travel by
+:math:`\delta_k`, and with a point at most :math:`r_k` from the axis of joint k, the point's way,
+and what that lacks to be linear in the joints' (twice), are at most
+
+.. math::
+
+    V = \sum_k \delta_k r_k, \qquad
+    B = \sum_k r_k \delta_k \Bigl(\delta_k + 2 \sum_{j<k} \delta_j\Bigr)
+
+(docs/theory.md). A prismatic joint counts with :math:`r_k = 1`, turns nothing and has no
+:math:`\delta_k^2`. With velocities in place of ways they bound velocity and acceleration.
+"""
 
 import itertools
 from collections.abc import Sequence
@@ -15,7 +28,6 @@ from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.robot.obstacles import Obstacle, PlacedBox, box_around
 from iiwa_dnn.schemes.distances import HEAD, PER_BODY, write_distances
-from iiwa_dnn.schemes.motion_bounds import MotionBounds, bounds_of_motion
 
 
 class Pair(NamedTuple):
@@ -129,16 +141,71 @@ def _layout(robot: Robot, bodies: list[_Body], pairs: list[tuple[int, int]]) -> 
         np.concatenate([[frame], box.half_extents, box.rotation.T.ravel(), box.center])
         for _, frame, box, *_ in bodies
     ]
-    motions = [_motion(robot, bodies[i], bodies[k]) for i, k in pairs]
+    motions = np.array([_motion(robot, bodies[i], bodies[k]) for i, k in pairs])
     rows = [(bodies[i].speed, k, i, bodies[i].radius + bodies[k].radius) for i, k in pairs]
-    moves = [motion.moves for motion in motions]
-    radii = [motion.radii for motion in motions]
-    return np.concatenate([np.ravel(part) for part in (placed, rows, moves, radii)])
+    parts = (placed, rows, motions[:, 0], motions[:, 1])
+    return np.concatenate([np.ravel(part) for part in parts])
 
 
-def _motion(robot: Robot, first: _Body, second: _Body) -> MotionBounds:
-    """Return the joints that move the second body's segment as seen from the first body."""
+def _motion(robot: Robot, first: _Body, second: _Body) -> Matrix:
+    """Return `bounds_of_motion` of the second body's segment as seen from the first body."""
     center, rotation, half = second.box
     placement = robot.model.frames[second.frame].placement
     ends = [placement.act(center + z * rotation[:, 2]) for z in (-half[2], half[2])]
     return bounds_of_motion(robot, first.joint, second.joint, np.array(ends))
+
+
+def bounds_of_motion(robot: Robot, first: int, second: int, points: Matrix) -> Matrix:
+    """Find the joints that move points (k, 3) [m] of the second joint's link beside the first's.
+
+    The joints are Pinocchio's, 0 the world; the points are in the frame of the second.
+
+    Returns:
+        Two rows, (2, n): 1 for each joint that moves the second link alone, -1 for each that moves
+        the first alone, else 0; and the largest distance of the points from the axis of each joint
+        that moves them [m], -1 for a prismatic joint, 0 for the others.
+    """
+    model = robot.model
+    above = [set(list(model.supports[joint])[1:]) for joint in (first, second)]
+    moves = np.zeros(robot.dof)
+    radii = np.zeros(robot.dof)
+    # From the second link to the base, and up to the first: nothing is farther than `reach` from
+    # the joint in turn, and `offsets` lead from the joint before it.
+    reach = float(np.linalg.norm(points, axis=1).max())
+    offsets = points
+    for joint in sorted(above[1] - above[0], reverse=True):
+        # The axis may be met anywhere along itself: only what is across it counts.
+        across = np.linalg.norm(np.cross(_axis(robot, joint), offsets), axis=1).max()
+        moves[model.idx_vs[joint]] = 1.0
+        radii[model.idx_vs[joint]] = reach - np.linalg.norm(offsets, axis=1).max() + across
+        offsets = model.jointPlacements[joint].translation[np.newaxis]
+        reach += _length(robot, joint)
+    for joint in sorted(above[0] - above[1]):
+        reach += _length(robot, joint)  # on the way up a joint's own offset lies ahead of it
+        moves[model.idx_vs[joint]] = -1.0
+        radii[model.idx_vs[joint]] = reach
+    for joint in above[0] ^ above[1]:
+        if _slides(robot, joint):
+            radii[model.idx_vs[joint]] = -1.0
+    return np.array([moves, radii])
+
+
+def _axis(robot: Robot, joint: int) -> Vector:
+    """Direction of a joint's axis in its own frame, (3,)."""
+    data = robot.model.joints[joint].createData()
+    robot.model.joints[joint].calc(data, np.zeros(1), np.zeros(1))
+    axis: Vector = np.ravel(data.S)
+    return axis[:3] if np.any(axis[:3]) else axis[3:]
+
+
+def _slides(robot: Robot, joint: int) -> bool:
+    return "JointModelP" in robot.model.joints[joint].shortname()
+
+
+def _length(robot: Robot, joint: int) -> float:
+    """Largest distance of a joint's frame from its parent's [m]."""
+    length = float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
+    if _slides(robot, joint):
+        at = robot.model.idx_vs[joint]
+        length += float(np.abs([robot.q_lower[at], robot.q_upper[at]]).max())
+    return length

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pinocchio import rnea
 
 from iiwa_dnn import checks
 from iiwa_dnn.checks import Vector3, read_only
@@ -129,13 +128,6 @@ class Step:
         """Joint-space inertia matrix [kg m^2], (n, n)."""
         return read_only(np.array(Configuration(self.robot, self.q).inertia))
 
-    @property
-    def bias(self) -> Vector:
-        """Joint torques of gravity, Coriolis and centrifugal forces [N m], (n,)."""
-        data = self._kinematics.data
-        model = self._kinematics.robot.model
-        return np.array(rnea(model, data, self.q, self.dq, np.zeros(self.q.size)))
-
 
 @compiled
 def vector_at(array: Vector, start: int) -> Vector3:
@@ -159,19 +151,19 @@ def seen_from(placement: Vector, v: Vector3) -> Vector3:
 
 
 @compiled
-def twist_part(jacobian: Matrix, j: int, first: int) -> Vector3:
-    """Return the linear (from 0) or angular (from 3) part of a twist out of (n, 6)."""
-    return jacobian[j, first], jacobian[j, first + 1], jacobian[j, first + 2]
+def point_rate(jacobian: Matrix, j: int, point: Vector3) -> Vector3:
+    """Compute the velocity (3,) of a point (3,) [m] that joint j moves [m/rad].
+
+    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
+    """
+    turned = cross(vector_at(jacobian[j], 3), point)
+    return added(vector_at(jacobian[j], 0), turned)
 
 
 @compiled
 def rate_along(jacobian: Matrix, j: int, point: Vector3, normal: Vector3) -> float:
-    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad].
-
-    A joint with angular velocity w and velocity v of the world's origin moves it with v + w x p.
-    """
-    turned = cross(twist_part(jacobian, j, 3), point)
-    return dot(normal, added(twist_part(jacobian, j, 0), turned))
+    """Compute the velocity along a normal (3,) of a point (3,) [m] that joint j moves [m/rad]."""
+    return dot(normal, point_rate(jacobian, j, point))
 
 
 @compiled
@@ -193,4 +185,4 @@ def write_spin(step: StepViews, constants: Vector, axis: Vector3, row: Vector) -
     base = int(constants[BASE])
     for j in range(step.q.size):
         sign = step.moves[frame, j] - step.moves[base, j]
-        row[j] = sign * dot(axis, twist_part(step.jacobian, j, 3))
+        row[j] = sign * dot(axis, vector_at(step.jacobian[j], 3))

@@ -1,4 +1,4 @@
-r"""Tasks: equality rows A dq = b that let frames of the arm follow their targets.
+r"""Tasks: equality rows A dq = b that let frames and joints of the arm follow their targets.
 
 A frame at position p with orientation R is to be at :math:`p_d, R_d` with the twist
 :math:`[v_d;\, \omega_d]`, and moves with :math:`[v;\, \omega] = J \dot q`. Each task brings an
@@ -11,19 +11,27 @@ but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, wh
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
+from iiwa_dnn.errors import InvalidInputError, NotFoundError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.references.rotations import added, combined, cross, dot, rotation_log, row_of
+from iiwa_dnn.references.rotations import (
+    added,
+    column_of,
+    combined,
+    cross,
+    dot,
+    rotation_log,
+    row_of,
+)
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.block_form import block_rows
 from iiwa_dnn.schemes.parts import Checks, Task
 from iiwa_dnn.schemes.step import (
     BASE,
@@ -48,6 +56,9 @@ ROTATION_LENGTH = 0.5
 
 About an arm's forearm. With a fifth of it, more arms rest at joints' limits with the tip in place
 and the hand turned away; with twice as much, no more arrive."""
+
+VERTICAL = 1e-9
+"""Sine of the angle between the tool's axis and the vertical that counts as none."""
 
 
 @compiled
@@ -79,6 +90,40 @@ def rotation_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix,
     for i in range(3):
         b[i] = target[15 + i] + gain * error[i]
         write_spin(step, constants, vector_at(base, 3 * i), A[i])
+
+
+@compiled
+def block_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of `OrientationTask` in the form ``block``, four."""
+    gain = min(constants[GAIN], step.rate)
+    placement = step.placements[int(constants[FRAME])]
+    for i in range(4):
+        unit = (1.0, 0.0, 0.0) if i < 2 else (0.0, 1.0, 0.0)
+        here = vector_at(placement, 3 * (i % 2))
+        there = column_of(target, i % 2)
+        b[i] = gain * dot(unit, combined(1.0, there, -1.0, here))
+        b[i] += dot(cross(there, unit), vector_at(target, 15))
+        write_spin(step, constants, cross(here, unit), A[i])
+    project_on_range(placement, b)
+
+
+@compiled
+def project_on_range(placement: Vector, b: Vector) -> None:
+    """Replace b (4,) by its projection on the range of W of a frame's placement (12,)."""
+    row = math.sqrt(placement[2] * placement[2] + placement[5] * placement[5])
+    column = math.sqrt(placement[6] * placement[6] + placement[7] * placement[7])
+    normal = np.empty(4)
+    for i in range(4):
+        if row > VERTICAL:
+            first = placement[7] if i < 2 else -placement[6]
+            second = -placement[5] if i % 2 == 0 else placement[2]
+            normal[i] = first * second / (row * column)
+        else:
+            first = -placement[i % 2 * 3 + 1] if i < 2 else placement[i % 2 * 3]
+            normal[i] = first / math.sqrt(2.0)
+    along = normal[0] * b[0] + normal[1] * b[1] + normal[2] * b[2] + normal[3] * b[3]
+    for i in range(4):
+        b[i] = b[i] - along * normal[i] if row > VERTICAL else along * normal[i]
 
 
 @compiled
@@ -129,7 +174,7 @@ class FrameTask(GainTask):
     @property
     def _base(self) -> str | None:
         """Name of the frame that this one is seen from; None stands for the world."""
-        return None
+        return getattr(self, "base", None)
 
     def _own(self) -> ArrayLike:
         """Return the constants beside `FRAME`, `GAIN` and `BASE`, (k,)."""
@@ -176,10 +221,23 @@ class OrientationTask(FrameTask):
 
     .. math::  J_\omega \dot q = \omega_d + \nu \log(R_d R^T)
 
-    ``block``: the paper's four rows (`iiwa_dnn.schemes.block_form`).
+    ``block``: the paper's four rows. With :math:`r = [R_{11}, R_{12}, R_{21}, R_{22}]`,
 
-    Source: F. Bullo and R. M. Murray, "Proportional derivative (PD) control on the Euclidean
-    group", European Control Conference 1995, for ``so3``.
+    .. math::  W(R)\,J_\omega \dot q = \dot r_d - \nu (r - r_d)
+
+    where W follows from :math:`\dot R = [\omega]_\times R`: the row of :math:`R_{ij}` is
+    :math:`(R e_j \times e_i)^T`. These rows have rank three at most, and where the tool's axis is
+    vertical they lose the two tilts (docs/errata.md). Off the path the four contradict each other,
+    at second order in the error: no velocity fulfils them all. The right-hand side is therefore
+    projected on the range of W, which gives the rows their least-squares meaning and changes
+    nothing at first order. Normal to that range is
+
+    .. math::  u = [R_{23}, -R_{13}] \otimes [-R_{32}, R_{31}]
+
+    or, where the tool's axis is vertical and u vanishes, all but the column of turning about it.
+
+    Sources: equations (3) to (5) of the paper for ``block``; for ``so3`` F. Bullo and R. M. Murray,
+    "Proportional derivative (PD) control on the Euclidean group", European Control Conference 1995.
 
     Attributes:
         gain: The paper's nu as a feedback gain [1/s].
@@ -248,10 +306,6 @@ class RelativePoseTask(FrameTask):
             return self
         pose = np.linalg.inv(conf.frame(self.base).pose) @ conf.frame(self.frame).pose
         return replace(self, pose=pose.tolist())
-
-    @property
-    def _base(self) -> str:
-        return self.base
 
     def _own(self) -> ArrayLike:
         pose = np.eye(4) if self.pose is None else np.array(self.pose)
@@ -382,3 +436,94 @@ def _normals(axis: Sequence[float]) -> Matrix:
     first = np.cross(axis, smallest)
     first /= np.linalg.norm(first)
     return np.stack([first, np.cross(axis, first)])
+
+
+@compiled
+def joint_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: Vector) -> None:
+    """Write the rows of a task of joints: its constants are gain, C (rows, dof) and c (rows,)."""
+    dof = step.q.size
+    gain = min(constants[0], step.rate)
+    for i in range(b.size):
+        missing = constants[1 + dof * b.size + i]
+        for j in range(dof):
+            A[i, j] = constants[1 + dof * i + j]
+            missing -= A[i, j] * step.q[j]
+        b[i] = gain * missing
+
+
+def numbers_of(argument: str, value: Any) -> dict[str, float]:
+    """Return finite numbers by joint name; refuse any other value."""
+    if not isinstance(value, Mapping):
+        problem = "must be numbers by joint name: dict(zip(robot.joint_names, q))"
+        raise InvalidInputError(argument, problem, value)
+    return {name: checks.finite(argument, number) for name, number in value.items()}
+
+
+class JointTask(GainTask):
+    """Base of tasks of joints, which name the rows of C and state c."""
+
+    kernel = staticmethod(joint_rows)
+    tracks = False
+
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        """Return for each row its coefficients by joint name, and its c [rad]."""
+        raise NotImplementedError
+
+    def row_count(self, robot: Robot) -> int:
+        """Return the number of relations."""
+        return len(self._relations())
+
+    def constants(self, robot: Robot) -> Vector:
+        """Return gain, C (rows, n) and c (rows,).
+
+        Raises:
+            NotFoundError: The robot has no joint of a name.
+        """
+        relations = self._relations()
+        C = np.zeros((len(relations), robot.dof))
+        for row, (coefficients, _) in zip(C, relations, strict=True):
+            for name, coefficient in coefficients.items():
+                if name not in robot.joint_names:
+                    raise NotFoundError("joint", name, robot.joint_names)
+                row[robot.joint_names.index(name)] = coefficient
+        return np.array([self.gain, *C.ravel(), *(wanted for _, wanted in relations)])
+
+
+@dataclass(frozen=True)
+class PostureTask(JointTask):
+    r"""Positions of some joints; one row a joint (`CyclicMotion` draws back all of them, softly).
+
+    .. math::  \dot q_j = \delta\,(q_{d,j} - q_j)
+
+    Attributes:
+        joints: Desired positions by joint name [rad].
+    """
+
+    _checks: ClassVar[Checks] = {"joints": numbers_of}
+    row_weight = 0.1
+    joints: Mapping[str, float]
+
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        return [({name: 1.0}, position) for name, position in self.joints.items()]
+
+
+@dataclass(frozen=True)
+class JointCouplingTask(JointTask):
+    r"""One linear relation between joints, as of a gear or of a joint that follows another.
+
+    .. math::  c^T \dot q = \delta\,(c_0 - c^T q)
+
+    It is a limit where the tasks yield: a linkage is not pulled apart.
+
+    Attributes:
+        coefficients: c by joint name.
+        offset: c_0 [rad].
+    """
+
+    _checks: ClassVar[Checks] = {"coefficients": numbers_of, "offset": checks.finite}
+    row_weight = 0.0
+    coefficients: Mapping[str, float]
+    offset: float = 0.0
+
+    def _relations(self) -> list[tuple[Mapping[str, float], float]]:
+        return [(self.coefficients, self.offset)]

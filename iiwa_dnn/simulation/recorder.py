@@ -16,7 +16,7 @@ from iiwa_dnn.results.record import COLUMNS, OPTIONAL
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.limit_names import LimitNames
+from iiwa_dnn.schemes.program import LimitNames
 from iiwa_dnn.simulation.loop import Outcome
 
 SEARCHED = 100

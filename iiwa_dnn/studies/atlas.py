@@ -101,7 +101,7 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
     "double indicator": lambda: DoubleIndicator(home=START),
     "double indicator, the paper's rows": lambda: DoubleIndicator(orientation="block", home=START),
     "double indicator, position only": lambda: DoubleIndicator(orientation="none", home=START),
-    "minimum velocity": literature.minimum_velocity_norm,
+    "minimum velocity": lambda: Scheme([KineticEnergy()], _TASKS, [JointLimits()]),
     "minimum kinetic energy": lambda: Scheme(
         [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
     ),

@@ -275,8 +275,8 @@ def test_the_policies_are_named_with_their_steps():
     action = np.array([0, 0, 0, 2, 3, 4, 2, 0, 0, 0])
     assert failures(make_record(action=action, fraction=np.ones(10))) == [
         "4 steps without a solution (2 slowed, 1 relaxed, 1 stopped), the first at step 3 "
-        "(t = 0.3 s); most often in the way: no bound, a singular pose; "
-        "give the path 1 times the time (--period, --stretch) or more",
+        "(t = 0.3 s); most often in the way: no bound, a singular pose or tasks against each "
+        "other; give the path 1 times the time (--period, --stretch) or more",
     ]
     blocking = np.zeros((10, 7), int)
     for joint in range(5):

@@ -167,7 +167,7 @@ def test_an_unknown_frame_and_a_wrong_list_are_named() -> None:
         )
     with pytest.raises(InvalidInputError, match=f"target.*{ELBOW}"):
         Scheme(tasks=[PositionTask(frame=ELBOW)]).build_qp(paper_start(), near_target(PAPER_Q0, 1))
-    with pytest.raises(InvalidInputError, match=r"^tasks: must hold iiwa_dnn.Task"):
+    with pytest.raises(InvalidInputError, match=r"^tasks: must be an iiwa_dnn.Task"):
         Scheme(tasks=[JointLimits()])
     with pytest.raises(InvalidInputError, match=r"^slack"):
         Scheme(slack=-1)
