@@ -51,12 +51,13 @@ def integer(argument: str, value: object, least: int) -> int:
     return int(value)
 
 
-def one_of(argument: str, value: object, choices: Sequence[str]) -> None:
-    """Refuse a value that is not one of the choices."""
+def one_of(argument: str, value: T, choices: Sequence[str]) -> T:
+    """Return a value that is one of the choices; refuse any other value."""
     if value not in choices:
         raise InvalidInputError(
             argument, f"must be one of {', '.join(choices)}, not {value!r}", value
         )
+    return value
 
 
 def instance(argument: str, value: T, kind: type[Any]) -> T:

@@ -14,15 +14,15 @@ from iiwa_dnn.schemes.costs import (
     KineticEnergy as KineticEnergy,
     Manipulability as Manipulability,
 )
-from iiwa_dnn.schemes.double_indicator import (
-    DoubleIndicator as DoubleIndicator,
-    PseudoInverse as PseudoInverse,
-)
 from iiwa_dnn.schemes.limits import (
     AccelerationLimits as AccelerationLimits,
     JerkLimits as JerkLimits,
     JointLimits as JointLimits,
     TipSpeedLimit as TipSpeedLimit,
+)
+from iiwa_dnn.schemes.literature import (
+    DoubleIndicator as DoubleIndicator,
+    PseudoInverse as PseudoInverse,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
 from iiwa_dnn.schemes.step import Step as Step

@@ -6,6 +6,7 @@ With a weight :math:`w` each adds :math:`\tfrac12 w\,(\cdot)` to the program's c
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -61,11 +62,8 @@ class KineticEnergy(WeightedCost):
     """
 
     kernel = staticmethod(add_kinetic_energy)
+    _checks: ClassVar[Checks] = {"kinetic": partial(checks.one_of, choices=KINETICS)}
     kinetic: Kinetic = "identity"
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.one_of("kinetic", self.kinetic, KINETICS)
 
     def constants(self, robot: Robot) -> Vector:
         """Return the weight and 1 for the inertia matrix, (2,)."""
@@ -99,14 +97,12 @@ class CyclicMotion(WeightedCost):
     """
 
     kernel = staticmethod(add_cyclic_motion)
-    _checks: ClassVar[Checks] = {"gain": checks.not_negative}
+    _checks: ClassVar[Checks] = {
+        "gain": checks.not_negative,
+        "home": lambda name, home: tuple(checks.finite_array(name, home, (-1,)).tolist()),
+    }
     gain: float = 10.2
     home: tuple[float, ...] | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.home is not None:
-            self._set(home=tuple(checks.finite_array("home", self.home, (-1,)).tolist()))
 
     def anchored(self, conf: Configuration) -> CyclicMotion:
         """Return the cost with `conf` as home, unless it has a home already."""

@@ -185,10 +185,11 @@ def second_order(moves: Matrix, radii: Matrix, k: int, travel: Vector) -> float:
 @compiled
 def beyond(x: Triple, half: Triple) -> Triple:
     """Return the way to a point from the nearest one of a box."""
-    i = x[0] - min(max(x[0], -half[0]), half[0])
-    j = x[1] - min(max(x[1], -half[1]), half[1])
-    k = x[2] - min(max(x[2], -half[2]), half[2])
-    return i, j, k
+    return (
+        x[0] - min(max(x[0], -half[0]), half[0]),
+        x[1] - min(max(x[1], -half[1]), half[1]),
+        x[2] - min(max(x[2], -half[2]), half[2]),
+    )
 
 
 @compiled

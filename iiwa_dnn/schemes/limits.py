@@ -71,8 +71,6 @@ REST = 0.25
 TANGENT = 1.0
 """Speed at which the parabola of braking touches a ramp [rad/s]."""
 
-TINY = np.finfo(float).tiny
-
 SHARE = 8.0
 """Steps of jerk at least that braking takes to its full deceleration."""
 
@@ -281,7 +279,7 @@ def braking_room(ramps: Matrix, acceleration: Vector) -> tuple[Vector, Vector]:
     with np.errstate(invalid="ignore"):  # of a joint without both
         spare = deceleration - braking
     # Without an offset the ramp is a parabola itself.
-    return braking, np.where(offset > 0.0, offset**2 / np.maximum(2.0 * spare, TINY), 0.0)
+    return braking, np.where(offset > 0.0, offset**2 / np.maximum(2.0 * spare, 1e-300), 0.0)
 
 
 def check_ranges(constants: Vector, rate: float) -> None:

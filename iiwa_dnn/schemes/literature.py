@@ -1,23 +1,156 @@
-r"""Schemes of the literature with the largest joint speed in the cost, by a slack variable.
+r"""Schemes of the literature: the paper's, and others that it is compared with.
 
-They hold the tip's position and orientation and keep the joint limits.
+The paper's blends minimum kinetic energy and cyclic motion by one weight.
+
+.. math::
+
+    \min_{\dot q} \; \tfrac12 \bigl(\xi\,\dot q^T G(q)\,\dot q
+        + (1-\xi)\,\|\dot q + m\,(q - q_0)\|^2\bigr)
+
+subject to the position rows, the orientation rows and the velocity bounds. Expanded, and without
+its constant, that is a quadratic program with
+
+.. math::
+
+    P = \xi\,G(q) + (1-\xi)\,I, \qquad q_{\text{QP}} = (1-\xi)\,m\,(q - q_0).
+
+With G = I, as in the paper, P = I whatever the weight, which then acts through the linear term
+alone. Source: equations (6) and (7) of the paper.
 """
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Literal
 
 import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.robot import Robot
+from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes.base import Scheme
-from iiwa_dnn.schemes.costs import KineticEnergy, WeightedCost
+from iiwa_dnn.schemes.costs import CyclicMotion, Kinetic, KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
 from iiwa_dnn.schemes.step import Step
-from iiwa_dnn.schemes.tasks import OrientationTask, PositionTask
+from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
 
 SMALLEST = 1e-3
 """Weight of the squared velocity norm beside the largest speed, which alone leaves joints free."""
+
+Tracking = Literal["paper", "next"]
+TRACKINGS: tuple[Tracking, ...] = ("paper", "next")
+
+
+@dataclass(frozen=True)
+class DoubleIndicator(Scheme):
+    """Minimum kinetic energy blended with cyclic motion generation, tracking position and rotation.
+
+    Attributes:
+        weight: The paper's xi in [0, 1]; 1 is minimum kinetic energy, 0 cyclic motion.
+        drift_gain: The paper's m [1/s], how strongly the posture is drawn back.
+        position_gain: The paper's delta [1/s].
+        orientation_gain: The paper's nu as a feedback gain [1/s].
+        limit_gain: The paper's kappa [1/s], for the bounds near a joint limit.
+        orientation: ``"so3"``, ``"block"`` (the paper's) or ``"none"``.
+        kinetic: G(q): ``"identity"`` (the paper's) or ``"inertia"``, the joint-space inertia
+            matrix, which makes the index twice the true kinetic energy [J].
+        home: Posture q_0 to come back to [rad], (n,). None stands for wherever the robot is;
+            `simulate` and `Controller` anchor it where they begin.
+        extra_limits: Limits beside the joints' positions and velocities, for example
+            `AccelerationLimits` and `JerkLimits`.
+        tracking: ``"paper"``, or ``"next"``: rows towards the next target, with 1 / dt in place
+            of both gains (`iiwa_dnn.schemes.tasks`); `Reference.ahead` goes with other gains.
+    """
+
+    weight: float = 0.2
+    drift_gain: float = 10.2
+    position_gain: float = 10.2
+    orientation_gain: float = 10.2
+    limit_gain: float = 20.0
+    orientation: Orientation = "so3"
+    kinetic: Kinetic = "identity"
+    home: tuple[float, ...] | None = None
+    extra_limits: tuple[Limit, ...] = ()
+    tracking: Tracking = "paper"
+
+    @property
+    def ahead(self) -> bool:  # type: ignore[override]
+        """Test whether the rows ask for the next target."""
+        return self.tracking == "next"
+
+    def __post_init__(self) -> None:
+        if checks.not_negative("weight", self.weight) > 1.0:
+            raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
+        checks.not_negative("drift_gain", self.drift_gain)
+        checks.positive("limit_gain", self.limit_gain)
+        checks.one_of("tracking", self.tracking, TRACKINGS)
+        cyclic = CyclicMotion(weight=1.0 - self.weight, gain=self.drift_gain, home=self.home)
+        object.__setattr__(self, "home", cyclic.home)
+        if isinstance(self.extra_limits, Limit):
+            problem = f"must be a tuple of limits, not {self.extra_limits!r}"
+            raise InvalidInputError("extra_limits", problem, self.extra_limits)
+        tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
+        if self.ahead:
+            tasks = [replace(task, gain=np.inf) for task in tasks]
+        energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
+        limits = [JointLimits(gain=self.limit_gain), *self.extra_limits]
+        self._compose([energy, cyclic], tasks, limits)
+
+    def anchored(self, conf: Configuration) -> DoubleIndicator:
+        """Return the scheme with `conf` as home, unless it has a home already."""
+        return self if self.home is not None else replace(self, home=tuple(conf.q.tolist()))
+
+    def settings(self) -> dict[str, Any]:
+        """Return name and parameters, as values that JSON can hold."""
+        parameters = {field.name: getattr(self, field.name) for field in fields(self)}
+        extra = [limit.settings() for limit in parameters.pop("extra_limits")]
+        parameters |= {"extra_limits": extra} if extra else {}
+        return {"name": "double-indicator", **parameters}
+
+
+@dataclass(frozen=True)
+class PseudoInverse(Scheme):
+    r"""Least joint velocity that fulfils the task, the baseline that the paper argues against.
+
+    .. math::  \dot q = A^{+} b = \arg\min \tfrac12 \|\dot q\|^2 \;\; \text{s.t.} \;\; A \dot q = b
+
+    It knows no limits and does not draw the posture back, so it drifts on closed paths.
+
+    Source: D. E. Whitney, "Resolved motion rate control of manipulators and human prostheses", IEEE
+    Transactions on Man-Machine Systems 10 (1969).
+
+    Attributes:
+        position_gain: Feedback gain [1/s].
+        orientation_gain: Feedback gain [1/s].
+        orientation: ``"so3"``, ``"block"`` or ``"none"``.
+    """
+
+    position_gain: float = 10.2
+    orientation_gain: float = 10.2
+    orientation: Orientation = "so3"
+
+    def __post_init__(self) -> None:
+        tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
+        self._compose([KineticEnergy()], tasks, [])
+
+    def settings(self) -> dict[str, Any]:
+        """Return name and parameters, as values that JSON can hold."""
+        return {"name": "pseudo-inverse", **asdict(self)}
+
+
+def tip_tasks(
+    position_gain: float, orientation_gain: float, orientation: Orientation
+) -> list[PositionTask | OrientationTask]:
+    """Return the tasks of the tip: its position, and its orientation unless that is ``"none"``."""
+    checks.one_of("orientation", orientation, ORIENTATIONS)
+    checks.not_negative("position_gain", position_gain)
+    checks.not_negative("orientation_gain", orientation_gain)
+    position = PositionTask(gain=position_gain)
+    if orientation == "none":
+        return [position]
+    return [position, OrientationTask(gain=orientation_gain, form=orientation)]
 
 
 class LargestSpeed(WeightedCost):
@@ -44,19 +177,11 @@ class SpeedsBelowSlack(Limit):
         return self._G, np.zeros(self.rows)
 
 
-def infinity_norm(robot: Robot, gain: float = 10.2) -> Scheme:
-    """Compose the scheme of least largest joint speed, by a slack variable.
-
-    Source: Y. Zhang, J. Wang, Y. Xu, "A dual neural network for bi-criteria kinematic control of
-    redundant manipulators", IEEE Trans. Robotics and Automation 18 (2002).
-    """
-    return bi_criteria(robot, 0.0, gain)
-
-
 def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme:
     """Compose the scheme between least velocity norm (weight 1) and least largest speed (0).
 
-    Source: as `infinity_norm`.
+    Source: Y. Zhang, J. Wang, Y. Xu, "A dual neural network for bi-criteria kinematic control of
+    redundant manipulators", IEEE Trans. Robotics and Automation 18 (2002).
 
     Raises:
         InvalidInputError: The weight is not in [0, 1].
@@ -64,5 +189,5 @@ def bi_criteria(robot: Robot, weight: float = 0.5, gain: float = 10.2) -> Scheme
     if checks.not_negative("weight", weight) > 1.0:
         raise InvalidInputError("weight", f"must be in [0, 1], not {weight}", weight)
     costs = [KineticEnergy(weight=max(weight, SMALLEST)), LargestSpeed(weight=1.0 - weight)]
-    tasks = [PositionTask(gain=gain), OrientationTask(gain=gain)]
+    tasks = tip_tasks(gain, gain, "so3")
     return Scheme(costs, tasks, [JointLimits(), SpeedsBelowSlack(robot)], slack=1)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.compiling.library import compiled, inlined
+from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix, QPViews, qp_views
@@ -23,7 +23,6 @@ from iiwa_dnn.robot.kinematics import Kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
 from iiwa_dnn.schemes.limits import SHARE, MotionLimits, approach, merged
 from iiwa_dnn.schemes.parts import (
-    Limit,
     Part,
     Task,
     answer_of,
@@ -290,11 +289,11 @@ class StepProgram:
     def row_names(self) -> list[dict[str, object]]:
         """Return for each inequality row its part, its number in it from 1, and its name if any."""
         found: list[dict[str, object]] = []
-        for part, kind, _, _, rows, *_ in self.blocks:
-            names = part.row_names(self.robot) if isinstance(part, Limit) else []
-            for i in range(rows if kind == LIMITS else 0):
-                about = {"about": names[i]} if names else {}
-                found.append({"part": type(part).__name__, "row": i + 1} | about)
+        for limit in self.scheme.limits:
+            named = [{"about": name} for name in limit.row_names(self.robot)]
+            for i in range(limit.row_count(self.robot)):
+                about = named[i] if named else {}
+                found.append({"part": type(limit).__name__, "row": i + 1} | about)
         return found
 
     def settings(self) -> dict[str, object]:
@@ -310,23 +309,6 @@ def _tracked(robot: Robot, tasks: Sequence[Task]) -> tuple[str, ...]:
     return tuple(sorted(names, key=lambda name: name != robot.tip)) or (robot.tip,)
 
 
-@inlined
-def step_views(arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> StepViews:
-    """Make the views of one instant, from past (3, dof) and targets (k, 18) of `assemble`."""
-    return StepViews(
-        t,
-        arrays.rate,
-        past[0],
-        past[1],
-        past[2],
-        arrays.jacobian,
-        arrays.placements,
-        arrays.moves,
-        arrays.inertia,
-        targets,
-    )
-
-
 @compiled
 def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix, t: float) -> None:
     """Write the rows of all parts into a program.
@@ -340,7 +322,18 @@ def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix,
     """
     table = arrays.table
     constants = arrays.constants
-    step = step_views(arrays, past, targets, t)
+    step = StepViews(
+        t,
+        arrays.rate,
+        past[0],
+        past[1],
+        past[2],
+        arrays.jacobian,
+        arrays.placements,
+        arrays.moves,
+        arrays.inertia,
+        targets,
+    )
     qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
     data[:] = 0.0
     qp.lb[:] = -np.inf

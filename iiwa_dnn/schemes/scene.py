@@ -108,10 +108,10 @@ def make_scene(
         box = box_around(capsule.a, capsule.b)
         bodies.append(_Body(capsule.link, frame, box, capsule.radius, joint))
     links = len(bodies)
-    for number, obstacle in enumerate(obstacles, 1):
-        name = f"{type(obstacle).__name__} {number}"
-        body = _Body(name, 0, obstacle.box, obstacle.thickness, speed=obstacle.speed)
-        bodies.append(body)
+    bodies += [
+        _Body(f"{type(each).__name__} {number}", 0, each.box, each.thickness, speed=each.speed)
+        for number, each in enumerate(obstacles, 1)
+    ]
     pairs = list(model.pairs(robot)) if self_collision else []
     carried = [k for k in range(links) if bodies[k].joint]
     pairs += itertools.product(range(links, len(bodies)), carried)
@@ -120,11 +120,10 @@ def make_scene(
         reason = f"; {unwatched(bare)}" if bare else ""
         problem = f"there is no pair that could meet{reason}"
         raise InvalidInputError("obstacles", problem, obstacles)
-    moving = []
-    for index, obstacle in enumerate(obstacles, links + 1):
-        if obstacle.moves:  # the last three numbers of a body are its centre
-            end = HEAD + robot.dof + PER_BODY * index
-            moving.append((obstacle, slice(end - 3, end)))
+    # The last three numbers of a body are its centre.
+    first = HEAD + robot.dof + PER_BODY * (links + 1) - 3
+    centers = [slice(at, at + 3) for at in first + PER_BODY * np.arange(len(obstacles))]
+    moving = [pair for pair in zip(obstacles, centers, strict=True) if pair[0].moves]
     frames = tuple(dict.fromkeys(body.name for body in bodies[:links]))
     names = [Pair(bodies[i].name, bodies[k].name) for i, k in pairs]
     head = np.array([least, gain, len(bodies), len(pairs)])

@@ -13,6 +13,7 @@ but the step's curvature, :math:`\tfrac12 dt^2\,\dot q^T \nabla^2 p\,\dot q`, wh
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -247,13 +248,13 @@ class OrientationTask(FrameTask):
     """
 
     kernel = staticmethod(rotation_rows)
+    _checks: ClassVar[Checks] = {"form": partial(checks.one_of, choices=("so3", "block"))}
     form: Form = "so3"
     rows = 3
     row_weight = ROTATION_LENGTH
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.one_of("form", self.form, ("so3", "block"))
         if self.form == "block":
             self._set(kernel=block_rows, rows=4)
 
@@ -288,17 +289,16 @@ class RelativePoseTask(FrameTask):
     """
 
     kernel = staticmethod(held_pose_rows)
+    _checks: ClassVar[Checks] = {
+        "pose": lambda name, pose: tuple(
+            map(tuple, checks.finite_array(name, pose, (4, 4)).tolist())
+        )
+    }
     frame: str = field()
     base: str = field()
     pose: Rows | None = None
     tracks = False
     rows = 6
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.pose is not None:
-            pose = checks.finite_array("pose", self.pose, (4, 4))
-            self._set(pose=tuple(map(tuple, pose.tolist())))
 
     def anchored(self, conf: Configuration) -> "RelativePoseTask":
         """Return the task with the relative pose of `conf`, unless it has one already."""
@@ -410,16 +410,14 @@ class RemoteCenterTask(FrameTask):
     """
 
     kernel = staticmethod(remote_center_rows)
-    _checks: ClassVar[Checks] = {"axis": checks.direction}
+    _checks: ClassVar[Checks] = {
+        "axis": checks.direction,
+        "point": lambda name, at: at if isinstance(at, str) else checks.vector3(name, at),
+    }
     point: Sequence[float] | str
     axis: Sequence[float] = (0.0, 0.0, 1.0)
     tracks = False
     rows = 2
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not isinstance(self.point, str):
-            self._set(point=checks.vector3("point", self.point))
 
     @property
     def _base(self) -> str | None:

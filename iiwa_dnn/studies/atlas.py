@@ -105,7 +105,7 @@ SCHEMES: dict[str, Callable[[], Scheme]] = {
     "minimum kinetic energy": lambda: Scheme(
         [KineticEnergy(kinetic="inertia")], _TASKS, [JointLimits()]
     ),
-    "infinity norm": lambda: literature.infinity_norm(paper_robot()),
+    "infinity norm": lambda: literature.bi_criteria(paper_robot(), 0.0),
     "bi-criteria": lambda: literature.bi_criteria(paper_robot()),
     "manipulability": lambda: Scheme([KineticEnergy(), Manipulability()], _TASKS, [JointLimits()]),
     "soft rotation": lambda: Scheme(

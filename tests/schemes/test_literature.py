@@ -12,7 +12,7 @@ from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.references import Target
 from iiwa_dnn.results.failures import failures
 from iiwa_dnn.schemes import DoubleIndicator
-from iiwa_dnn.schemes.literature import bi_criteria, infinity_norm
+from iiwa_dnn.schemes.literature import bi_criteria
 from iiwa_dnn.simulation import simulate
 
 ROBOT, START = paper_robot(), paper_start()
@@ -20,7 +20,7 @@ MOVING = Target(START.position, START.rotation, np.array([0.02, -0.03, 0.01]), n
 
 
 def test_the_largest_speed_is_that_of_a_linear_program() -> None:
-    qp = infinity_norm(ROBOT).build_qp(START, MOVING)
+    qp = bi_criteria(ROBOT, 0.0).build_qp(START, MOVING)
     speed = np.abs(DNNSolver().solve(qp).x[:7]).max()
     rows = np.hstack([np.vstack([np.eye(7), -np.eye(7)]), -np.ones((14, 1))])
     best = scipy.optimize.linprog(
@@ -35,7 +35,7 @@ def test_the_largest_speed_is_that_of_a_linear_program() -> None:
 
 def test_between_both_criteria_neither_is_the_best() -> None:
     velocity = DoubleIndicator(weight=1.0)
-    schemes = [infinity_norm(ROBOT), bi_criteria(ROBOT, 0.5), velocity]
+    schemes = [bi_criteria(ROBOT, 0.0), bi_criteria(ROBOT, 0.5), velocity]
     answers = [DNNSolver(tol=1e-11).solve(each.build_qp(START, MOVING)).x[:7] for each in schemes]
     largest = [np.abs(dq).max() for dq in answers]
     norms = [np.linalg.norm(dq) for dq in answers]
@@ -44,7 +44,7 @@ def test_between_both_criteria_neither_is_the_best() -> None:
 
 
 def test_the_heart_is_drawn_and_a_weight_outside_is_named() -> None:
-    record = simulate(ROBOT, infinity_norm(ROBOT), heart(), START.q, dt=1e-2, duration=2.0)
+    record = simulate(ROBOT, bi_criteria(ROBOT, 0.0), heart(), START.q, dt=1e-2, duration=2.0)
     assert failures(record) == []
     with pytest.raises(InvalidInputError, match=r"^weight"):
         bi_criteria(ROBOT, 1.5)
