@@ -3,8 +3,8 @@
 It is read from ``NAME.collisions.toml`` beside the URDF, or made from the URDF's own shapes: a
 cylinder gets two round ends, any other body a capsule around it along one of its principal axes.
 The files of the named arms have smaller ones, along axes of any direction. The pairs are those of
-an SRDF file: left out are neighbours, pairs that never meet, pairs that nearly always do, and pairs
-that are as near in the start posture.
+an SRDF file: left out are neighbours, pairs that never meet, and pairs that are as near in the
+start posture, among them those of capsules that overlap in every posture.
 """
 
 from __future__ import annotations
@@ -35,9 +35,6 @@ SAMPLES = 10_000
 CLEARANCE = 0.02
 """Distance beyond which a pair never meets [m]."""
 
-ALWAYS = 0.95
-"""Fraction of the postures in which a pair that always meets does so."""
-
 
 @dataclass(frozen=True)
 class LinkCapsule:
@@ -63,7 +60,7 @@ class CollisionModel:
     Attributes:
         capsules: The capsules.
         left_out: Pairs of links that are left out, each with the reason: ``"adjacent"``,
-            ``"never"``, ``"always"``, ``"start"`` or a text of one's own.
+            ``"never"``, ``"start"`` or a text of one's own.
     """
 
     capsules: tuple[LinkCapsule, ...]
@@ -186,8 +183,6 @@ def _reason(robot: Robot, links: tuple[str, str], distances: checks.Array) -> st
         return "adjacent"
     if distances[1:].min() > CLEARANCE:
         return "never"
-    if (distances[1:] <= 0.0).mean() >= ALWAYS:
-        return "always"
     return "start" if distances[0] <= CLEARANCE else ""
 
 

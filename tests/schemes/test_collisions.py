@@ -334,7 +334,7 @@ BALL_OF_P2 = "<collision><geometry><sphere radius='0.02'/></geometry></collision
         (-0.01, 1.0, None),
         (0.03, 1.0, "never"),
         (0.01, "start", "start"),
-        (-1.0, 1.0, "always"),
+        (-1.0, 1.0, "start"),
     ],
 )
 def test_a_pair_is_watched_if_it_may_come_near(
