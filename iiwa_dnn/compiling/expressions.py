@@ -5,85 +5,59 @@ from __future__ import annotations
 import ast
 import builtins
 import re
-from dataclasses import dataclass, field
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .kinds import BOOL, FLOAT, INT, INT_VECTOR, VECTOR, VOID, Array, Kind, Struct, array_of
-from .sources import ENTRY, Constants, Module, decoration, fail
+from .kinds import ARRAYS, BOOL, FLOAT, INT, NUMBERS, VOID, Kind
+from .sources import Module, decoration, fail
 
 if TYPE_CHECKING:
-    from .translator import Translator
+    from .translator import Made, Translator
 
-ATOM = 15
-UNARY = 14
-CONDITIONAL = 3
-"""Precedences: of a name, of a sign, and of the conditional operator."""
+SIGNS: dict[type, str] = {ast.Mult: "*", ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
+_COMPARISONS: dict[type, str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+_COMPARISONS |= {ast.Eq: "==", ast.NotEq: "!="}
+_ROUNDED: dict[type, str] = {ast.FloorDiv: "quotient", ast.Mod: "remainder"}
 
-_OPERATORS: dict[type, tuple[str, int]] = {
-    ast.Mult: ("*", 13),
-    ast.Div: ("/", 13),
-    ast.Add: ("+", 12),
-    ast.Sub: ("-", 12),
-    ast.LShift: ("<<", 11),
-    ast.RShift: (">>", 11),
-    ast.Lt: ("<", 10),
-    ast.LtE: ("<=", 10),
-    ast.Gt: (">", 10),
-    ast.GtE: (">=", 10),
-    ast.Eq: ("==", 9),
-    ast.NotEq: ("!=", 9),
-    ast.BitAnd: ("&", 8),
-}
+_EXACT = ("sqrt", "ceil", "floor", "copysign")
+_LIBRARY = {f"math.{name}" for name in (*_EXACT, "sin", "cos", "atan2", "tanh", "exp", "log")}
+_LIBRARY |= {f"np.{name}" for name in _EXACT}
+"""Functions that C has by the same name. Numpy's others may differ in the last digit."""
 
-_EXACT = {"abs": "fabs"} | {name: name for name in ["sqrt", "ceil", "floor", "copysign"]}
-"""Functions of C whose results are exact or rounded correctly, of whichever library they are."""
-
-_LIBRARY = _EXACT | {name: name for name in ["sin", "cos", "atan2", "tanh", "exp", "log"]}
-"""All functions of C: those of the module math. Numpy's own may differ in the last digit."""
-
-_C_WORDS = """
-auto bool break case char const continue default do double else enum extern float for goto
-if inline int long register restrict return short signed sizeof static struct switch
-typedef union unsigned void volatile while arena vector matrix cube sqrt sin cos tan tanh
-exp log pow floor ceil round fabs fmod fmin fmax atan2 copysign isfinite int_min int_max
-double_min double_max failed
-"""
+_C_WORDS = re.findall(
+    r"\w+",
+    """
+    auto case char const default do double else enum extern float for goto inline int long register
+    restrict short signed sizeof static struct switch typedef union unsigned void volatile arena
+    vector matrix cube sqrt sin cos tan tanh exp log pow floor ceil round fabs fmod fmin fmax atan2
+    copysign isfinite failed
+    """,
+)
 """Words of C and of kernels.h that no variable is called."""
 
+_PLACE = re.compile(r"(\(\*\w+\)|\w+)(\.\w+)*")
+"""Text of a variable or of a member of one."""
 
-@dataclass
-class Value:
-    """An expression of C.
+
+class Value(NamedTuple):
+    """An expression of C, in parentheses where it has an operator.
 
     Attributes:
         kind: Its type.
         text: The expression.
-        level: Precedence of its outermost operator.
         known: Its value, if it is a constant.
-        items: The values that a tuple was made of.
-        pointer: Whether it is a pointer to a named tuple.
+        items: The values that a plain tuple was made of.
     """
 
     kind: Kind
     text: str
-    level: int = ATOM
     known: Any = None
-    items: list[Value] = field(default_factory=list)
-    pointer: bool = False
+    items: tuple[Value, ...] = ()
 
-    def at(self, level: int) -> str:
-        """Return the expression, in parentheses where its precedence is below a level."""
-        return self.text if self.level >= level else f"({self.text})"
-
-    def member(self, name: str, kind: Kind) -> Value:
-        """Return a member of a tuple."""
-        return Value(kind, f"{self.at(ATOM)}{'->' if self.pointer else '.'}{name}")
-
+    @property
     def sizes(self) -> list[Value]:
-        """Return the sizes of an array."""
-        assert isinstance(self.kind, Array)
-        return [Value(INT, f"{self.at(ATOM)}.size{i}") for i in range(self.kind.axes)]
+        """Sizes of an array."""
+        return [Value(INT, f"{self.text}.size{i}") for i in range(self.kind.axes)]
 
 
 def number_text(value: float) -> str:
@@ -94,8 +68,12 @@ def number_text(value: float) -> str:
 
 def literal(kind: Kind, *members: str) -> str:
     """Return a value of a struct of C."""
-    inner = ", ".join(members)
-    return f"({kind.tag}){{{inner}}}"
+    return f"(({kind.tag}){{{', '.join(members)}}})"
+
+
+def product(sizes: list[Value]) -> str:
+    """Return the number of elements of an array."""
+    return " * ".join(own.text for own in sizes)
 
 
 class Expressions:
@@ -105,21 +83,21 @@ class Expressions:
         translator: The translation that the function belongs to.
         module: The function's module.
         kinds: Types of its parameters and variables.
-        parameters: Names of its parameters.
-        scope: Variables of the loops that are being translated.
+        parameters: Types of its parameters.
+        written: Arrays that are written into, as Python names them.
         lines: Lines of C.
-        written: Names of the arrays that are written into.
+        depth: Number of blocks that are open.
     """
 
-    def __init__(self, translator: Translator, module: Module) -> None:
+    def __init__(self, translator: Translator, module: Module, parameters: dict[str, Kind]) -> None:
         """Begin the translation of a function."""
         self.translator = translator
         self.module = module
-        self.kinds: dict[str, Kind] = {}
-        self.parameters: set[str] = set()
-        self.scope: list[str] = []
-        self.lines: list[str] = []
+        self.kinds = dict(parameters)
+        self.parameters = parameters
         self.written: set[str] = set()
+        self.lines: list[str] = []
+        self.depth = 1
         self._count = 0
 
     def require(self, holds: object, node: ast.AST, problem: str = "has no translation") -> None:
@@ -128,44 +106,70 @@ class Expressions:
             fail(self.module, node, problem)
 
     def add(self, text: str) -> None:
-        """Add a line, indented by the blocks that are open."""
-        depth = 1 + sum(line.endswith("{") for line in self.lines)
-        depth -= sum(line.lstrip().startswith("}") for line in self.lines) + text.startswith("}")
-        self.lines.append("    " * depth + text)
-
-    def fresh(self) -> str:
-        """Return a name that no variable has."""
-        self._count += 1
-        return f"own_{self._count}"
+        """Add a line."""
+        self.lines.append("    " * self.depth + text)
 
     def kept(self, value: Value) -> Value:
         """Keep a value in a variable of C."""
         if value.known is not None:
             return value
-        own = Value(value.kind, self.fresh())
-        self.add(f"const {own.kind.tag} {own.text} = {self.content(value)};")
+        self._count += 1
+        own = Value(value.kind, f"own_{self._count}")
+        self.add(f"const {own.kind.tag} {own.text} = {value.text};")
         return own
-
-    def value(self, node: ast.expr) -> Value:
-        """Translate an expression."""
-        translate = getattr(self, f"on_{type(node).__name__.lower()}", None)
-        self.require(translate, node)
-        value: Value = translate(node)  # type: ignore[misc]
-        return value
 
     def number(self, node: ast.expr) -> Value:
         """Translate an expression that is a number."""
         value = self.value(node)
-        self.require(value.kind in (INT, FLOAT, BOOL), node, "is no number")
+        self.require(value.kind in NUMBERS, node, "is no number")
         return value
 
-    def name(self, own: str) -> str:
-        """Return a variable's name in C."""
-        return f"{own}_" if re.search(rf"\b{own}\b", _C_WORDS) else own
+    def condition(self, node: ast.expr) -> str:
+        """Translate a condition, in parentheses."""
+        value = self.number(node)
+        self.require(value.kind is not FLOAT, node, "is no condition")
+        return f"({value.text})" if _PLACE.match(value.text) else value.text
 
-    def on_constant(self, node: ast.Constant) -> Value:
-        """Translate a literal."""
-        return self.constant(node.value, "", node)
+    def value(self, node: ast.expr) -> Value:
+        """Translate an expression."""
+        match node:
+            case ast.Constant(value=found):
+                return self.constant(found, "", node)
+            case ast.Name():
+                return self._variable(node)
+            case ast.Attribute():
+                return self._attribute(node)
+            case ast.Tuple(elts=items):
+                return self.tuple_of([self.value(item) for item in items])
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return Value(BOOL, f"(!{self.condition(operand)})")
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                value = self.number(operand)
+                known = None if value.known is None else -value.known
+                return Value(value.kind, f"(-{value.text})", known)
+            case ast.BinOp():
+                return self._arithmetic(node)
+            case ast.Compare():
+                return self._comparison(node)
+            case ast.BoolOp(op=op, values=values):
+                sign = " && " if isinstance(op, ast.And) else " || "
+                return Value(BOOL, f"({sign.join(map(self.condition, values))})")
+            case ast.IfExp(test=test, body=body, orelse=orelse):
+                first = self.value(body)
+                second = self.value(orelse)
+                kind = self.joined(first.kind, second.kind, node)
+                return Value(kind, f"({self.condition(test)} ? {first.text} : {second.text})")
+            case ast.Subscript():
+                return self._subscript(node)
+            case ast.Call():
+                return self._call(node)
+        fail(self.module, node, "has no translation")
+
+    def joined(self, first: Kind, second: Kind, node: ast.AST) -> Kind:
+        """Return the type that takes values of two types."""
+        same = first == second or {first, second} <= set(NUMBERS)
+        self.require(same, node, "changes a variable's type")
+        return first if first == second else max(first, second, key=NUMBERS.index)
 
     def constant(self, found: Any, name: str, node: ast.AST) -> Value:
         """Translate a value of Python."""
@@ -173,299 +177,188 @@ class Expressions:
             found = found.item()
         for python, kind in ((bool, BOOL), (int, INT), (float, FLOAT)):
             if isinstance(found, python):
-                text = number_text(python(found))
-                return Value(kind, text, UNARY if text[0] == "-" else ATOM, python(found))
-        if isinstance(found, ModuleType | Constants) or callable(found):
-            return Value(VOID, name, known=found)
+                return Value(kind, number_text(python(found)), python(found))
+        if isinstance(found, ModuleType) or callable(found):
+            return Value(VOID, name, found)
         self.require(hasattr(found, "__len__"), node)
         return self.translator.table(self.module, name, found)
 
-    def on_name(self, node: ast.Name) -> Value:
-        """Translate a variable or a constant of the module."""
-        if node.id in self.kinds:
-            kind = self.kinds[node.id]
-            pointer = node.id in self.parameters and getattr(kind, "is_named", False)
-            return Value(kind, self.name(node.id), pointer=pointer)
-        _, found = self.translator.package.find(self.module, node.id)
-        self.require(not isinstance(found, ast.FunctionDef), node, "is a function, not a number")
-        known = node.id in self.module.names or hasattr(builtins, node.id)
-        self.require(known, node, "is not known here")
-        return self.constant(self.translator.package.value(self.module, node.id), node.id, node)
+    def name(self, own: str) -> str:
+        """Return a variable's name in C."""
+        return f"{own}_" if own in _C_WORDS else own
 
-    def on_attribute(self, node: ast.Attribute) -> Value:
+    def _variable(self, node: ast.Name) -> Value:
+        """Translate a variable, or a constant of the module."""
+        if node.id in self.kinds:
+            own = self.name(node.id)
+            behind = node.id in self.parameters and self.kinds[node.id].is_named
+            return Value(self.kinds[node.id], f"(*{own})" if behind else own)
+        package = self.translator.package
+        self.require(
+            node.id in self.module.names or node.id in dir(builtins), node, "is not known here"
+        )
+        _, found = package.find(self.module, node.id)
+        self.require(not isinstance(found, ast.FunctionDef), node, "is a function, not a number")
+        return self.constant(package.value(self.module, node.id), node.id, node)
+
+    def _attribute(self, node: ast.Attribute) -> Value:
         """Translate a member of a tuple, an array's size, or a constant of another module."""
         owner = self.value(node.value)
         if owner.kind is VOID:
             return self.constant(getattr(owner.known, node.attr), node.attr, node)
-        if isinstance(owner.kind, Array):
-            self.require(node.attr in ("size", "shape"), node)
-            sizes = owner.sizes()
-            if node.attr == "shape":
-                return self.tuple_of(sizes)
-            return Value(INT, " * ".join(own.text for own in sizes), 13 if len(sizes) > 1 else ATOM)
-        members = dict(getattr(owner.kind, "members", ()))
+        if owner.kind.axes and node.attr == "shape":
+            return self.tuple_of(owner.sizes)
+        if owner.kind.axes and node.attr == "size":
+            return Value(INT, f"({product(owner.sizes)})")
+        members = dict(owner.kind.members)
         self.require(node.attr in members, node, "is no member")
-        return owner.member(node.attr, members[node.attr])
+        return Value(members[node.attr], f"{owner.text}.{node.attr}")
 
-    def on_tuple(self, node: ast.Tuple) -> Value:
-        """Translate a tuple."""
-        return self.tuple_of([self.value(item) for item in node.elts])
-
-    def tuple_of(self, items: list[Value], kind: Struct | None = None) -> Value:
+    def tuple_of(self, items: list[Value], kind: Kind | None = None) -> Value:
         """Join values to a plain tuple, of a type that is stated or of their own."""
         own = kind or self.translator.kinds.tuple([item.kind for item in items])
-        inner = ", ".join(self.content(item) for item in items)
-        text = literal(own, f"{{{inner}}}" if own.same else inner)
-        return Value(own, text, UNARY, items=items)
+        inner = [item.text for item in items]
+        if own.members[0][0] == "at[0]":
+            inner = [f"{{{', '.join(inner)}}}"]
+        return Value(own, literal(own, *inner), items=tuple(items))
 
-    def content(self, value: Value) -> str:
-        """Return a value, also where it is behind a pointer."""
-        return f"*{value.text}" if value.pointer else value.text
-
-    def on_unaryop(self, node: ast.UnaryOp) -> Value:
-        """Translate a sign or a negation."""
-        value = self.number(node.operand)
-        if isinstance(node.op, ast.Not):
-            return Value(BOOL, f"!{value.at(UNARY)}", UNARY)
-        self.require(isinstance(node.op, ast.USub), node)
-        if value.known is not None:
-            return self.constant(-value.known, "", node)
-        return Value(value.kind, f"-{value.at(ATOM)}", UNARY)
-
-    def on_binop(self, node: ast.BinOp) -> Value:
-        """Translate an arithmetic operation."""
+    def _arithmetic(self, node: ast.BinOp) -> Value:
         left = self.number(node.left)
         right = self.number(node.right)
-        kind = type(node.op)
-        both = FLOAT if FLOAT in (left.kind, right.kind) else INT
-        if kind in (ast.FloorDiv, ast.Mod):
-            word = "quotient" if kind is ast.FloorDiv else "remainder"
-            self.require(both is INT or kind is ast.Mod, node)
-            return Value(both, f"{both.tag.removesuffix('64_t')}_{word}({left.text}, {right.text})")
-        self.require(kind in _OPERATORS, node)
-        sign, level = _OPERATORS[kind]
-        if kind is ast.Div:
-            both = FLOAT
-            if left.kind is not FLOAT:
-                left = Value(FLOAT, f"(double){left.at(UNARY)}", UNARY)
-        return Value(both, f"{left.at(level)} {sign} {right.at(level + 1)}", level)
+        kind = FLOAT if FLOAT in (left.kind, right.kind) else INT
+        own = type(node.op)
+        if own in _ROUNDED and (kind is INT or own is ast.Mod):
+            name = f"{kind.tag.removesuffix('64_t')}_{_ROUNDED[own]}"
+            return Value(kind, f"{name}({left.text}, {right.text})")
+        self.require(own in SIGNS, node)
+        if own is ast.Div:
+            return Value(FLOAT, f"((double){left.text} / {right.text})")
+        return Value(kind, f"({left.text} {SIGNS[own]} {right.text})")
 
-    def on_compare(self, node: ast.Compare) -> Value:
+    def _comparison(self, node: ast.Compare) -> Value:
         """Translate comparisons; the middle of a chain is read twice."""
-        values = [self.number(item) for item in (node.left, *node.comparators)]
-        self.require(not any("(" in own.text for own in values[1:-1]), node, "calls in a chain")
+        for each in node.comparators[:-1]:
+            self.require(isinstance(each, ast.Name | ast.Constant), node, "computes in a chain")
+        values = [self.number(item).text for item in (node.left, *node.comparators)]
         parts = []
         for op, left, right in zip(node.ops, values, values[1:], strict=False):
-            self.require(type(op) in _OPERATORS, node)
-            sign, level = _OPERATORS[type(op)]
-            parts.append(Value(BOOL, f"{left.at(11)} {sign} {right.at(11)}", level))
-        return parts[0] if len(parts) == 1 else self._joined("&&", 5, parts)
+            self.require(type(op) in _COMPARISONS, node)
+            parts.append(f"({left} {_COMPARISONS[type(op)]} {right})")
+        return Value(BOOL, parts[0] if len(parts) == 1 else f"({' && '.join(parts)})")
 
-    def on_boolop(self, node: ast.BoolOp) -> Value:
-        """Translate ``and`` and ``or`` of conditions."""
-        sign, level = ("&&", 5) if isinstance(node.op, ast.And) else ("||", 4)
-        return self._joined(sign, level, [self.condition(item) for item in node.values])
-
-    def condition(self, node: ast.expr) -> Value:
-        """Translate a condition."""
-        value = self.number(node)
-        self.require(value.kind is not FLOAT, node, "is no condition")
-        return value
-
-    def _joined(self, sign: str, level: int, parts: list[Value]) -> Value:
-        # In parentheses also where C needs none: compilers ask for those.
-        return Value(BOOL, f" {sign} ".join(part.at(6) for part in parts), level)
-
-    def on_ifexp(self, node: ast.IfExp) -> Value:
-        """Translate a conditional expression."""
-        test = self.condition(node.test)
-        first = self.value(node.body)
-        second = self.value(node.orelse)
-        kind = self.joined(first.kind, second.kind, node)
-        text = f"{test.at(4)} ? {self.cast(first, kind)} : {self.cast(second, kind)}"
-        return Value(kind, text, CONDITIONAL)
-
-    def joined(self, first: Kind | None, second: Kind, node: ast.AST) -> Kind:
-        """Return the type of a variable that takes values of both types."""
-        if first is None or first == second:
-            return second
-        self.require({first, second} <= {INT, FLOAT, BOOL}, node, "changes a variable's type")
-        return FLOAT if FLOAT in (first, second) else INT
-
-    def cast(self, value: Value, kind: Kind) -> str:
-        """Return a value as one of a type."""
-        text = self.content(value)
-        if value.kind in (INT, BOOL) and kind is FLOAT:
-            return f"(double){value.at(UNARY)}"
-        return text if value.level > CONDITIONAL or value.pointer else f"({text})"
-
-    def on_subscript(self, node: ast.Subscript) -> Value:
+    def _subscript(self, node: ast.Subscript) -> Value:
         """Translate an element or a part of an array, or a member of a tuple."""
         owner = self.value(node.value)
         parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-        if isinstance(owner.kind, Struct):
-            return self._member(owner, parts[0])
-        self.require(isinstance(owner.kind, Array), node)
-        return self._part(owner, parts, node)
-
-    def _member(self, owner: Value, index: ast.expr) -> Value:
-        at = self.number(index)
-        assert isinstance(owner.kind, Struct)
+        if owner.kind.axes:
+            return self._part(owner, parts, node)
+        self.require(owner.kind.members, node)
+        at = self.number(parts[0])
+        name, kind = owner.kind.members[at.known or 0]
         if at.known is None:
-            self.require(owner.kind.same, index, "is no known index of a tuple of several types")
-            return owner.member(f"at[{at.text}]", owner.kind.same or VOID)
-        return owner.items[at.known] if owner.items else owner.member(*owner.kind.members[at.known])
+            self.require(name == "at[0]", node, "is no known index of a tuple of several types")
+            name = f"at[{at.text}]"
+        return Value(kind, f"{owner.text}.{name}")
 
     def _part(self, owner: Value, parts: list[ast.expr], node: ast.AST) -> Value:
         """Translate an element of an array, or a part without gaps."""
-        array = owner.kind
-        assert isinstance(array, Array)
-        sizes = owner.sizes()
-        offset: list[str] = []
-        shape: list[str] = []
+        sizes = owner.sizes
+        offset = []
+        shape = [own.text for own in sizes[len(parts) :]]
         for axis, part in enumerate(parts):
-            start, size = self._range(part, sizes[axis])
-            self.require(size is None or axis + 1 == len(parts), node, "has gaps between its rows")
-            shape += [] if size is None else [size]
-            if start.known != 0:
-                strides = [own.text for own in sizes[axis + 1 :]]
-                offset.append(" * ".join([start.at(13), *strides]))
-        shape += [own.text for own in sizes[len(parts) :]]
-        at = " + ".join(offset)
+            start = part
+            if isinstance(part, ast.Slice):
+                last = axis + 1 == len(parts)
+                self.require(last and part.step is None, node, "has gaps between its rows")
+                start = part.lower or ast.Constant(0)
+                stop = self.number(part.upper) if part.upper else sizes[axis]
+                shape.insert(0, f"{stop.text} - {self.number(start).text}")
+            at = self.number(start)
+            self.require((at.known or 0) >= 0, node, "counts from the end")
+            if at.known != 0:
+                offset.append(product([at, *sizes[axis + 1 :]]))
         if not shape:
-            return Value(array.element, f"{owner.at(ATOM)}.data[{at or 0}]")
-        kind = array_of(array.element, len(shape))
-        assert kind is not None
-        data = " + ".join([f"{owner.at(ATOM)}.data", *offset])
-        return Value(kind, literal(kind, data, *shape), UNARY)
+            assert owner.kind.element
+            return Value(owner.kind.element, f"{owner.text}.data[{' + '.join(offset) or 0}]")
+        kind = ARRAYS[owner.kind.element, len(shape)]
+        return Value(kind, literal(kind, " + ".join([f"{owner.text}.data", *offset]), *shape))
 
-    def _range(self, part: ast.expr, size: Value) -> tuple[Value, str | None]:
-        """Return the first index along an axis, and the number of them; None for one index."""
-        if not isinstance(part, ast.Slice):
-            at = self.number(part)
-            return (
-                Value(INT, f"{size.text} - {-at.known}", 12) if (at.known or 0) < 0 else at
-            ), None
-        self.require(part.step is None, part, "is a slice with a step")
-        start = self.number(part.lower) if part.lower else Value(INT, "0", known=0)
-        stop = self.number(part.upper) if part.upper else size
-        return start, stop.text if start.known == 0 else f"{stop.at(12)} - {start.at(13)}"
-
-    def on_call(self, node: ast.Call) -> Value:
+    def _call(self, node: ast.Call) -> Value:
         """Translate a call."""
-        self.require(not node.keywords or ast.unparse(node.func) == "np.empty", node)
-        if isinstance(node.func, ast.Attribute) and node.func.attr in ("reshape", "copy"):
-            return self._method(node, node.func.attr, self.value(node.func.value))
         name = ast.unparse(node.func)
+        self.require(not node.keywords, node)
+        match node.func:
+            case ast.Attribute(value=owner, attr="reshape"):
+                return self._array(self.value(owner), "", node.args, node)
+            case ast.Attribute(value=owner, attr="copy"):
+                own = self.kept(self.value(owner))
+                data = f"arena_copy(arena, {own.text}.data, {product(own.sizes)})"
+                return Value(own.kind, literal(own.kind, data, *(s.text for s in own.sizes)))
+            case ast.Name(id=called):
+                home, found = self.translator.package.find(self.module, called)
+                if isinstance(found, ast.FunctionDef) and decoration(found):
+                    return self._kernel(node, self.translator.function(home, found))
+                if isinstance(found, ast.ClassDef):
+                    kind = self.translator.kinds.of(home, ast.Name(found.name))
+                    values = [self.value(each).text for each in node.args]
+                    self.require(len(values) == len(kind.members), node, "leaves members out")
+                    return Value(kind, literal(kind, *values))
         if name in ("np.empty", "np.zeros"):
-            return self._made(node, name)
-        if isinstance(node.func, ast.Name):
-            home, found = self.translator.package.find(self.module, node.func.id)
-            if isinstance(found, ast.FunctionDef) and decoration(found):
-                return self._called(node, home, found)
-            if isinstance(found, ast.ClassDef):
-                return self._named(node, home, found)
-        return self._standard(node, name.rpartition(".")[2])
+            take = "arena_take" if name == "np.empty" else "arena_zeros"
+            shape = node.args[0]
+            parts = shape.elts if isinstance(shape, ast.Tuple) else [shape]
+            return self._array(Value(ARRAYS[FLOAT, 1], ""), take, parts, node)
+        return self._standard(node, name)
 
-    def _method(self, node: ast.Call, name: str, owner: Value) -> Value:
-        """Translate ``array.reshape`` and ``array.copy``."""
-        self.require(isinstance(owner.kind, Array), node)
-        assert isinstance(owner.kind, Array)
-        shape = owner.sizes()
-        if name == "copy":
-            size = " * ".join(own.text for own in shape)
-            data = f"arena_copy(arena, {owner.at(ATOM)}.data, {size})"
-        else:
-            shape = [self.number(each) for each in node.args]
-            data = f"{owner.at(ATOM)}.data"
-        kind = array_of(owner.kind.element, len(shape))
-        self.require(kind, node)
-        assert kind is not None
-        return Value(kind, literal(kind, data, *(own.text for own in shape)), UNARY)
+    def _array(self, owner: Value, take: str, shape: list[ast.expr], node: ast.AST) -> Value:
+        """Translate an array of a shape, that is taken from the arena, or has another's data."""
+        sizes = [self.kept(self.number(each)) for each in shape]
+        kind = ARRAYS.get((owner.kind.element, len(sizes)))
+        self.require(kind and all(own.kind is INT for own in sizes), node)
+        assert kind
+        data = f"{take}(arena, {product(sizes)})" if take else f"{owner.text}.data"
+        return Value(kind, literal(kind, data, *(own.text for own in sizes)))
 
-    def _made(self, node: ast.Call, name: str) -> Value:
-        """Translate the making of an array, which is given back where the function returns."""
-        given = self.value(node.args[0])
-        shape = given.items or [given]
-        kind = array_of(INT if len(node.args) + len(node.keywords) > 1 else FLOAT, len(shape))
-        self.require(kind and all(own.kind is INT for own in shape), node)
-        assert kind is not None
-        shape = [own if own.text.replace("_", "").isalnum() else self.kept(own) for own in shape]
-        size = " * ".join(own.text for own in shape)
-        take = "arena_take" if name == "np.empty" else "arena_zeros"
-        text = literal(kind, f"{take}(arena, {size})", *(own.text for own in shape))
-        return Value(kind, text, UNARY)
-
-    def _named(self, node: ast.Call, home: Module, found: ast.ClassDef) -> Value:
-        """Translate the making of a named tuple."""
-        kind = self.translator.kinds.of(home, ast.Name(found.name))
-        assert isinstance(kind, Struct)
-        values = [self.value(each) for each in node.args]
-        self.require(len(values) == len(kind.members), node, "leaves members out")
-        pairs = zip(values, kind.members, strict=True)
-        return Value(
-            kind, literal(kind, *(self.cast(own, member[1]) for own, member in pairs)), UNARY
-        )
-
-    def _called(self, node: ast.Call, home: Module, found: ast.FunctionDef) -> Value:
+    def _kernel(self, node: ast.Call, made: Made) -> Value:
         """Translate the call of another kernel."""
-        made = self.translator.function(home, found)
-        self.require(made.text or decoration(found) == ENTRY, node, "calls itself")
+        self.require(made.done, node, "calls itself")
         self.require(len(node.args) == len(made.parameters), node, "leaves arguments out")
-        pairs = zip(node.args, made.parameters.values(), strict=True)
-        texts = [self._argument(each, kind) for each, kind in pairs]
-        given = [node.args[i] for i in made.written]
-        self.written |= {each.id for each in given if isinstance(each, ast.Name)}
-        return Value(made.result, f"{made.name}({', '.join(['arena', *texts])})")
-
-    def _argument(self, node: ast.expr, kind: Kind) -> str:
-        """Return an argument for a parameter of a type: a named tuple's address."""
-        value = self.value(node)
-        same = value.kind == kind or {value.kind, kind} <= {INT, FLOAT, BOOL}
-        self.require(same, node, f"is a {value.kind.tag}, where a {kind.tag} is expected")
-        if not getattr(kind, "is_named", False):
-            return value.text
-        if value.pointer:
-            return value.text
-        return (
-            f"&{value.text}"
-            if value.level == ATOM and "(" not in value.text
-            else (f"({kind.tag}[1]){{{value.text}}}")
-        )
+        texts = ["arena"]
+        for each, (name, kind) in zip(node.args, made.parameters.items(), strict=True):
+            value = self.value(each)
+            problem = f"is a {value.kind.tag}, where a {kind.tag} is expected"
+            self.require(value.kind == kind or {value.kind, kind} <= set(NUMBERS), each, problem)
+            place = f"&{value.text}"
+            if not _PLACE.fullmatch(value.text):
+                place = f"({kind.tag}[1]){{{value.text}}}"
+            texts.append(place if kind.is_named else value.text)
+            given = ast.unparse(each)
+            own = [text for text in made.written if text.partition(".")[0] == name]
+            self.written |= {given + text.removeprefix(name) for text in own}
+        return Value(made.result, f"{made.name}({', '.join(texts)})")
 
     def _standard(self, node: ast.Call, name: str) -> Value:
         """Translate a function of Python, of its module math or of numpy."""
         if name == "len":
-            return self.value(node.args[0]).sizes()[0]
+            return self.value(node.args[0]).sizes[0]
         values = [self.number(each) for each in node.args]
-        first = values[0]
-        if name in ("min", "max"):
-            return self._extreme(name, values)
-        if name in ("int", "float"):
-            kind = INT if name == "int" else FLOAT
-            return Value(kind, f"({kind.tag}){first.at(UNARY)}", UNARY)
-        if name == "abs" and first.kind is not FLOAT:
-            return Value(INT, f"llabs({first.text})")
-        if name == "isfinite":
-            return Value(BOOL, f"isfinite({first.text})")
-        self.require(name in _LIBRARY, node)
-        is_exact = name in _EXACT or not ast.unparse(node.func).startswith("np.")
-        self.require(is_exact, node, "may have other last digits than that of the module math")
-        text = f"{_LIBRARY[name]}({', '.join(value.text for value in values)})"
-        # Those of the module math are integers.
-        if ast.unparse(node.func) in ("math.ceil", "math.floor"):
-            return Value(INT, f"(int64_t){text}", UNARY)
-        return Value(FLOAT, text)
-
-    def _extreme(self, name: str, values: list[Value]) -> Value:
-        """Translate ``min`` and ``max``, from the left to the right."""
         kind = FLOAT if FLOAT in [value.kind for value in values] else INT
         text = values[0].text
-        for other in values[1:]:
-            text = f"{kind.tag.removesuffix('64_t')}_{name}({text}, {other.text})"
-        return Value(kind, text)
-
-
-def table_kind(values: Any) -> Array:
-    """Return the type of a table of numbers."""
-    return INT_VECTOR if values and isinstance(values[0], int) else VECTOR
+        match name:
+            case "min" | "max":
+                for other in values[1:]:
+                    text = f"{kind.tag.removesuffix('64_t')}_{name}({text}, {other.text})"
+                return Value(kind, text)
+            case "abs":
+                return Value(kind, f"{'fabs' if kind is FLOAT else 'llabs'}({text})")
+            case "int":
+                return Value(INT, f"((int64_t){text})")
+            case "float":
+                return Value(FLOAT, f"((double){text})")
+            case "math.isfinite":
+                return Value(BOOL, f"isfinite({text})")
+        self.require(name in _LIBRARY, node)
+        text = f"{name.partition('.')[2]}({', '.join(value.text for value in values)})"
+        if name in ("math.ceil", "math.floor"):  # integers in Python
+            return Value(INT, f"((int64_t){text})")
+        return Value(FLOAT, text)

@@ -15,59 +15,45 @@ class Kind:
     Attributes:
         tag: Its name in C.
         code: Its letter where types are told apart by a text.
+        axes: Number of axes of an array without gaps; 0: none is.
+        members: Name in C and type of each member of a tuple, plain or named.
+        is_named: Whether it is a named tuple, which is handed on by its address.
     """
 
     tag: str
-    code: str = ""
-
-
-@dataclass(frozen=True)
-class Array(Kind):
-    """An array without gaps, of one, two or three axes."""
-
-    element: Kind = Kind("")
-    axes: int = 1
-
-
-@dataclass(frozen=True)
-class Struct(Kind):
-    """A tuple, plain or named, of `members`: the name of each in C, and its type."""
-
+    code: str
+    element: Kind | None = None
+    axes: int = 0
     members: tuple[tuple[str, Kind], ...] = ()
     is_named: bool = False
 
     @property
-    def same(self) -> Kind | None:
-        """The type of all members of a plain tuple; None if they differ."""
-        first = self.members[0][1]
-        return first if self.members[0][0] == "at[0]" else None
+    def word(self) -> str:
+        """Name of the type within a longer name."""
+        return self.tag.removesuffix("_t")
 
 
 VOID = Kind("void", "n")
 INT = Kind("int64_t", "i")
 FLOAT = Kind("double", "d")
 BOOL = Kind("bool", "b")
-NUMBERS = {"None": VOID, "int": INT, "float": FLOAT, "bool": BOOL}
-VECTOR = Array("vector", "v", FLOAT, 1)
-MATRIX = Array("matrix", "m", FLOAT, 2)
-CUBE = Array("cube", "c", FLOAT, 3)
-INT_VECTOR = Array("int_vector", "V", INT, 1)
-INT_MATRIX = Array("int_matrix", "M", INT, 2)
-ARRAYS = {
-    "Vector": VECTOR,
-    "Array": VECTOR,
-    "Matrix": MATRIX,
-    "Cube": CUBE,
-    "IntVector": INT_VECTOR,
-    "IntMatrix": INT_MATRIX,
+NUMBERS = (BOOL, INT, FLOAT)
+"""Types of numbers; each takes the values of those before it."""
+
+_KINDS = {
+    "None": VOID,
+    "int": INT,
+    "float": FLOAT,
+    "bool": BOOL,
+    "Vector": Kind("vector", "v", FLOAT, 1),
+    "Array": Kind("vector", "v", FLOAT, 1),
+    "Matrix": Kind("matrix", "m", FLOAT, 2),
+    "Cube": Kind("cube", "c", FLOAT, 3),
+    "IntVector": Kind("int_vector", "V", INT, 1),
+    "IntMatrix": Kind("int_matrix", "M", INT, 2),
 }
-
-
-def array_of(element: Kind, axes: int) -> Array | None:
-    """Return the type of an array; None if there is none."""
-    return next(
-        (own for own in ARRAYS.values() if (own.element, own.axes) == (element, axes)), None
-    )
+ARRAYS = {(own.element, own.axes): own for own in _KINDS.values() if own.axes}
+"""Types of arrays by the type of their elements and the number of axes."""
 
 
 class Kinds:
@@ -78,49 +64,43 @@ class Kinds:
         self._package = package
         self.structs: dict[str, str] = {}
 
-    def of(self, module: Module, node: ast.expr | None) -> Kind:
+    def of(self, module: Module, node: ast.expr) -> Kind:
         """Return the type that an annotation stands for."""
-        if node is None:
-            return VOID
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             node = ast.parse(node.value, mode="eval").body
         text = ast.unparse(node)
-        known = NUMBERS.get(text) or ARRAYS.get(text)
-        if known is not None:
-            return known
+        if text in _KINDS:
+            return _KINDS[text]
         if isinstance(node, ast.Subscript) and text.startswith("tuple["):
             items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
             return self.tuple([self.of(module, item) for item in items])
         home, found = self._package.find(module, text)
-        if isinstance(found, ast.ClassDef):
-            return self._named(home, found)
-        if isinstance(found, ast.Assign):
-            return self.of(home, found.value)
-        own: Kind = fail(module, node, "is no type of a kernel's variable")
-        return own
+        match found:
+            case ast.ClassDef():
+                return self._named(home, found)
+            case ast.Assign(value=value):
+                return self.of(home, value)
+        fail(module, node, "is no type of a kernel's variable")
 
-    def tuple(self, kinds: list[Kind]) -> Struct:
-        """Return the type of a plain tuple."""
-        if all(kind == kinds[0] for kind in kinds):
-            tag = f"{kinds[0].tag.removesuffix('_t')}_{len(kinds)}"
-            members = [(f"at[{i}]", kind) for i, kind in enumerate(kinds)]
-            self._define(tag, f"{kinds[0].tag} at[{len(kinds)}];")
-        else:
-            tag = "tuple_" + "_".join(kind.tag.removesuffix("_t") for kind in kinds)
-            members = [(f"item{i}", kind) for i, kind in enumerate(kinds)]
-            self._define(tag, " ".join(f"{kind.tag} {name};" for name, kind in members))
+    def tuple(self, kinds: list[Kind]) -> Kind:
+        """Return the type of a plain tuple; one of equal types may be indexed by a variable."""
+        tag = "tuple_" + "_".join(kind.word for kind in kinds)
+        names = [f"item{i}" for i in range(len(kinds))]
+        fields = " ".join(f"{kind.tag} {own};" for kind, own in zip(kinds, names, strict=True))
+        if len(set(kinds)) == 1:
+            tag = f"{kinds[0].word}_{len(kinds)}"
+            names = [f"at[{i}]" for i in range(len(kinds))]
+            fields = f"{kinds[0].tag} at[{len(kinds)}];"
+        self.structs.setdefault(tag, f"typedef struct {{ {fields} }} {tag};")
         code = "".join(kind.code for kind in kinds)
-        return Struct(tag, f"({code})", tuple(members))
+        return Kind(tag, f"({code})", members=tuple(zip(names, kinds, strict=True)))
 
-    def _named(self, module: Module, node: ast.ClassDef) -> Struct:
+    def _named(self, module: Module, node: ast.ClassDef) -> Kind:
         rows = [each for each in node.body if isinstance(each, ast.AnnAssign)]
         members = [(ast.unparse(row.target), self.of(module, row.annotation)) for row in rows]
         tag = f"{module.name.rpartition('.')[2]}_{node.name.strip('_')}"
         about = (ast.get_docstring(node) or "").partition("\n")[0]
         fields = "".join(f"\n    {kind.tag} {name};" for name, kind in members)
-        self._define(tag, fields + "\n", f"/* {about} */\n")
+        self.structs.setdefault(tag, f"/* {about} */\ntypedef struct {{{fields}\n}} {tag};")
         code = "".join(kind.code for _, kind in members)
-        return Struct(tag, f"<{code}>", tuple(members), True)
-
-    def _define(self, tag: str, fields: str, comment: str = "") -> None:
-        self.structs.setdefault(tag, f"{comment}typedef struct {{ {fields} }} {tag};")
+        return Kind(tag, f"<{code}>", members=tuple(members), is_named=True)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import ast
 import builtins
-import importlib
-import types
-from collections.abc import Iterator
+import copy
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 KERNELS = ("compiled", "inlined", "released")
 """Decorators of a kernel: plain, copied into its callers, and called without Python's lock."""
@@ -19,21 +17,6 @@ ENTRY = "entry"
 
 class TranslationError(ValueError):
     """A kernel leaves the subset of Python that is translated; the message names file and line."""
-
-
-class Constants(types.SimpleNamespace):
-    """Constants of a class, in their order."""
-
-    def __iter__(self) -> Iterator[Any]:
-        """Go through the values."""
-        return iter(vars(self).values())
-
-
-def fail(module: Module, node: ast.AST, problem: str) -> Any:
-    """Raise the TranslationError of a node."""
-    text = ast.unparse(node).partition("\n")[0]
-    line = getattr(node, "lineno", 0)
-    raise TranslationError(f"{module.path}:{line}: `{text}` {problem}")
 
 
 class Module:
@@ -49,28 +32,39 @@ class Module:
         """Read a file."""
         self.name = name
         self.path = path.relative_to(folder).as_posix()
-        self.is_package = path.name == "__init__.py"
         self.names: dict[str, ast.stmt] = {}
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        for node in tree.body:
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
             for each in node.body if isinstance(node, ast.If) else [node]:
-                self._note(each)
-
-    def _note(self, node: ast.stmt) -> None:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            self.names[node.name] = node
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            for alias in node.names:
-                self.names[alias.asname or alias.name.partition(".")[0]] = node
-        elif isinstance(node, ast.Assign | ast.AnnAssign):
-            for each in ast.walk(node):
-                if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store):
-                    self.names[each.id] = node
+                self.names |= dict.fromkeys(_bound(each), each)
 
     def kernels(self) -> list[ast.FunctionDef]:
         """List the functions that are translated."""
         functions = [node for node in self.names.values() if isinstance(node, ast.FunctionDef)]
         return [node for node in functions if decoration(node)]
+
+
+def _bound(node: ast.stmt) -> list[str]:
+    """List the names that a statement binds."""
+    match node:
+        case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+            return [name]
+        case ast.Import(names=names) | ast.ImportFrom(names=names):
+            return [alias.asname or alias.name.partition(".")[0] for alias in names]
+        case ast.Assign() | ast.AnnAssign():
+            return _names(node, ast.Store)
+    return []
+
+
+def _names(node: ast.AST, context: type) -> list[str]:
+    """List the variables that a node reads (`ast.Load`) or writes (`ast.Store`)."""
+    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+    return [each.id for each in names if isinstance(each.ctx, context)]
+
+
+def fail(module: Module, node: ast.AST, problem: str) -> NoReturn:
+    """Raise the TranslationError of a node."""
+    text = ast.unparse(node).partition("\n")[0]
+    raise TranslationError(f"{module.path}:{getattr(node, 'lineno', 0)}: `{text}` {problem}")
 
 
 def decoration(node: ast.FunctionDef) -> str:
@@ -88,27 +82,20 @@ class Package:
         self._modules: dict[str, Module] = {}
         self._values: dict[tuple[str, str], Any] = {}
 
-    def module(self, name: str) -> Module:
-        """Return a module of the package by its full name."""
+    def module(self, name: str, file: Path | None = None) -> Module:
+        """Return a module by its full name, from a file unless it is one of the package."""
         if name not in self._modules:
             path = self.folder.parent.joinpath(*name.split("."))
-            file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-            self._modules[name] = Module(self.folder.parent, name, file)
-        return self._modules[name]
-
-    def add(self, name: str, path: Path) -> Module:
-        """Add a module from outside of the package, and return it."""
-        self._modules[name] = Module(path.parent, name, path)
+            own = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+            folder = file.parent if file else self.folder.parent
+            self._modules[name] = Module(folder, name, file or own)
         return self._modules[name]
 
     def modules(self) -> list[Module]:
         """Return all modules that have a kernel, by their paths."""
-        found = []
-        for path in sorted(self.folder.rglob("*.py")):
-            if "@" in path.read_text(encoding="utf-8"):
-                parts = path.relative_to(self.folder.parent).with_suffix("").parts
-                name = ".".join(parts).removesuffix(".__init__")
-                found.append(self.module(name))
+        paths = [path.relative_to(self.folder.parent) for path in self.folder.rglob("*.py")]
+        names = [".".join(path.with_suffix("").parts) for path in sorted(paths)]
+        found = [self.module(name.removesuffix(".__init__")) for name in names]
         return [module for module in found if module.kernels()]
 
     def find(self, module: Module, name: str) -> tuple[Module, ast.stmt | None]:
@@ -117,48 +104,31 @@ class Package:
         The statement is an import for a name from outside of the package, and None for a builtin.
         """
         node = module.names.get(name)
-        if not isinstance(node, ast.ImportFrom) or not self._is_own(node):
+        if not isinstance(node, ast.ImportFrom):
+            return module, node
+        home = str(node.module)
+        if node.level or home.partition(".")[0] != self.folder.name:
             return module, node
         own = next(each.name for each in node.names if (each.asname or each.name) == name)
-        return self.find(self.module(str(node.module)), own)
-
-    def _is_own(self, node: ast.ImportFrom) -> bool:
-        return str(node.module).partition(".")[0] == self.folder.name
+        return self.find(self.module(home), own)
 
     def value(self, module: Module, name: str) -> Any:
         """Return the value of a constant, by executing the one statement that binds it.
 
-        A class stands for its constants alone; those of an enumeration are numbers.
+        A class stands for its constants alone.
         """
         module, node = self.find(module, name)
-        own = node.name if isinstance(node, ast.ClassDef) else name
-        key = (module.name, own)
-        if key not in self._values:
-            self._values[key] = self._execute(module, node, own)
-        return self._values[key]
-
-    def _execute(self, module: Module, node: ast.stmt | None, name: str) -> Any:
         if node is None:
             return getattr(builtins, name)
         if isinstance(node, ast.ClassDef):
-            rows = [each for each in node.body if isinstance(each, ast.Assign)]
-            members = {ast.unparse(row.targets[0]): self._run(module, row) for row in rows}
-            return Constants(**{key: own[key] for key, own in members.items()})
-        if isinstance(node, ast.Import):
-            own = next(each for each in node.names if name in (each.asname, each.name))
-            return importlib.import_module(own.name)
-        if isinstance(node, ast.ImportFrom):
-            return getattr(importlib.import_module(str(node.module)), name)
-        found = self._run(module, node)
-        return found[name]
-
-    def _run(self, module: Module, node: ast.stmt) -> dict[str, Any]:
-        """Execute an assignment with the constants that it reads."""
-        if isinstance(node, ast.AnnAssign):
-            value = node.value or ast.Constant(None)
-            node = ast.copy_location(ast.Assign([node.target], value), node)
-        names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
-        read = [each.id for each in names if isinstance(each.ctx, ast.Load)]
-        scope = {each: self.value(module, each) for each in read if each in module.names}
-        exec(compile(ast.Module([node], []), module.path, "exec"), scope)
-        return scope
+            node = copy.copy(node)
+            node.body = [each for each in node.body if isinstance(each, ast.Assign)]
+            node.decorator_list = []
+        own = _bound(node)
+        key = (module.name, name if name in own else own[0])
+        if key not in self._values:
+            read = set(_names(node, ast.Load)) & set(module.names) - set(own)
+            scope = {each: self.value(module, each) for each in read}
+            exec(compile(ast.Module([node], []), module.path, "exec"), scope)
+            self._values[key] = scope[key[1]]
+        return self._values[key]

@@ -272,8 +272,9 @@ def keeps_distances(motion: Motion, arrays: ProgramArrays, constants: Vector, dt
             continue
         change = np.inf
         lacking = 0.5 * second_order(scene.moves, scene.radii, k, travel)
-        a, b = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
-        for end in (a, b):
+        ends = ends_of(scene, placed, int(scene.pairs[k, SECOND]))
+        for at in range(2):
+            end = ends[at]
             x, bend = _along(motion, arrays.jacobian, scene.moves, k, end, contact.normal)
             way = way_along(motion, x, bend, M, dt)
             least = min(0.0, way - lacking)

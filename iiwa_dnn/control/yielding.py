@@ -417,9 +417,9 @@ def _make_stoppable(
         nearest_within(limits, wanted, yielding, views.figures)
     brake = np.zeros(x.size)
     left = _brake(limits, past, yielding, brake)
-    for share in TOWARDS:
+    for k in range(len(TOWARDS)):
         for i in range(dof):
-            x[i] = brake[i] + share * (wanted[i] - brake[i])
+            x[i] = brake[i] + TOWARDS[k] * (wanted[i] - brake[i])
         rest = _periods_to_rest(arrays, past, yielding, x[:dof])
         if rest >= 0.0:
             return rest

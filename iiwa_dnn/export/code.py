@@ -192,10 +192,9 @@ class _Code:
         """Translate a function of the package or of a user's, or raise an InvalidInputError."""
         name = getattr(function, "__name__", repr(function))
         try:
-            package = self._translator.package
-            if not function.__module__.startswith("iiwa_dnn."):
-                package.add(function.__module__, Path(inspect.getfile(function)))
-            module = package.module(function.__module__)
+            own = function.__module__.startswith("iiwa_dnn.")
+            file = None if own else Path(inspect.getfile(function))
+            module = self._translator.package.module(function.__module__, file)
             node = module.names[name]
             if not isinstance(node, FunctionDef) or decoration(node) not in KERNELS:
                 raise TranslationError(f"{name} is no kernel")

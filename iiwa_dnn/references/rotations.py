@@ -32,7 +32,8 @@ def coefficients(square: float) -> tuple[float, float]:
         return versine / square, (angle - math.sin(angle)) / (square * angle)
     a = 1.0
     b = 1.0
-    for k in range(10, 0, -1):  # the series from its last term, after which all are below rounding
+    for i in range(10):  # the series from its last term, after which all are below rounding
+        k = 10 - i
         a = 1.0 - a * square / ((2.0 * k + 1.0) * (2.0 * k + 2.0))
         b = 1.0 - b * square / ((2.0 * k + 2.0) * (2.0 * k + 3.0))
     return 0.5 * a, b / 6.0
@@ -140,8 +141,8 @@ def rotation_log(R: Matrix, out: Array) -> None:
     sine = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
     # angle / sin(angle / 2), whose limit at 0 is 2
     scale = 2.0 * math.atan2(sine, w) / sine if sine > 1e-12 else 2.0
-    for i in range(3):
-        out[i] *= scale
+    for axis in range(3):
+        out[axis] *= scale
 
 
 @compiled

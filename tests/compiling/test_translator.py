@@ -91,12 +91,13 @@ def decisions(a: float, b: float, i: int) -> int:
         found -= 2
     else:
         found = 10 if a < b else 20
-    return found + (i << 2) - (i >> 1) + (i & 3)
+    found += a < b
+    return -found
 
 
 @compiled
 def loops(values: Vector, n: int) -> float:
-    """Go through ranges, arrays and tuples."""
+    """Go through ranges."""
     total = 0.0
     for i in range(n):
         if values[i] < -1.0:
@@ -104,20 +105,18 @@ def loops(values: Vector, n: int) -> float:
         if values[i] > 2.0:
             break
         total += values[i]
-    for i in range(n - 1, -1, -1):
+    for i in range(1, n):
+        n -= 1  # the range is that of its beginning
         total *= 1.0 + 1e-3 * values[i]
-    for i in range(1, n, 2):
-        total -= values[i]
-    for value in values:
-        total += value * 0.125
-    for row, sign in ((0, 1.0), (n - 1, -1.0)):
-        total += sign * values[row]
-    for share in TABLE:
-        total *= share
+    ends = (1.0, -1.0)
+    for i in range(len(TABLE)):
+        for k in range(2):
+            total *= TABLE[i] + 0.1 * ends[k]
     while total > 1.0:
         total /= 3
     for _ in range(2):
-        total += 0.1
+        for _ in range(3):
+            total += 0.1
     return total
 
 
@@ -126,19 +125,19 @@ def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
     """Write into parts of arrays."""
     own = np.empty((2, values.size))
     other = np.zeros(values.size)
-    own[0] = values
-    own[1, :] = 0.5
     kept = values.copy()
+    for i in range(values.size):
+        own[0, i] = values[i]
+        own[1, i] = 0.5
     for i in range(rows.shape[0]):
-        rows[i, 1:] = own[0, : rows.shape[1] - 1]
+        own[1, i] *= 0.25
         rows[i, 0] += own[1, i] + len(rows)
     grid = kept[: 2 * (kept.size // 2)].reshape(2, kept.size // 2)
-    first, second = own[1], other
-    first, second = second, first
-    for i in range(values.size):
-        values[i] = second[i] - first[i] + grid[0, 0] + rows.size
-    counts[0], counts[-1] = counts[-1], counts[0]
-    values[-1] = -1.0
+    second = own[1]
+    part = second[1 : values.size]
+    for i in range(part.size):
+        values[i] = part[i] - other[i] + grid[0, 0] + rows.size
+    counts[2] = counts[0] - counts[1]
 
 
 @inlined
@@ -156,13 +155,27 @@ def change(views: Views, factor: float) -> Pair:
     return views.data[0], views.rows[0, 0]
 
 
+@compiled
+def shift(views: Views) -> None:
+    """Write through a member."""
+    fill(views.data)
+
+
+@compiled
+def fill(values: Vector) -> None:
+    """Write."""
+    values[0] += 1.0
+
+
 @released
 def views(data: Vector, n: int) -> float:
     """Hand views on."""
     own = views_of(data, n)
     a, _ = change(own, 1.5)
     _, b = change(views_of(data, n), 0.5)
-    x = y = a
+    shift(own)
+    x = a
+    y = a
     x += change(own, 1.0)[HIGH]
     return x + y * b
 
@@ -173,12 +186,6 @@ def constants(a: float, sqrt: float, default: int) -> float:
     int_min = SECOND + Kind.FIRST + LOW
     register = LARGE if a < np.inf else -np.inf
     return a * TABLE[1] + LIMIT + int_min * sqrt + default + register
-
-
-@compiled
-def fill(values: Vector) -> None:
-    """Write."""
-    values[0] += 1.0
 
 
 @compiled
@@ -199,8 +206,9 @@ def scratch(n: int) -> float:
     total = 0.0
     for i in range(n):
         row = np.empty(n)
-        row[:] = 1.0 / (i + 1)
-        large[i] = row
+        for k in range(n):
+            row[k] = 1.0 / (i + 1)
+            large[i, k] = row[k]
         total += large[i, n - 1]
     return total
 '''
@@ -292,6 +300,10 @@ def test_a_closed_array_is_read_and_never_written(both: tuple[Any, Any]) -> None
         both[1].own_arrays(closed, np.ones((2, 4)), np.arange(3))
     with pytest.raises(TypeError, match="is read-only"):
         both[1].own_through(closed)
+    for name in ("own_shift", "own_change"):
+        views = both[0].Views(closed, np.ones((1, 2)), 0.5)
+        with pytest.raises(TypeError, match="is read-only"):
+            getattr(both[1], name)(views, *([1.0] if name == "own_change" else []))
     assert closed.tolist() == [1.0] * 4
 
 
@@ -304,16 +316,16 @@ REFUSED = [
         "def f(a: float) -> float:\n    b = 1.0\n    b = (a, a)\n    return a",
         "changes a variable's type",
     ),
-    ("def f(a: int) -> int:\n    a = 0.5\n    return a", "changes a parameter's type"),
+    ("def f(a: int) -> int:\n    a = 0.5\n    return a", "changes a variable's type"),
     ("def f(a: float) -> float:\n    return nothing", "`nothing` is not known here"),
     ("def f(a: float) -> float:\n    return f(a)", "`f(a)` calls itself"),
     ("def f(a: float) -> float:\n    return np.linalg.norm(a)", "`np.linalg.norm(a)` has no"),
-    ("def f(a: float) -> float:\n    return np.sin(a)", "`np.sin(a)` may have other last digits"),
+    ("def f(a: float) -> float:\n    return np.sin(a)", "`np.sin(a)` has no translation"),
     ("def f(a: float) -> float:\n    return np.arctan2(a, a)", "`np.arctan2(a, a)` has no"),
-    ("def f(a: Matrix) -> None:\n    a[:, 0] = 1.0", "has gaps between its rows"),
-    ("def f(a: Vector) -> None:\n    a[::2] = 1.0", "is a slice with a step"),
-    ("def f(a: Vector) -> None:\n    a[:] = a + a", "`a` is no number"),
-    ("def f(a: Matrix) -> None:\n    a[0] = a", "is written with another type"),
+    ("def f(a: Matrix) -> None:\n    a = a[:, 0]", "has gaps between its rows"),
+    ("def f(a: Vector) -> None:\n    a = a[::2]", "has gaps between its rows"),
+    ("def f(a: Vector) -> None:\n    a = a + a", "`a` is no number"),
+    ("def f(a: Matrix) -> None:\n    a[0] = 1.0", "has no translation"),
     ("def f(a: Vector) -> Vector:\n    return 1.0", "is not what is annotated"),
     (
         "def f(n: int) -> int:\n    for i in range(n):\n        pass\n    return i",
@@ -329,6 +341,10 @@ REFUSED = [
     ),
     ("def f(a: float) -> float:\n    return [a][0]", "`[a]` has no translation"),
     ("def f(a: float) -> bool:\n    return a and True", "`a` is no condition"),
+    ("def f(n: int) -> None:\n    for n in range(3):\n        pass", "has a variable of that name"),
+    ("def f(n: int) -> None:\n    for i in range(n, 0, -1):\n        pass", "has a step"),
+    ("def f(a: Vector) -> float:\n    return a[-1]", "counts from the end"),
+    ("def f(a: float) -> None:\n    for x in (a, a):\n        pass", "has no translation"),
 ]
 
 
