@@ -98,7 +98,8 @@ def drive(
         times.append(time.perf_counter() - began)
         q = q + dt * dq
         path.append(q)
-        ok.append(solved)
+        # A moving obstacle may come too near; the arm's own motion must not bring it nearer.
+        ok.append(solved and not case.moving)
     return braking.Drive(np.array(path), np.array(ok), left)
 
 
