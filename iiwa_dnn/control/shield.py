@@ -57,6 +57,13 @@ DAMPING = 0.02
 JOINTS = ""
 """Frame of wishes for all joints."""
 
+REASONS = ("", "no wish", "wish too old", "wish not finite", "halted")
+"""Reasons why a wish to rest counts."""
+NO_WISH, TOO_OLD, NOT_FINITE, HALTED = range(1, 5)
+
+AGE, REASON, BEGUN, TAKEN = range(4)
+"""Numbers of `ShieldState.flags`."""
+
 
 @compiled
 def wished_velocity(
@@ -120,22 +127,63 @@ def approach_velocities(past: Matrix, aim: Vector, limits: Vector, dt: float, dq
         dq[i] = aim[i] + braking(behind, -np.inf, np.inf, limits[4 * n + i], dt)
 
 
-class Wish(NamedTuple):
-    """What the arm is asked for.
+class ShieldState(NamedTuple):
+    """Commanded positions and the wish that counts, which a step overwrites.
 
     Attributes:
-        kind: ``dq``, ``twist`` or ``position``.
-        value: Joint velocity [rad/s] or positions [rad], (n,), or twist [m/s, rad/s], (6,).
-        frame: Name of the twist's frame, else `JOINTS`.
-        since: Time when it came [s].
-        reason: Reason why it is one to rest, if it is not the given one.
+        positions: Joint positions [rad], (n,).
+        wish: The wish, (k,): zero without one.
+        flags: Time since the wish came [s], its reason if it is not the given one, by its number in
+            `REASONS`, 1 after the first step, and 1 if measured positions were taken over, (4,).
     """
 
-    kind: str
-    value: Vector
-    frame: str
-    since: float
-    reason: str = ""
+    positions: Vector
+    wish: Vector
+    flags: Vector
+
+
+@compiled
+def take_positions(q: Vector, state: ShieldState, settings: Vector) -> None:
+    """Take measured positions q (n,) [rad] over at the first step, or if they are far.
+
+    The settings (3,) are control period [s], timeout [s] and tracking error [rad].
+    """
+    far = 0
+    for i in range(q.size):
+        far += not abs(q[i] - state.positions[i]) <= settings[2]
+    state.flags[TAKEN] = 0.0
+    if far > 0 or state.flags[BEGUN] == 0.0:
+        state.flags[TAKEN] = state.flags[BEGUN]
+        state.flags[BEGUN] = 1.0
+        for i in range(q.size):
+            state.positions[i] = q[i]
+
+
+@compiled
+def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -> bool:
+    """Take a wish (k,) over if there is one, or one to rest; settings as `take_positions`.
+
+    Returns:
+        Whether the wish that counts is that of the last step.
+    """
+    flags = state.flags
+    flags[AGE] += settings[0]
+    if given and flags[REASON] != HALTED:
+        flags[AGE] = 0.0
+        flags[REASON] = 0.0
+        for i in range(wish.size):
+            if not abs(wish[i]) < np.inf:
+                flags[REASON] = NOT_FINITE
+    if flags[REASON] == 0.0 and flags[AGE] > settings[1] + 0.5 * settings[0]:
+        flags[REASON] = TOO_OLD
+    other = 0
+    for i in range(wish.size):
+        now = wish[i] if given else state.wish[i]
+        if flags[REASON] != 0.0:
+            now = 0.0
+        other += now != state.wish[i]
+        state.wish[i] = now
+    return other == 0
 
 
 class Margin(NamedTuple):
@@ -201,9 +249,6 @@ class Shield:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
         limits: Limits that every command keeps.
-        timeout: Time for which a wish counts [s].
-        tracking_error: Difference of measured and commanded positions [rad] above which the
-            measured ones are taken over.
     """
 
     def __init__(
@@ -232,8 +277,10 @@ class Shield:
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
-        self.timeout = math.inf if timeout == math.inf else checks.positive("timeout", timeout)
-        self.tracking_error = checks.not_negative("tracking_error", tracking_error)
+        if timeout != math.inf:
+            checks.positive("timeout", timeout)
+        checks.not_negative("tracking_error", tracking_error)
+        self._settings = np.array([self.dt, timeout, tracking_error])
         rates: list[AccelerationLimits | JerkLimits] = []
         if np.isfinite(robot.ddq_max).any():
             rates.append(AccelerationLimits())
@@ -249,14 +296,17 @@ class Shield:
 
     def reset(self) -> None:
         """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""
-        self._kept.now = ControllerState.at_rest(self.robot.dof, self._kept.now.begun)
-        self._q: Vector | None = None
+        n = self.robot.dof
+        self._kept.now = ControllerState.at_rest(n, self._kept.now.begun)
+        self._state = ShieldState(np.zeros(n), np.zeros(n), np.zeros(4))
+        self._state.flags[REASON] = NO_WISH
+        self._kind = "dq"
+        self._frame = JOINTS
         self._t = 0.0
-        self._wish = self._rest("no wish")
 
     def halt(self) -> None:
         """Brake from now on, whatever is wished for, until `reset`."""
-        self._wish = self._rest("halted")
+        self._state.flags[REASON] = HALTED
 
     def step(
         self,
@@ -286,54 +336,44 @@ class Shield:
         """
         measured = checks.finite_array("q", q, (self.robot.dof,))
         given = {"dq": dq, "twist": twist, "position": position}
-        wish = self._take({name: x for name, x in given.items() if x is not None}, frame)
-        reasons = [wish.reason] if wish.reason else []
-        if self._q is None:
-            self._q = measured
-        elif not np.abs(measured - self._q).max() <= self.tracking_error:
-            self._q = measured
-            reasons.append("measured positions taken over")
-        controller = self._controller(wish.frame)
-        target = self._target(controller, wish, self._q)
-        command = controller.step(self._q, self._t, target)
+        held = self._take(measured, {k: x for k, x in given.items() if x is not None}, frame)
+        positions, wish, flags = self._state
+        controller = self.controller(self._frame)
+        command = controller.step(positions, self._t, self._target(controller, held))
         # A wish that can be had again is had at once.
         self._kept.now.past[YIELDS] = 0.0
-        other = (command.dq != wish.value).any() if wish.kind == "dq" else command.against
-        decision = ShieldCommand(
-            command.dq,
-            bool(reasons or other),
-            tuple(reasons),
-            self._stopping_time(command),
-            command,
-            self,
-            self._t,
-        )
-        self._wish = wish
-        self._q = self._q + self.dt * command.dq
+        other = (command.dq != wish).any() if self._kind == "dq" else command.against
+        reasons = [REASONS[int(flags[REASON])]] if flags[REASON] else []
+        if flags[TAKEN]:
+            reasons.append("measured positions taken over")
+        clipped = bool(reasons or other)
+        rest = self._stopping_time(command)
+        decision = ShieldCommand(command.dq, clipped, tuple(reasons), rest, command, self, self._t)
+        positions += self.dt * command.dq
         self._t += self.dt
         return decision
 
-    def _rest(self, reason: str) -> Wish:
-        """Return the wish to rest, for a reason."""
-        return Wish("dq", np.zeros(self.robot.dof), JOINTS, self._t, reason)
-
-    def _take(self, given: dict[str, ArrayLike], frame: str | None) -> Wish:
-        """Return the wish that counts, which is one to rest if there is no other."""
+    def _take(self, q: Vector, given: dict[str, ArrayLike], frame: str | None) -> bool:
+        """Take a wish over; return whether it is that of the last step."""
         if len(given) > 1:
             raise InvalidInputError(" and ".join(given), "are several wishes")
-        if (wish := self._wish).reason == "halted":
-            return wish
-        for name, values in given.items():
-            value = checks.array(name, values, (6 if name == "twist" else self.robot.dof,))
+        wish = self._state.wish
+        for name, value in given.items():
+            wish = checks.array(name, value, (6 if name == "twist" else q.size,)).copy()
             seen = JOINTS if name != "twist" else frame or self.robot.tip
-            wish = Wish(name, value, seen, self._t)
-        if not np.isfinite(wish.value).all():
-            return self._rest("wish not finite")
-        if not wish.reason and self._t - wish.since > self.timeout + 0.5 * self.dt:
-            return self._rest("wish too old")
-        return wish
+            if (name, seen) != (self._kind, self._frame):
+                self._state = self._state._replace(wish=np.full(wish.size, np.nan))
+            self._kind = name
+            self._frame = seen
+        take_positions(q.copy(), self._state, self._settings)
+        held: bool = take_wish(wish, bool(given), self._state, self._settings)
+        if self._state.flags[REASON] and self._kind != "dq":
+            self._kind = "dq"
+            self._frame = JOINTS
+            self._state = self._state._replace(wish=np.zeros(q.size))
+        return held
 
-    def _controller(self, frame: str) -> Controller:
+    def controller(self, frame: str = JOINTS) -> Controller:
         """Return the controller for wishes of a frame, or of all joints; they share one state."""
         found = self._controllers.get(frame)
         if found is None:
@@ -346,28 +386,28 @@ class Shield:
             self._controllers[frame] = found
         return found
 
-    def _target(self, controller: Controller, wish: Wish, q: Vector) -> dict[str, Target]:
-        """Return what a step at joint positions q (n,) is to answer, in the form of its target."""
+    def _target(self, controller: Controller, held: bool) -> dict[str, Target]:
+        """Return what a step is to answer, in the form of its target."""
+        positions, wish, _ = self._state
         target = np.zeros(TARGET_SIZE)
-        if wish.kind == "twist":
+        if self._kind == "twist":
             target[3:12:4] = 1.0
-            target[12:] = wish.value
-            return {wish.frame: Target.from_data(target)}
-        aim = target[: q.size]
-        aim[:] = wish.value
+            target[12:] = wish
+            return {self._frame: Target.from_data(target)}
+        aim = target[: wish.size]
+        aim[:] = wish
         past = self._kept.now.past
-        before = self._wish
-        if wish.kind == "position":
-            approach_positions(q, past, wish.value, self._motion, self.dt, aim)
-        elif wish.kind == before.kind and (wish.value == before.value).all():
-            approach_velocities(past, wish.value, self._motion, self.dt, aim)
+        if self._kind == "position":
+            approach_positions(positions, past, wish, self._motion, self.dt, aim)
+        elif held:
+            approach_velocities(past, wish, self._motion, self.dt, aim)
         # From here a network that has nothing to do hands the aim out as it is.
         sizes = controller.layout.sizes
         state = controller.solver.warm_state(sizes)
         if state is None:
             state = controller.solver.cold_state(sizes)
         state[:] = 0.0
-        state[: q.size] = aim
+        state[: wish.size] = aim
         return {self.robot.tip: Target.from_data(target)}
 
     def _stopping_time(self, command: Command) -> float:
