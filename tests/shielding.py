@@ -7,6 +7,7 @@ singular poses, and press the arm against obstacles and joint limits, in the end
 
 import argparse
 import sys
+import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -74,6 +75,25 @@ def shield(case: braking.Case) -> Filter:
     return step
 
 
+def exported(case: braking.Case) -> Filter:
+    """Return the step of a shield in C, which takes joint velocities alone."""
+    made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, braking.DISTANCE)
+    with tempfile.TemporaryDirectory() as folder:
+        iiwa_dnn.export.c99(made, folder, verify=False)
+        step_in_c = iiwa_dnn.export.load(folder).shield_step
+
+    def step(q: Vector, wish: Wish) -> tuple[Vector, bool]:
+        dq = wish.get("dq")
+        if "position" in wish:
+            dq = (wish["position"] - q) / case.dt
+        elif "twist" in wish:
+            dq = np.linalg.pinv(iiwa_dnn.Configuration(case.robot, q).jacobian) @ wish["twist"]
+        command = step_in_c(q, dq)
+        return command.dq, command.action == 0
+
+    return step
+
+
 def drive(
     case: braking.Case, seed: int, times: list[float], make: Callable[[braking.Case], Filter]
 ) -> braking.Drive:
@@ -132,7 +152,7 @@ def judged(
     return driven, breaches(driven.path, case.dt, *kinds), found.broken, found.least
 
 
-def main(steps: int, first: int) -> int:
+def main(steps: int, first: int, in_c: bool) -> int:
     """Drive until so many steps are done; print what was broken, and the times of a step."""
     times: list[float] = []
     counts = Counter[str]()
@@ -149,7 +169,7 @@ def main(steps: int, first: int) -> int:
             < braking.DISTANCE + 1e-3
         ):
             continue
-        driven, wrong, broken, nearest = judged(case, seed, times)
+        driven, wrong, broken, nearest = judged(case, seed, times, exported if in_c else shield)
         done += len(driven.ok)
         spent[robot.name] += len(driven.ok)
         least = min(least, nearest)
@@ -174,5 +194,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("steps", type=int)
     parser.add_argument("seed", type=int, nargs="?", default=0)
+    parser.add_argument("--exported", action="store_true", help="the shield in C")
     given = parser.parse_args()
-    sys.exit(main(given.steps, given.seed) > 0)
+    sys.exit(main(given.steps, given.seed, given.exported) > 0)

@@ -249,6 +249,8 @@ class Shield:
         robot: The robot, n joints, whose limits hold.
         dt: Control period [s].
         limits: Limits that every command keeps.
+        motion: Their numbers for the joints, `MotionLimits.constants`, (6 n,).
+        settings: Control period [s], timeout [s], tracking error [rad], (3,).
     """
 
     def __init__(
@@ -280,7 +282,7 @@ class Shield:
         if timeout != math.inf:
             checks.positive("timeout", timeout)
         checks.not_negative("tracking_error", tracking_error)
-        self._settings = np.array([self.dt, timeout, tracking_error])
+        self.settings = np.array([self.dt, timeout, tracking_error])
         rates: list[AccelerationLimits | JerkLimits] = []
         if np.isfinite(robot.ddq_max).any():
             rates.append(AccelerationLimits())
@@ -289,7 +291,7 @@ class Shield:
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance))
-        self._motion = MotionLimits(tuple(rates)).constants(robot)
+        self.motion = MotionLimits(tuple(rates)).constants(robot)
         self._controllers: dict[str, Controller] = {}
         self._kept = KeptStates(ControllerState.at_rest(robot.dof))
         self.reset()
@@ -365,8 +367,8 @@ class Shield:
                 self._state = self._state._replace(wish=np.full(wish.size, np.nan))
             self._kind = name
             self._frame = seen
-        take_positions(q.copy(), self._state, self._settings)
-        held: bool = take_wish(wish, bool(given), self._state, self._settings)
+        take_positions(q.copy(), self._state, self.settings)
+        held: bool = take_wish(wish, bool(given), self._state, self.settings)
         if self._state.flags[REASON] and self._kind != "dq":
             self._kind = "dq"
             self._frame = JOINTS
@@ -398,9 +400,9 @@ class Shield:
         aim[:] = wish
         past = self._kept.now.past
         if self._kind == "position":
-            approach_positions(positions, past, wish, self._motion, self.dt, aim)
+            approach_positions(positions, past, wish, self.motion, self.dt, aim)
         elif held:
-            approach_velocities(past, wish, self._motion, self.dt, aim)
+            approach_velocities(past, wish, self.motion, self.dt, aim)
         # From here a network that has nothing to do hands the aim out as it is.
         sizes = controller.layout.sizes
         state = controller.solver.warm_state(sizes)
@@ -417,5 +419,5 @@ class Shield:
             moves = float(command.dq.any())
             cubic = bool(np.isfinite(self.robot.dddq_max).any())
             last = command.past[1]
-            rest = max(moves, least_periods(command.dq, last, self._motion, self.dt, cubic))
+            rest = max(moves, least_periods(command.dq, last, self.motion, self.dt, cubic))
         return float(self.dt * rest)

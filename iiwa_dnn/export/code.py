@@ -21,7 +21,16 @@ from iiwa_dnn.compiling.translator import Made, Translator
 from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.relaxed import BUDGET
-from iiwa_dnn.control.state import DELAY, ROWS
+from iiwa_dnn.control.shield import (
+    HALTED,
+    NO_WISH,
+    REASON,
+    Shield,
+    approach_velocities,
+    take_positions,
+    take_wish,
+)
+from iiwa_dnn.control.state import DELAY, ROWS, YIELDS
 from iiwa_dnn.control.step import ControlStep, sample_targets, take_step
 from iiwa_dnn.control.yielding import ATTEMPTS
 from iiwa_dnn.errors import InvalidInputError
@@ -35,6 +44,7 @@ from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.robot.kinematics_kernel import model_tables, write_kinematics
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
+from iiwa_dnn.schemes.step import TARGET_SIZE
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -45,8 +55,8 @@ def filled(template: str, values: Mapping[str, object]) -> str:
     return re.sub(r"@(\w+)@", lambda found: str(values[found[1]]), text)
 
 
-def code_of(controller: Controller) -> dict[str, Any]:
-    """Translate a controller whose scheme is anchored.
+def code_of(controller: Controller, shield: Shield | None = None) -> dict[str, Any]:
+    """Translate a controller whose scheme is anchored, and the shield whose controller it is.
 
     Returns:
         Texts by the names of their places in the templates.
@@ -68,6 +78,7 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "start": "",
         "move": "",
         "target_function": "",
+        "shield_function": "" if shield is None else _shield_function(code, shield),
     }
     if step.samples:
         texts["target_function"] = filled(
@@ -81,6 +92,9 @@ def code_of(controller: Controller) -> dict[str, Any]:
         call = f"{code.kernel(move_centers)}(&arena, plan.arrays.constants, centers, t);"
         centers = code.value("centers", code.centers)
         texts["move"] = f"    const matrix centers = {centers};\n    {call}\n"
+    if shield is not None:
+        lengths |= {"positions": robot.dof, "wish": robot.dof, "flags": 4, "aim": TARGET_SIZE}
+        texts["start"] += f"    c->flags[{REASON}] = {NO_WISH}.0;\n"
     lengths["scratch"] = scratch_size(controller, model)
     return {
         **texts,
@@ -104,6 +118,22 @@ def code_of(controller: Controller) -> dict[str, Any]:
         "actions": "\n".join(f"#define CONTROLLER_{each.name} {each.value}" for each in Action),
         "has_reference": step.samples,
     }
+
+
+def _shield_function(code: _Code, shield: Shield) -> str:
+    """Return the text of a shield's own step."""
+    values = {
+        "settings": code.value("of_shield", shield.settings),
+        "limits": code.value("motion", shield.motion),
+        "take_positions": code.kernel(take_positions),
+        "take_wish": code.kernel(take_wish),
+        "approach": code.kernel(approach_velocities),
+        "rows": ROWS,
+        "yields": YIELDS,
+        "reason": REASON,
+        "halted": f"{HALTED}.0",
+    }
+    return filled("shield.c", values)
 
 
 def _lengths(controller: Controller) -> dict[str, int]:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from iiwa_dnn import checks
 from iiwa_dnn.control.command import PLACEMENT
 from iiwa_dnn.control.controller import Controller
+from iiwa_dnn.control.shield import Shield
 from iiwa_dnn.errors import MissingDependencyError
 from iiwa_dnn.export.code import code_of, filled
 from iiwa_dnn.export.load import tested
@@ -59,16 +60,16 @@ class Vectors(NamedTuple):
 
 
 def c99(
-    controller: Controller,
+    controller: Controller | Shield,
     folder: str | os.PathLike[str],
     q0: ArrayLike | None = None,
     *,
     verify: bool = True,
 ) -> Path:
-    """Write a controller as a folder of C99.
+    """Write a controller, or a shield for joint velocities, as a folder of C99.
 
     Args:
-        controller: The controller; it stays as it is.
+        controller: The controller or shield; it stays as it is.
         folder: The folder; files of an earlier export are overwritten.
         q0: Joint positions where the arm begins [rad], (n,): the home of a scheme without one, and
             the beginning of the vectors; None: where the controller is, or the start posture.
@@ -83,8 +84,13 @@ def c99(
             named.
         FileError: The folder cannot be written.
     """
-    twin, start = _anchored(controller, q0)
-    texts = code_of(twin)
+    shield = controller if isinstance(controller, Shield) else None
+    own = controller.controller() if isinstance(controller, Shield) else controller
+    twin, start = _anchored(own, q0)
+    texts = code_of(twin, shield)
+    texts["shield_declaration"] = ""
+    if shield is not None:
+        texts["shield_declaration"] = filled("shield.h", {"timeout": shield.settings[1]})
     vectors = run(twin, start.q, STEPS)
     folder = prepare_folder(folder)
     texts |= _texts(twin, start, vectors, texts["has_reference"])

@@ -82,6 +82,22 @@ class ExportedController:
         action = step(self._memory, _pointer(joints), _pointer(wanted), _pointer(dq))
         return ExportedCommand(dq, int(action))
 
+    def shield_step(self, q: ArrayLike, wish: ArrayLike | None = None) -> ExportedCommand:
+        """Compute the command of a shield for a joint velocity wished for [rad/s], (n,), or none.
+
+        Raises:
+            InvalidInputError: `q` or the wish has a wrong shape, or `q` is not finite.
+        """
+        joints = checks.finite_array("q", q, (self.dof,))
+        asked = None if wish is None else _pointer(checks.array("wish", wish, (self.dof,)))
+        dq = np.empty(self.dof)
+        action = self._library.shield_step(self._memory, _pointer(joints), asked, _pointer(dq))
+        return ExportedCommand(dq, int(action))
+
+    def shield_halt(self) -> None:
+        """Brake from now on, whatever is wished for."""
+        self._library.shield_halt(self._memory)
+
     def target(self, t: float) -> Vector:
         """Compute the targets of the controller's reference at a time [s], (18 frames,)."""
         target = np.empty(18 * self.frames)

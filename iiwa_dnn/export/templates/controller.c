@@ -45,4 +45,4 @@ int controller_step(struct controller *c, const double *q, const double *target,
     c->steps[0] += 1.0;
     return (int)action;
 }
-@target_function@
+@target_function@@shield_function@

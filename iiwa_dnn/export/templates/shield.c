@@ -1,0 +1,40 @@
+
+int shield_step(struct controller *c, const double *q, const double *wish, double *dq)
+{
+    bool full = false;
+    struct arena arena = controller_arena(c, &full);
+    const vector settings = @settings@;
+    const vector limits = @limits@;
+    const vector joints = {(double *)q, CONTROLLER_DOF};
+    const vector asked = {wish ? (double *)wish : c->wish, CONTROLLER_DOF};
+    const vector aim = {c->aim, CONTROLLER_DOF};
+    const matrix past = {c->past, @rows@, CONTROLLER_DOF};
+    const shield_ShieldState kept = {
+        {c->positions, CONTROLLER_DOF}, {c->wish, CONTROLLER_DOF}, {c->flags, 4}
+    };
+    for (int i = 0; i < CONTROLLER_DOF; i++) {
+        if (!(fabs(q[i]) < INFINITY)) {
+            memset(dq, 0, sizeof(double) * CONTROLLER_DOF);
+            return CONTROLLER_INVALID;
+        }
+    }
+    @take_positions@(&arena, joints, &kept, settings);
+    const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
+    memcpy(c->aim, c->wish, sizeof c->wish);
+    if (held) {
+        @approach@(&arena, past, kept.wish, limits, CONTROLLER_DT, aim);
+    }
+    memset(c->state, 0, sizeof c->state);
+    memcpy(c->state, c->aim, sizeof c->wish);
+    const int action = controller_step(c, c->positions, c->aim, dq);
+    c->past[@yields@ * CONTROLLER_DOF] = 0.0;
+    for (int i = 0; i < CONTROLLER_DOF; i++) {
+        c->positions[i] += CONTROLLER_DT * dq[i];
+    }
+    return action;
+}
+
+void shield_halt(struct controller *c)
+{
+    c->flags[@reason@] = @halted@;
+}

@@ -1,0 +1,58 @@
+"""A shield in C: the same commands, to the last bit where the kinematics have no part in them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from iiwa_dnn import Robot, Shield, Sphere, export, load_robot
+
+DT = 1e-3
+START = np.array([-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0])
+PLAIN = load_robot("iiwa7")
+SMOOTH = PLAIN.with_limits(acceleration=10.0, jerk=500.0)
+BALL = Sphere([0.36, 0.16, 0.64], 0.05)
+
+
+@pytest.mark.parametrize("robot", [PLAIN, PLAIN.with_limits(acceleration=10.0), SMOOTH])
+@pytest.mark.parametrize(("obstacles", "apart"), [(None, 0.0), ([BALL], 1e-9)])
+def test_the_c_of_a_shield_gives_its_commands(
+    robot: Robot, obstacles: list[Sphere] | None, apart: float, tmp_path: Path
+) -> None:
+    """Wishes that are held, jump, fall silent for longer than the timeout, and are no numbers."""
+    shield = Shield(robot, DT, obstacles, timeout=0.02)
+    export.c99(shield, tmp_path, verify=False)
+    exported = export.load(tmp_path)
+    random = np.random.default_rng(0)
+    q = START
+    wish: np.ndarray | None = None
+    for k in range(1500):
+        if k % 40 == 0:
+            wish = random.standard_normal(7) * np.exp(random.standard_normal())
+        elif k % 120 == 1:
+            wish = None
+        elif k % 250 == 2:
+            wish = np.full(7, np.nan)
+        command = shield.step(q, wish)
+        found = exported.shield_step(q, wish)
+        np.testing.assert_allclose(found.dq, command.dq, rtol=0.0, atol=apart)
+        assert found.action == command.command.action
+        q = q + DT * command.dq
+        if k == 700:
+            q = q + 0.05  # further than the tracking error
+
+
+def test_a_halt_in_c_lasts(tmp_path: Path) -> None:
+    shield = Shield(SMOOTH, DT)
+    export.c99(shield, tmp_path, verify=False)
+    exported = export.load(tmp_path)
+    q = START
+    for _ in range(100):
+        q = q + DT * exported.shield_step(q, np.full(7, 0.2)).dq
+    exported.shield_halt()
+    for _ in range(200):
+        dq = exported.shield_step(q, np.full(7, 0.2)).dq
+        q = q + DT * dq
+    assert not dq.any()
