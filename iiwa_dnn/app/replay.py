@@ -19,7 +19,7 @@ from iiwa_dnn.files import one_line, read_toml
 from iiwa_dnn.naming import describe, in_the_way
 from iiwa_dnn.qp.program import Matrix, Vector
 from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import ACTIONS, orientation_error, position_error
+from iiwa_dnn.results.metrics import ACTIONS, position_error, rotation_angle
 from iiwa_dnn.results.pictures import obstacles_of
 from iiwa_dnn.results.plots import envelope
 from iiwa_dnn.results.record import Record
@@ -174,7 +174,6 @@ class Replay:
         gui.add_markdown("\n".join(f"- {line}" for line in verdict))
         self._readout = gui.add_markdown("")
         self._errors = np.linalg.norm(position_error(record), axis=1)
-        self._angles = orientation_error(record)
         self._add_curve()
         self.show()
 
@@ -218,6 +217,7 @@ class Replay:
         for obstacle, mesh in self.obstacles:
             mesh.position = obstacle.shift(self._shown)
         draw_path(self.server, "drawn", record.position[: k + 2], (220, 0, 30))
+        angle = rotation_angle(record.rotation[k], record.rotation_desired[k])
         step = min(k, record.steps - 1)
         acting = [record.filled(column)[step] for column in ("blocking", "blocking_rows")]
         against = map(describe, in_the_way(record.settings, *acting))
@@ -225,7 +225,7 @@ class Replay:
         rows = [
             f"position error | {self._errors[k]:.3g} m",
             "---|---",
-            f"orientation error | {self._angles[k]:.3g} rad",
+            f"orientation error | {float(angle):.3g} rad",
             f"KKT residual | {record.kkt_residual[step]:.1e}",
             f"gap to the reference | {record.crosscheck_gap[step]:.1e} rad/s",
             f"policy | {', '.join([action, *against])}",

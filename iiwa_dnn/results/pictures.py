@@ -7,7 +7,6 @@ record, nothing is simulated.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from functools import partial
 from itertools import pairwise
@@ -108,22 +107,19 @@ def save_video(robot: Robot, record: Record, path: str | os.PathLike[str]) -> No
     import_extra("imageio_ffmpeg", "pip install 'iiwa-dnn[sim]'")
     encoder = import_extra("imageio.v2", "pip install 'iiwa-dnn[sim]'")
 
+    count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
+    # The index at the front, so that a page can start to play it at once.
+    options = {"macro_block_size": 2, "output_params": ["-movflags", "+faststart"]}
+
     def encode(file: BinaryIO) -> None:
-        # The index at the front, so that a page can start to play it at once.
-        options = {"macro_block_size": 2, "output_params": ["-movflags", "+faststart"]}
-        with encoder.get_writer(file, format="mp4", fps=FRAME_RATE, **options) as writer:
-            for frame in frames(robot, record):
-                writer.append_data(frame)
+        with (
+            encoder.get_writer(file, format="mp4", fps=FRAME_RATE, **options) as writer,
+            ArmRenderer(robot, record) as renderer,
+        ):
+            for sample in np.linspace(0, record.steps, count).astype(int):
+                writer.append_data(renderer.draw(sample))
 
     write_atomically(path, encode)
-
-
-def frames(robot: Robot, record: Record) -> Iterator[Image]:
-    """Draw the video's pictures, (height, width, 3)."""
-    count = max(1, round(float(record.t[-1] - record.t[0]) * FRAME_RATE)) + 1
-    with ArmRenderer(robot, record) as renderer:
-        for sample in np.linspace(0, record.steps, count).astype(int):
-            yield renderer.draw(sample)
 
 
 class ArmRenderer(AbstractContextManager["ArmRenderer"]):

@@ -36,9 +36,9 @@ CAPTIONS = {
 }
 
 _JOINTS = {
-    "q": (r"$q_{{{}}}$", "Joint angle [rad]"),
-    "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]"),
-    "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]"),
+    "q": (r"$q_{{{}}}$", "Joint angle [rad]", "q_upper"),
+    "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]", "dq_max"),
+    "torque": (r"$\tau_{{{}}}$", "Joint torque [N m]", "torque_max"),
 }
 _ERRORS = (
     ("$e_x$", "0.35", "--"),
@@ -170,19 +170,15 @@ def draw_path(axes: Axes, record: Record) -> None:
 def draw_joints(axes: Axes, record: Record, name: str) -> None:
     """Draw one curve a joint over time, told apart by luminance, dashes and markers.
 
-    The name is ``"q"``, ``"dq"`` or ``"torque"``; the first two come with the limits near them,
-    each in the color of its joint, the third in percent of each joint's limit.
+    The name is ``"q"``, ``"dq"`` or ``"torque"``; limits near the curves have the color of their
+    joint.
     """
     import matplotlib
 
-    symbol, quantity = _JOINTS[name]
+    symbol, quantity, limit = _JOINTS[name]
     curves: FloatArray = getattr(record, name).T
-    bounds = limits(record, "dq_max") * [[-1.0], [1.0]]
-    if name == "torque":
-        curves = 100.0 * curves / limits(record, "torque_max")[:, np.newaxis]
-        bounds = np.empty((0, record.dof))
-    elif name == "q":
-        bounds = np.array([limits(record, "q_lower", -np.inf), limits(record, "q_upper")])
+    upper = limits(record, limit)
+    bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings, record.dof)
     every = max(min(curves.shape[1], BUCKETS) // 7, 1)

@@ -2,9 +2,10 @@
 
 import os
 import platform
+import re
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,6 @@ from tabulate import tabulate
 from iiwa_dnn.files import prepare_folder, write_json, write_text
 from iiwa_dnn.naming import describe, unwatched
 from iiwa_dnn.results.failures import INFEASIBLE, completed, counted, failures, programs_checked
-from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.metrics import JOINT_LIMITS, PROOF, compute_metrics
 from iiwa_dnn.results.plots import CAPTIONS, save_figures
 from iiwa_dnn.results.record import Record
@@ -214,16 +214,29 @@ def _success(metrics: Mapping[str, Any]) -> str:
 
 
 def _text(value: object) -> str:
-    """Put a value in words: numbers in four digits, equal entries once, a long list cut off."""
+    """Put a value in words: numbers in four digits."""
     if isinstance(value, Mapping):
         items = value.items()
         return ", ".join(f"{key} = {_text(item)}" for key, item in items if item is not None)
+    if isinstance(value, list):
+        return _listed(value)
     if isinstance(value, float):
         return f"{value:.4g}"
-    if not isinstance(value, list):
-        return f"{value:,}" if type(value) is int else str(value)
-    if len(value) > 1 and all(item == value[0] for item in value):
-        return f"{_text(value[0])} (all {len(value)})"
-    more = f" and {len(value) - _MOST} more" if len(value) > 2 * _MOST else ""
-    shown = value[:_MOST] if more else value
-    return " ".join(f"({_text(v)})" if isinstance(v, list) else _text(v) for v in shown) + more
+    return f"{value:,}" if type(value) is int else str(value)
+
+
+def _listed(values: Sequence[Any]) -> str:
+    """Put a list in words: equal entries said once, a long one cut off."""
+    if len(values) > 1 and all(item == values[0] for item in values):
+        return f"{_text(values[0])} (all {len(values)})"
+    shown = [f"({_text(v)})" if isinstance(v, list | dict) else _text(v) for v in values]
+    if len(values) > 2 * _MOST:
+        shown[_MOST:] = [f"and {len(values) - _MOST} more"]
+    return " ".join(shown)
+
+
+def markdown_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Lay out a table of texts in Markdown, its cells made fit to stand in one."""
+    cells = [[" ".join(str(text).split()).replace("|", "\\|") for text in row] for row in rows]
+    table = tabulate(cells, head, "pipe", disable_numparse=True)
+    return re.sub("  +", " ", re.sub("--+", "---", table))  # without the padding

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.plots import DOUBLE_COLUMN, draw_error, new_figure
 from iiwa_dnn.results.record import Record
+from iiwa_dnn.results.report import markdown_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

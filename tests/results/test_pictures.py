@@ -119,10 +119,9 @@ def test_a_video_that_cannot_be_written_or_is_interrupted_leaves_the_old_one(
     path.write_bytes(b"old")
 
     def interrupt(*_):
-        yield np.zeros((64, 64, 3), np.uint8)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(pictures, "frames", interrupt)
+    monkeypatch.setattr(ArmRenderer, "draw", interrupt)
     with pytest.raises(KeyboardInterrupt):
         pictures.save_video(robot, cut(record, 10), path)
     assert path.read_bytes() == b"old"

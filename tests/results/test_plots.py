@@ -110,11 +110,11 @@ def test_a_run_has_the_panels_of_what_it_has(heart):
             "tip": "hand", "frames": ["elbow"], "torque_max": [10.0] * 6 + [np.inf],
         },
     )  # fmt: skip
-    further = ["Joint torque [% of its limit]", "Position error [m]", "Path time [s]"]
+    further = ["Joint torque [N m]", "Position error [m]", "Path time [s]"]
     assert labels_of(record)[6:] == [*further, "Distance [m]"]
     assert axes_of(draw_distance, record).get_ylim()[0] == 0.0
     curves = axes_of(draw_joints, record, "torque").lines
-    assert [curve.get_ydata()[0] for curve in curves] == [50.0] * 6 + [0.0]  # per cent
+    assert [curve.get_ydata()[0] for curve in curves[:7]] == [5.0] * 7
     desired = np.array(heart.position_desired)
     desired[:, 2] += 0.5 * np.sin(heart.t)  # wider than along y
     axes = overview_figure(dataclasses.replace(heart, position_desired=desired)).axes[0]

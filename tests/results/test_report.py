@@ -12,10 +12,9 @@ from helpers_records import heart_record, make_record
 from iiwa_dnn import Heart
 from iiwa_dnn.errors import FileError
 from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.markdown import markdown_table
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import Record
-from iiwa_dnn.results.report import save_run, summary, write_report
+from iiwa_dnn.results.report import markdown_table, save_run, summary, write_report
 from iiwa_dnn.studies.paper import published
 
 KIND = np.array([0, 0, 1, 2, 2, 2, 3, 3, 3, 4])
