@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .expressions import SIGNS, Expressions, Value, literal, number_text
+from .expressions import SIGNS, Expressions, Value, literal, number_text, product
 from .kinds import ARRAYS, FLOAT, INT, NUMBERS, VOID, Kind, Kinds
 from .sources import ENTRY, Module, Package, decoration
 
@@ -246,12 +246,10 @@ class Function(Expressions):
         self._loops.pop()
 
     def _place(self, target: ast.expr) -> Value:
-        """Translate a variable or an element of an array that is written."""
+        """Translate a variable, or an element or a part of an array, that is written."""
         if isinstance(target, ast.Subscript):
             self.written.add(ast.unparse(target.value))
-        place = self.value(target)
-        self.require(place.kind in NUMBERS or isinstance(target, ast.Name), target)
-        return place
+        return self.value(target)
 
     def _store(self, target: ast.expr, value: Value) -> None:
         """Translate the writing of a value."""
@@ -269,8 +267,12 @@ class Function(Expressions):
                 self.require(wider == kind, target, "changes a variable's type")
                 self.add(f"{self.name(name)} = {value.text};")
             case _:
-                place = self._place(target)
                 self.require(value.kind in NUMBERS, target, "is written with an array")
+                place = self._place(target)
+                if place.kind.axes:  # all of it
+                    own = self.kept(place)
+                    self.add(f"for (int64_t k = 0, end = {product(own.sizes)}; k < end; k++)")
+                    place = Value(FLOAT, f"    {own.text}.data[k]")
                 self.add(f"{place.text} = {value.text};")
 
 

@@ -126,9 +126,10 @@ def arrays(values: Vector, rows: Matrix, counts: IntVector) -> None:
     own = np.empty((2, values.size))
     other = np.zeros(values.size)
     kept = values.copy()
+    own[:] = 0.5
+    own[0] = -0.0
     for i in range(values.size):
-        own[0, i] = values[i]
-        own[1, i] = 0.5
+        own[0, i] += values[i]
     for i in range(rows.shape[0]):
         own[1, i] *= 0.25
         rows[i, 0] += own[1, i] + len(rows)
@@ -325,7 +326,7 @@ REFUSED = [
     ("def f(a: Matrix) -> None:\n    a = a[:, 0]", "has gaps between its rows"),
     ("def f(a: Vector) -> None:\n    a = a[::2]", "has gaps between its rows"),
     ("def f(a: Vector) -> None:\n    a = a + a", "`a` is no number"),
-    ("def f(a: Matrix) -> None:\n    a[0] = 1.0", "has no translation"),
+    ("def f(a: Matrix) -> None:\n    a[0] = a", "is written with an array"),
     ("def f(a: Vector) -> Vector:\n    return 1.0", "is not what is annotated"),
     (
         "def f(n: int) -> int:\n    for i in range(n):\n        pass\n    return i",
