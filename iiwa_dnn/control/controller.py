@@ -35,6 +35,7 @@ from iiwa_dnn.control.state import (
 )
 from iiwa_dnn.control.step import INVALID, ControlStep, begin_step, finish_step, take_step
 from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step
+from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp import QP, Matrix, Status, Vector
@@ -178,7 +179,7 @@ class Controller:
 
         Raises:
             InvalidInputError: `q` has another size than the robot has joints, or is not finite; or
-                there is neither reference nor target; or `dt` is not above 0.
+                `t` is no number; or there is neither reference nor target; or `dt` is not above 0.
         """
         before = self._kept.now
         try:
@@ -186,8 +187,10 @@ class Controller:
                 command = self._compute(q, t, target, dt)
                 self._kept.now = self._kept.next
                 return command
-        except BaseException:  # interrupted before anybody got the command
+        except BaseException as error:  # interrupted before anybody got the command
             self._kept.now = before
+            if isinstance(error, TypeError | InvalidInputError):
+                checks.finite("t", t)
             raise
 
     def compute(self, q: Vector, t: float, target: Mapping[str, Target] | None = None) -> Command:

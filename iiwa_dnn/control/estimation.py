@@ -76,13 +76,9 @@ class JointEstimator:
         """
         self.model = model
         self.dt = checks.positive("dt", dt)
-        self.reset()
-
-    def reset(self) -> None:
-        """Drop the estimates; the next sample starts anew."""
+        self.bias: Vector = np.zeros(0)
         self._q: Vector | None = None
         self._late: tuple[Vector, ...] = ()
-        self.bias: Vector = np.zeros(0)
 
     def update(self, reading: Vector) -> Vector:
         """Take in measured angles (n,) [rad]; return estimated ones, a new array.

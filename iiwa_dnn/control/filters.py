@@ -7,6 +7,8 @@ The moving average is the paper's anti-noise mechanism, equation (9):
     w_{\text{filtered}}(t) = \frac1N \sum_{i=0}^{N-1} w_{\text{noisy}}(t - i\,\Delta t)
 """
 
+from collections import deque
+
 import numpy as np
 
 from iiwa_dnn import checks
@@ -27,18 +29,11 @@ class MovingAverage:
             InvalidInputError: `window` is below 1.
         """
         self.window = checks.integer("filter_window", window, 1)
-        self._count = 0
-        self._samples = np.empty((0, 0))
+        self._samples = deque[Vector](maxlen=self.window)
 
     def __call__(self, sample: Vector) -> Vector:
         """Take one sample (n,) [rad/s] and return the mean of the window (n,)."""
-        if self.window == 1:
-            return sample
-        if self._count == 0:
-            self._samples = np.zeros((self.window, sample.size))
-        self._samples[self._count % self.window] = sample
-        self._count += 1
-        filled = min(self._count, self.window)
+        self._samples.append(sample.copy())
         # A running sum would be quicker and would drift by its rounding.
-        mean: Vector = self._samples[:filled].sum(axis=0) / filled
+        mean: Vector = np.sum(self._samples, axis=0) / len(self._samples)
         return mean

@@ -71,8 +71,6 @@ class PoseSolution:
         orientation_error: Angle between the orientations of `nearest` and of the target [rad].
         in_the_way: Limits and obstacles that keep `nearest` from the target, in words. If empty
             though none was found, the arm is too short, or in a fold that it does not leave.
-        arrived: Number of starts that led to the pose.
-        starts: Number of starts.
     """
 
     q: Vector | None
@@ -80,8 +78,6 @@ class PoseSolution:
     position_error: float
     orientation_error: float
     in_the_way: tuple[str, ...]
-    arrived: int
-    starts: int
 
     @property
     def found(self) -> bool:
@@ -90,13 +86,11 @@ class PoseSolution:
 
     def __repr__(self) -> str:
         if self.q is not None:
-            posture = np.array2string(self.q, precision=4, separator=", ")
-            return f"<PoseSolution q = {posture} rad; {self.arrived} of {self.starts} starts>"
+            return f"<PoseSolution q = {np.array2string(self.q, precision=4, separator=', ')} rad>"
         way = ", ".join(self.in_the_way) or "no limit: out of reach"
         return (
-            f"<PoseSolution: none found from {self.starts} starts; the nearest is "
-            f"{self.position_error:.3g} m and {self.orientation_error:.3g} rad away, "
-            f"in the way: {way}>"
+            f"<PoseSolution: none found; the nearest is {self.position_error:.3g} m and "
+            f"{self.orientation_error:.3g} rad away, in the way: {way}>"
         )
 
 
@@ -105,17 +99,14 @@ class _Point(NamedTuple):
 
     Attributes:
         q: Joint positions [rad], (n,).
-        jacobian: Jacobian of the tip, linear over angular, (6, n).
-        error: Position [m] over rotation vector [rad] from the tip to the goal, (6,).
-        qp: Program of a step at `q`, whose equalities begin with the pose.
+        qp: Program of a step at `q`, whose equalities begin with the pose: the Jacobian of the tip,
+            linear over angular, and position [m] over rotation vector [rad] from it to the goal.
         missing: Squared error, the distances by which pairs are too near, and how far mimic joints
             are from where their leaders put them.
         far: Largest of the errors of the pose [m], [rad], and of those distances.
     """
 
     q: Vector
-    jacobian: Matrix
-    error: Vector
     qp: QP
     missing: float
     far: float
@@ -162,29 +153,28 @@ def solve_pose(
     postures = [np.clip(begin, robot.q_lower, robot.q_upper), *robot.draw(random, starts - 1)]
     ends = [_descend(program, solver, goal, posture, tol) for posture in postures]
     found = [end for end in ends if end.far <= tol]
+    best = min(ends, key=lambda end: end.missing)
     if found:
         best = min(found, key=lambda end: float(np.linalg.norm(end.q - begin)))
-    else:
-        best = min(ends, key=lambda end: end.missing)
     return PoseSolution(
         best.q if found else None,
         Configuration(robot, best.q),
-        float(np.linalg.norm(best.error[:3])),
-        float(np.linalg.norm(best.error[3:])),
+        math.hypot(*best.qp.b[:3]),
+        math.hypot(*best.qp.b[3:6]),
         () if found else _in_the_way(program, solver, best),
-        len(found),
-        starts,
     )
 
 
 def _program(robot: Robot, obstacles: Sequence[Obstacle] | CollisionAvoidance) -> StepProgram:
     """Lay out a program whose step of 1 s is an iteration: velocities are changes of joints."""
     limits: list[JointLimits | CollisionAvoidance] = [JointLimits(gain=1.0)]
-    avoidance = obstacles
-    if not isinstance(avoidance, CollisionAvoidance) and avoidance != ():
-        avoidance = CollisionAvoidance(avoidance)
     slowed = robot.with_limits(velocity=_STEP)
-    if isinstance(avoidance, CollisionAvoidance):
+    avoidance: CollisionAvoidance | None = None
+    if isinstance(obstacles, CollisionAvoidance):
+        avoidance = obstacles
+    elif obstacles != ():
+        avoidance = CollisionAvoidance(obstacles)
+    if avoidance is not None:
         pairs = len(avoidance.scene(slowed).pairs)
         limits.append(replace(avoidance, gain=1.0, nearest=pairs))
     return StepProgram(slowed, Scheme([], [PoseTask(gain=1.0)], limits))
@@ -226,21 +216,21 @@ def _at(program: StepProgram, q: Vector, goal: Matrix) -> _Point:
     apart = np.concatenate([np.abs(linkage), np.maximum(-qp.h, 0.0)])
     missing = float(error @ error + apart.sum())
     far = max(math.hypot(*error[:3]), math.hypot(*error[3:]), apart.max(initial=0.0))
-    return _Point(q, qp.A[:6], error, qp, missing, far)
+    return _Point(q, qp, missing, far)
 
 
 def _solve(solver: DNNSolver, point: _Point, damping: float) -> Solution:
     """Solve the program of an iteration, of which the damping is a ratio to the squared error."""
-    P = point.jacobian.T @ point.jacobian
-    P.flat[:: P.shape[1] + 1] += damping * float(point.error @ point.error)
     qp = point.qp
-    q = -point.jacobian.T @ point.error
-    return solver.solve(QP(P, q, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
+    jacobian = qp.A[:6]
+    error = qp.b[:6]
+    P = jacobian.T @ jacobian + damping * float(error @ error) * np.eye(qp.q.size)
+    return solver.solve(QP(P, -error @ jacobian, qp.G, qp.h, qp.A[6:], qp.b[6:], qp.lb, qp.ub))
 
 
 def _in_the_way(program: StepProgram, solver: DNNSolver, point: _Point) -> tuple[str, ...]:
     """Name the limits whose multipliers keep a posture from the goal."""
     step = _solve(solver, point, _DAMPING)
-    least = _ACTS * math.hypot(*point.error)
+    least = _ACTS * math.hypot(*point.qp.b[:6])
     codes = np.sign(step.z_box) * (np.abs(step.z_box) > least)
     return tuple(map(describe, in_the_way(program.settings(), codes, step.z > least)))

@@ -39,10 +39,9 @@ from iiwa_dnn.control.stopping import (
     next_velocity,
     stopping_time,
 )
-from iiwa_dnn.networks.integrators.base import BUDGET, TOLERANCE
-from iiwa_dnn.networks.integrators.implicit import settle
+from iiwa_dnn.networks.integrators.base import TOLERANCE
 from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.dense import row_dot
+from iiwa_dnn.qp.dense import add_row, row_dot
 from iiwa_dnn.qp.layout import QPViews, qp_views
 from iiwa_dnn.qp.residuals import point_residuals, within
 from iiwa_dnn.schemes.collisions import CollisionAvoidance
@@ -70,10 +69,6 @@ STOPPED = int(ProgramKind.STOPPED)
 CREEP = 0.1
 """Scaling factor below which the task is softened, and share of a period by which the clock then
 advances: an arm that rests in a singular or unreachable pose does not hold its target there."""
-
-NEAR = 5.0
-"""Linear systems for the step's own program from the answer within wider bounds: where its own
-bounds leave room for the task, that is near."""
 
 SINGULAR = 0.05
 """Below it a pose counts as singular: what the tip moves for each unit of joint velocity [m/rad].
@@ -148,16 +143,19 @@ def yield_step(
     if action != BRAKE:
         _widen_bounds(qp, yielding.limits, past[Q])
         kind, factor = _answer_relaxed(views, qp, yielding, state, relaxed, action)
-    if kind == SCALED and factor == 1.0:
-        rest = _answer_own(views, qp, own, arrays, past, yielding, state)
-        kind = OWN if rest >= 0.0 else SCALED
     x = views.point[: qp.q.size].copy()
     limits = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, own.lb, own.ub)
-    if kind != STOPPED and kind != OWN:
+    if kind != STOPPED:
         _step(limits, past, following, yielding, views.figures, x)
         rest = _make_stoppable(limits, arrays, past, yielding, views, x)
-        if _note_missing(views, x[:dof]) > 0:
+        missing = _note_missing(views, x[:dof])
+        primal, dual, gap = point_residuals(limits, views.point)
+        if missing > 0:
             kind = STOPPED if action == STOP else HELD
+        elif factor == 1.0 and within(primal, dual, gap, yielding.settings[TOLERANCE]):
+            kind = OWN
+            copied(qp.lb, own.lb)
+            copied(qp.ub, own.ub)
     if kind == STOPPED:
         copied(views.program, data)
         rest = _brake(own, past, yielding, x)
@@ -178,39 +176,6 @@ def _periods_to_rest(arrays: ProgramArrays, past: Matrix, yielding: Yielding, x:
     rest = 0.0
     if yielding.stop:
         rest = enter_stopping_time(yielding.stop, arrays, past, yielding, x)
-    return rest
-
-
-@compiled
-def _answer_own(
-    views: RowViews,
-    qp: QPViews,
-    own: QPViews,
-    arrays: ProgramArrays,
-    past: Matrix,
-    yielding: Yielding,
-    state: Vector,
-) -> float:
-    """Answer a step's own program, which has a solution within wider bounds, within its own.
-
-    Returns:
-        Periods until a braking motion from the answer rests, 0 where none is asked for; -1 if there
-        is no answer, or the arm cannot stop from it: program and answer are then as before.
-    """
-    settings = yielding.settings.copy()
-    settings[BUDGET] = NEAR
-    tried = state.copy()
-    point = np.empty(views.point.size)
-    systems, _, primal, dual, gap = settle(own, 0, settings, tried, point)
-    views.figures[0] += systems
-    if not within(primal, dual, gap, settings[TOLERANCE]):
-        return -1.0
-    rest = _periods_to_rest(arrays, past, yielding, point[: past.shape[1]])
-    if rest >= 0.0:
-        copied(views.point, point)
-        copied(state, tried)
-        copied(qp.lb, own.lb)
-        copied(qp.ub, own.ub)
     return rest
 
 
@@ -442,17 +407,16 @@ def _go_away(limits: QPViews, last: Vector, dq: Vector) -> bool:
     Returns:
         False if no row asks for a retreat, or the bounds allow none in that direction.
     """
-    moving = largest_entry(last) > 0.0
+    rests = largest_entry(last) == 0.0
     near = 0
+    copied(dq, last)
     for j in range(limits.h.size):
-        near += limits.h[j] < -REACHED
+        if limits.h[j] < -REACHED:
+            near += 1
+            add_row(dq, -1.0 * rests, limits.G, j)
     least = 0.0
     most = np.inf
     for i in range(dq.size):
-        dq[i] = last[i]
-        for j in range(limits.h.size):
-            if not moving and limits.h[j] < -REACHED:
-                dq[i] -= limits.G[j, i]
         if dq[i] != 0.0:
             least = max(least, min(limits.lb[i] / dq[i], limits.ub[i] / dq[i]))
             most = min(most, max(limits.lb[i] / dq[i], limits.ub[i] / dq[i]))

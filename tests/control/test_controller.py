@@ -147,9 +147,13 @@ def test_a_bad_period_is_named(dt: float) -> None:
         controller_of(SCHEME, mode="continuous", dt=dt)
 
 
-def test_a_time_that_is_no_number_is_named() -> None:
-    with pytest.raises(InvalidInputError, match=r"^t\b"):
-        controller_of(SCHEME).step(PAPER_Q0, np.nan)
+@pytest.mark.parametrize("t", [np.nan, "a", None])
+def test_a_time_that_is_no_number_is_named(t: Any) -> None:
+    controller = controller_of(SCHEME, reference=heart())
+    for _ in range(2):
+        with pytest.raises(InvalidInputError, match=r"^t\b"):
+            controller.step(PAPER_Q0, t)
+        controller.step(PAPER_Q0, 0.0)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 1e-13, 3e-4])
