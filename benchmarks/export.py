@@ -97,7 +97,7 @@ def compared(steps: int) -> Iterator[dict[str, Any]]:
             row["text"] = text_size(folder, Path(place))
             program = compiled(folder, Path(place) / "loop", FAST, driver, folder / "controller.c")
             quietest = min(run(program, steps, *made[1].tolist()) for _ in range(ROUNDS))
-            row |= dict(zip(("median", "p99", "p999"), quietest, strict=False))
+            row |= dict(zip(("median", "p99", "p999"), quietest, strict=True))
             yield row | compare(made, folder, steps)
 
 
