@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("coal")
 
 import iiwa_dnn
-from braking import DISTANCE, SLACK, Case, Drive, judge_distances, way_back
+from braking import DISTANCE, SLACK, Case, Drive, judge_distances
 from random_motion import Judge
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
@@ -31,12 +31,3 @@ def test_the_judge_leaves_no_sample_out_that_is_too_near() -> None:
     found = judge_distances(case, judge, Drive(path, np.ones(len(path) - 1, bool), 0.0))
     assert found.broken == too_near
     assert found.least == distances.min()
-
-
-def test_the_way_back_leaves_loops_out() -> None:
-    there = np.linspace(0.0, 1.0, 101)[:, np.newaxis]
-    path = np.vstack([there, there[::-1], there])
-    postures = np.array(way_back(path))
-    assert len(postures) < 110
-    assert postures[-1] == 0.0
-    assert (np.diff(postures[:, 0]) <= 0.0).all()

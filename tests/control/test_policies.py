@@ -99,23 +99,6 @@ def test_the_scaling_factor_is_the_linear_programs() -> None:
     assert checked > 20
 
 
-def test_the_scaled_program_is_the_steps_own_with_less_of_the_task() -> None:
-    checked = 0
-    for seed in range(10):
-        controller, q, target = posed(seed)
-        own = own_program(controller, q, target)
-        command = controller.step(q, 0.0, target)
-        if command.kind is not ProgramKind.SCALED:
-            continue
-        for name in ("P", "q", "G", "h", "A", "lb", "ub"):
-            np.testing.assert_array_equal(getattr(command.qp, name), getattr(own, name))
-        np.testing.assert_allclose(command.qp.b, command.fraction * own.b, rtol=1e-12)
-        assert command.solution.residuals.largest <= 1e-9
-        np.testing.assert_array_equal(command.dq, command.solution.x)
-        checked += 1
-    assert checked > 2
-
-
 @pytest.mark.parametrize("policy", ["slow", "relax"])
 def test_the_softened_program_is_the_pages(policy: Policy) -> None:
     for seed in (0, 3, 6, 9):  # so3: the weights are those of a pose

@@ -5,7 +5,6 @@ import pinocchio as pin
 import pytest
 
 import iiwa_dnn
-from iiwa_dnn.errors import InvalidInputError
 
 
 def error(robot: iiwa_dnn.Robot, q: np.ndarray, target: iiwa_dnn.Target) -> tuple[float, float]:
@@ -104,13 +103,3 @@ def test_obstacles_are_kept_clear_of_and_named() -> None:
     assert any("Sphere 1" in limit for limit in barred.in_the_way)
     scene = iiwa_dnn.CollisionAvoidance([ball]).scene(robot)
     assert scene.nearest(barred.nearest.q[None], np.zeros(1))[0] >= 0.02 - 1e-6
-
-
-def test_arguments_that_make_no_sense_are_refused() -> None:
-    robot = iiwa_dnn.load_robot("iiwa7")
-    with pytest.raises(InvalidInputError, match="starts"):
-        iiwa_dnn.solve_pose(robot, pose_of(robot, robot.start_posture()), starts=0)
-    with pytest.raises(InvalidInputError, match="target"):
-        iiwa_dnn.solve_pose(robot, np.eye(4))
-    with pytest.raises(InvalidInputError, match="q0"):
-        iiwa_dnn.solve_pose(robot, pose_of(robot, robot.start_posture()), [0.0, 1.0])

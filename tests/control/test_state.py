@@ -19,7 +19,6 @@ from iiwa_dnn import (
     DNNSolver,
     DoubleIndicator,
     Heart,
-    InvalidInputError,
     JerkLimits,
     MovingTarget,
     Reference,
@@ -150,24 +149,6 @@ def test_two_threads_keep_the_acceleration_limit_between_them() -> None:
     assert len(commands) == 600
 
 
-@pytest.mark.parametrize(
-    "q",
-    [
-        np.array(PAPER_Q0) + 0j,
-        np.ma.masked_array(PAPER_Q0, mask=[True, False, False, False, False, False, False]),
-        np.array(PAPER_Q0)[:6],
-        np.full(7, np.nan),
-        ["a"] * 7,
-    ],
-    ids=["complex", "masked", "short", "nan", "text"],
-)
-def test_joint_positions_that_are_none_are_refused(q: Any) -> None:
-    controller = Controller(paper_robot(), LIMITED, heart(), dt=DT)
-    controller.step(PAPER_Q0, 0.0)
-    with pytest.raises(InvalidInputError, match=r"^q\b"):
-        controller.step(q, DT)
-
-
 def teleoperated() -> MovingTarget:
     target = MovingTarget(paper_start(), speed=0.25)
     target.set(paper_start().position + [0.0, 0.9, 0.3])
@@ -196,23 +177,3 @@ def test_a_simulation_is_a_loop_of_steps_to_the_last_bit(make: Any, limits: Any)
         np.testing.assert_array_equal(q, record.q[k])
         q = q + 2e-3 * controller.step(q, k * 2e-3).dq
     np.testing.assert_array_equal(q, record.q[-1])
-
-
-def test_a_slowed_moving_target_does_not_jump() -> None:
-    record = simulate(
-        paper_robot(), DoubleIndicator(), teleoperated(), PAPER_Q0, dt=1e-3, duration=2.0,
-        check=CrossCheck(()),
-    )  # fmt: skip
-    assert record.fraction is not None
-    steps = np.linalg.norm(np.diff(record.position_desired, axis=0), axis=1)
-    assert steps.max() <= 0.25 * 1e-3 * (1.0 + 1e-9)
-
-
-def test_a_look_at_the_targets_does_not_take_the_first_steps_home() -> None:
-    plain = Controller(paper_robot(), DoubleIndicator(), heart())
-    looked = Controller(paper_robot(), DoubleIndicator(), heart())
-    looked.targets(0.0)
-    for k in range(3):
-        expected = plain.step(PAPER_Q0, 1e-3 * k).dq
-        np.testing.assert_array_equal(looked.step(PAPER_Q0, 1e-3 * k).dq, expected)
-    assert looked.scheme.settings()["home"] is not None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -16,11 +14,7 @@ from iiwa_dnn import (
     DoubleIndicator,
     HalfSpace,
     JerkLimits,
-    JointLimits,
-    KineticEnergy,
     Limit,
-    PositionTask,
-    Scheme,
     Sphere,
     Target,
     load_robot,
@@ -241,56 +235,6 @@ def test_an_arm_just_outside_the_distance_is_in_no_trap() -> None:
         target = Target(start.position + [-0.1, 0.0, 0.0], start.rotation)
         q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
     assert np.linalg.norm(Configuration(ROBOT, q).position - target.position) < 1e-3
-
-
-def test_an_arm_with_a_long_period_goes_back_as_near_as_it_began() -> None:
-    # The rows keep off by what a step at full speed could take, 10 cm here, though no such speed
-    # is reached within it: once it had left its start, the arm did not come back.
-    robot = ROBOT.with_limits(velocity=5.0)
-    start = Configuration(robot, robot.start_posture())
-    ball = Sphere(start.position + [0.25, 0.0, 0.0], 0.1)
-    avoidance = CollisionAvoidance([ball], self_collision=False)
-    scene = avoidance.scene(robot)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(*ACCELERATION, avoidance))
-    controller = Controller(robot, scheme, dt=1.6e-2)
-    q = start.q
-    for k in range(500):
-        away = -0.3 if k < 150 else 0.0
-        target = Target(start.position + [away, 0.0, 0.0], start.rotation)
-        q = q + 1.6e-2 * controller.step(q, 1.6e-2 * k, target).dq
-        assert scene.nearest(q[None], np.zeros(1))[0][0] >= 0.02
-    assert np.linalg.norm(Configuration(robot, q).position - start.position) < 1e-3
-
-
-TWO_LINKS = """<robot name="two_links"><link name="base"/><link name="one"/>
-<link name="two"><collision><origin xyz="0.6 0 0"/><geometry><sphere radius="0.01"/></geometry>
-</collision></link><link name="tip"/>
-<joint name="j1" type="revolute"><parent link="base"/><child link="one"/><axis xyz="0 0 1"/>
-<limit lower="-4" upper="4" velocity="3" effort="1"/></joint>
-<joint name="j2" type="revolute"><parent link="one"/><child link="two"/><axis xyz="0 0 1"/>
-<origin xyz="1 0 0"/><limit lower="-4" upper="4" velocity="3" effort="1"/></joint>
-<joint name="j3" type="fixed"><parent link="two"/><child link="tip"/><origin xyz="0.6 0 0"/></joint>
-</robot>"""
-
-
-@pytest.mark.filterwarnings("ignore:2 joints cannot fulfil the 3 rows")
-def test_a_folded_arm_that_cannot_retreat_stays_where_it_is(tmp_path: Path) -> None:
-    # Folded, no joint moves the tip along the arm: the row is 0 dq <= 0, and to its side the tip
-    # would swing nearer by 0.3 mm within a step that the row allows.
-    file = tmp_path / "two_links.urdf"
-    file.write_text(TWO_LINKS, encoding="utf-8")
-    robot = load_robot(file)
-    conf = Configuration(robot, [0.0, np.pi])
-    ball = Sphere(conf.position - [2.0 + 0.01 + 0.02 + 1e-6, 0.0, 0.0], 2.0)
-    avoidance = CollisionAvoidance([ball], distance=0.02, self_collision=False)
-    scene = avoidance.scene(robot)
-    scheme = Scheme([KineticEnergy()], [PositionTask()], [JointLimits(), avoidance])
-    for goal in ([-0.1, 0.3, 0.0], [0.1, -0.2, 0.0], [0.0, 0.02, 0.0]):
-        controller = Controller(robot, scheme, dt=1e-2)
-        command = controller.step(conf.q, 0.0, Target(conf.position + goal, conf.rotation))
-        q = conf.q + 1e-2 * command.dq
-        assert scene.nearest(q[None], np.zeros(1))[0][0] >= 0.02
-        assert not command.ok
 
 
 def test_a_ball_that_no_joint_can_evade_is_said_to_be_in_the_way() -> None:

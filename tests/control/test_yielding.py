@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from helpers_kinematics import PAPER_Q0
 from helpers_simulation import UNCHECKED, heart, paper_robot, paper_start, run
 from iiwa_dnn import (
     AccelerationLimits,
@@ -26,14 +25,12 @@ from iiwa_dnn import (
     PositionTask,
     Record,
     Scheme,
-    Step,
     Target,
     compute_metrics,
     failures,
     simulate,
 )
 from iiwa_dnn.control.policies import Action, Policy
-from iiwa_dnn.control.relaxed import note_blocking
 from iiwa_dnn.schemes.tasks import ROTATION_LENGTH
 from judge_limits import Breach, breaches
 
@@ -68,22 +65,6 @@ def test_a_path_that_fits_the_limits_is_drawn_as_without() -> None:
     assert not limited.action.any()
     assert limited.settings["scheme"]["extra_limits"][1] == {"name": "JerkLimits", "limit": JERK}
     assert "extra_limits" not in free.settings["scheme"]
-
-
-def test_at_a_position_limit_it_is_drawn_so_to_the_solvers_tolerance() -> None:
-    """Joint 1 is held at its limit from 2.1 s on, and begins to leave it at 3.6 s."""
-    found = [
-        simulate(
-            paper_robot(), DoubleIndicator(orientation="so3", home=PAPER_Q0, extra_limits=limits),
-            Heart(scale=0.008).anchored(paper_start()), PAPER_Q0,
-            dt=2e-3, duration=4.0, check=UNCHECKED,
-        )
-        for limits in ((), LIMITS[:1])
-    ]  # fmt: skip
-    free, limited = found
-    assert not limited.action.any()
-    assert free.q[:, 0].min() == pytest.approx(-2.5, abs=1e-9)
-    assert np.abs(limited.dq - free.dq).max() < 2e-9
 
 
 @pytest.mark.parametrize("limits", [LIMITS, LIMITS[:1]])
@@ -196,37 +177,6 @@ def test_commands_that_something_alters_keep_the_limits(options: dict[str, objec
     assert np.abs(record.dq).max() > 0.0
 
 
-def test_runge_kutta_gains_what_it_gains_without_limits() -> None:
-    free = run(duration=0.2, motion="rk4")
-    limited = run(LIMITED, duration=0.2, motion="rk4")
-    np.testing.assert_allclose(limited.q, free.q, rtol=0, atol=1e-13)
-
-
-class Slowly(Limit):
-    """A limit of one's own that contradicts the others: no joint may move."""
-
-    def bounds(self, step: Step) -> tuple[np.ndarray, np.ndarray]:
-        return np.zeros(7), np.zeros(7)
-
-
-def test_a_limit_of_ones_own_gives_way_to_acceleration() -> None:
-    robot, start = paper_robot(), paper_start()
-    controller = Controller(robot, Scheme((), [PositionTask()], [JointLimits(), LIMITS[0]]))
-    target = Target(start.position + [0.0, 0.0, 0.1], start.rotation)
-    q, path = start.q, [start.q]
-    for k in range(100):
-        q = q + 1e-3 * controller.step(q, 1e-3 * k, target).dq
-        path.append(q)
-    controller.scheme = Scheme((), [PositionTask()], [Slowly(), LIMITS[0]])
-    for k in range(400):
-        command = controller.step(q, 1e-3 * k, target)
-        assert (command.qp.lb <= command.qp.ub).all()
-        q = q + 1e-3 * command.dq
-        path.append(q)
-    assert judged(np.array(path), jerk=np.inf) == []
-    assert (command.dq == 0.0).all()
-
-
 @pytest.mark.parametrize("limits", [(), LIMITS[:1]], ids=["none", "acceleration"])
 def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
     limits: tuple[Limit, ...],
@@ -246,11 +196,3 @@ def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
         assert command.ok
         velocity = start.jacobian[:3] @ command.dq
         np.testing.assert_allclose(velocity, [10.2e-5, 0.0, 0.0], atol=1e-8)
-
-
-def test_rounding_beside_a_row_in_the_way_blocks_nothing() -> None:
-    rows = [1.0, 0.0]
-    bounds = [1e-12, -1e-12, 0.0]
-    blocking = np.full(4, 9.0)
-    note_blocking(np.array([0.0, 0.0, 0.0, *rows, *bounds]), 2, 2, 1, blocking)
-    assert blocking.tolist() == [0.0, 0.0, 1.0, 0.0]

@@ -1,0 +1,79 @@
+"""Arguments that make no sense are named in one line, and change nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import heart, paper_robot, paper_start
+from iiwa_dnn import Controller, DoubleIndicator, InvalidInputError, Target, solve_pose
+from iiwa_dnn.control.estimation import JointEstimator, NoiseModel
+from iiwa_dnn.simulation import MovingAverage
+
+POSE = Target(paper_start().position, paper_start().rotation)
+
+
+def controller(**options: Any) -> Controller:
+    return Controller(paper_robot(), DoubleIndicator(), heart(), **options)
+
+
+REFUSED: list[tuple[str, Callable[[], object]]] = [
+    ("mode: must be one of converged, continuous, not", lambda: controller(mode="discrete")),
+    ("policy", lambda: controller(policy="raise")),
+    ("scheme", lambda: Controller(paper_robot(), object())),  # type: ignore[arg-type]
+    ("dt", lambda: controller(dt=0.0)),
+    ("dt", lambda: controller(dt=np.nan)),
+    ("reference", lambda: Controller(paper_robot(), DoubleIndicator()).step(PAPER_Q0, 0.0)),
+    ("measurement", lambda: NoiseModel(measurement=0.0)),
+    ("velocity", lambda: NoiseModel(velocity=-1.0)),
+    ("bias_walk", lambda: NoiseModel(bias_walk=np.nan)),
+    ("bias", lambda: NoiseModel(bias=np.inf)),
+    ("delay", lambda: NoiseModel(delay=-1)),
+    ("dt", lambda: JointEstimator(NoiseModel(), 0.0)),
+    ("filter_window", lambda: MovingAverage(0)),
+    ("filter_window", lambda: MovingAverage(2.5)),  # type: ignore[arg-type]
+    ("starts", lambda: solve_pose(paper_robot(), POSE, starts=0)),
+    ("target", lambda: solve_pose(paper_robot(), np.eye(4))),  # type: ignore[arg-type]
+    ("q0", lambda: solve_pose(paper_robot(), POSE, [0.0, 1.0])),
+]
+
+
+@pytest.mark.parametrize(("name", "call"), REFUSED, ids=[name for name, _ in REFUSED])
+def test_an_argument_that_makes_no_sense_is_named(name: str, call: Callable[[], object]) -> None:
+    with pytest.raises(InvalidInputError, match=rf"^{name}\b"):
+        call()
+
+
+READINGS: dict[str, Any] = {
+    "complex": np.array(PAPER_Q0) + 0j,
+    "masked": np.ma.masked_array(PAPER_Q0, mask=[True, False, False, False, False, False, False]),
+    "short": np.array(PAPER_Q0)[:6],
+    "column": np.zeros((7, 1)),
+    "nan": np.full(7, np.nan),
+    "text": ["a"] * 7,
+}
+
+
+@pytest.mark.parametrize("q", READINGS.values(), ids=READINGS.keys())
+@pytest.mark.parametrize("begun", [False, True])
+def test_joint_positions_that_are_none_are_refused(q: Any, begun: bool) -> None:
+    loop = controller()
+    if begun:
+        loop.step(PAPER_Q0, 0.0)
+    with pytest.raises(InvalidInputError, match=r"^q\b"):
+        loop.step(q, 1e-3)
+
+
+@pytest.mark.parametrize("t", [np.nan, "a", None])
+def test_a_time_that_is_no_number_is_refused_and_nothing_is_lost(t: Any) -> None:
+    loop = controller()
+    for _ in range(2):
+        with pytest.raises(InvalidInputError, match=r"^t\b"):
+            loop.step(PAPER_Q0, t)
+        command = loop.step(PAPER_Q0, 0.0)
+    expected = controller().step(PAPER_Q0, 0.0).dq
+    np.testing.assert_allclose(command.dq, expected, rtol=0, atol=1e-9)
