@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,22 +10,20 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Network, enter_rates
 from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler, Integrator
-from iiwa_dnn.networks.integrators.base import CompiledAnswer, Settled, answer_program, enter_answer
+from iiwa_dnn.networks.integrators.base import CompiledAnswer, Settled, enter_answer
 from iiwa_dnn.networks.integrators.explicit import follow
-from iiwa_dnn.networks.integrators.implicit import settle_address, settle_program
-from iiwa_dnn.networks.integrators.scaling import equilibrate
+from iiwa_dnn.networks.integrators.implicit import settle, settle_program
+from iiwa_dnn.networks.integrators.scaling import settle_scaled
 from iiwa_dnn.networks.projection import ProjectionNetwork, is_projection
 from iiwa_dnn.qp.certificates import find_certificate
-from iiwa_dnn.qp.layout import Sizes, Vector, check_size
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
+from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.qp.solution import Solution, Status
 
 SHARPENED = 1e-14
 SHARPENING = 20
 """Tolerance of `DNNSolver.sharpen`, and its linear systems."""
-
-STRICTER = 1e-3
-"""Tolerance in scaled coordinates over that in the program's own, where the residuals grow."""
 
 
 @dataclass(frozen=True)
@@ -106,25 +103,20 @@ class DNNSolver:
             The function's address and its arguments; None if network or integrator has none.
         """
         network = self.network
-        builtin = is_projection(network)
         function = type(network).compiled_rates
+        builtin = is_projection(network)
         if function is None or not (builtin or type(network).flow is Network.flow):
             return None
-        substeps = 0
+        integrator = self.follower if duration > 0.0 else self.settler
+        substeps = getattr(integrator, "substeps", None)
         # A subclass may integrate in its own way.
-        if duration == 0.0 and builtin and type(self.settler) is ImplicitEuler:
-            address = settle_address()
-        elif duration > 0.0 and type(self.follower) is ExplicitEuler:
-            substeps = self.follower.substeps or 0
-            if not (substeps or builtin):
-                return None
-            address = enter_answer.address(follow)
-        else:
+        own = ExplicitEuler if duration > 0.0 else ImplicitEuler
+        if type(integrator) is not own or not (builtin or substeps):
             return None
-        budget = self.settler.max_steps
-        ahead = duration / network.rho
-        constants = [self.tol, budget, ahead, substeps, *network.constants(sizes)]
-        return CompiledAnswer(address, enter_rates.address(function), np.array(constants))
+        constants = [self.tol, self.settler.max_steps, duration / network.rho, substeps or 0]
+        address = enter_answer.address(follow if duration > 0.0 else settle)
+        rates = enter_rates.address(function)
+        return CompiledAnswer(address, rates, np.array([*constants, *network.constants(sizes)]))
 
     def solve(self, qp: QP) -> Solution:
         """Advance the network until it has settled, and judge the point it has reached.
@@ -139,43 +131,28 @@ class DNNSolver:
             The solution; `found` only if every residual is at most `tol`.
         """
         state = self._take(qp)
-        n, m, p = sizes = qp.sizes
+        n, m, p = qp.sizes
         point = np.empty(2 * n + m + p)
-        first = self._first_start
-        if first is None:
-            settled = self.settler.settle(self.network, qp, state, point, self.tol)
-        else:
-            settled = answer_program(qp.data, sizes, settle_address(), 0, first, state, point)
-        if not self._is_within(settled):
-            if not math.isfinite(sum(settled[2:])):
-                return Solution(point, sizes, Status.NOT_FINITE, *settled)
-            certificate = find_certificate(qp, point)
-            if certificate is not None:
-                return Solution(point, sizes, certificate[0], *settled, certificate[1])
-            if first is not None:
-                left = self.settler.max_steps - settled[0]
-                settled = settle_scaled(qp, state, point, self.tol, left, settled)
-            if not self._is_within(settled):
-                return Solution(point, sizes, Status.NOT_SETTLED, *settled)
+        settled = self.settler.settle(self.network, qp, state, point, self.tol)
+        status = self._status(settled)
+        certificate = None
+        if status is Status.NOT_SETTLED:
+            status, certificate = find_certificate(qp, point)
+        if status is Status.NOT_SETTLED and is_projection(self.network):
+            left = self.settler.max_steps - settled[0]
+            settled = settle_scaled(qp, state, point, self.tol, left, settled)
+            status = self._status(settled)
         # Without a solution the state is not kept: the multipliers grow without bound then, and
         # would spoil every later call.
-        self._keep(sizes, state)
-        return Solution(point, sizes, Status.SOLVED, *settled)
+        if status is Status.SOLVED:
+            self._keep(qp.sizes, state)
+        return Solution(point, qp.sizes, status, *settled, certificate)
 
-    @cached_property
-    def _first_start(self) -> Vector | None:
-        """Constants of the compiled `settle`, which leaves half of the budget to a second start.
-
-        None for another network or integrator.
-        """
-        if type(self.settler) is not ImplicitEuler or not is_projection(self.network):
-            return None
-        return np.array([self.tol, (self.settler.max_steps + 1) // 2])
-
-    def _is_within(self, settled: Settled) -> bool:
-        """Check that no residual is above the tolerance, and none NaN."""
-        tol = self.tol
-        return settled[2] <= tol and settled[3] <= tol and settled[4] <= tol
+    def _status(self, settled: Settled) -> Status:
+        """Judge a point by its residuals."""
+        if within(*settled[2:], self.tol):
+            return Status.SOLVED
+        return Status.NOT_SETTLED if math.isfinite(sum(settled[2:])) else Status.NOT_FINITE
 
     def sharpen(self, qp: QP, solution: Solution) -> Solution:
         """Go on from the state that the last call left, for a few linear systems.
@@ -194,13 +171,13 @@ class DNNSolver:
             return solution
         state = warm.copy()
         point = np.empty_like(solution.point)
-        settled = settle_program(qp, state, point, SHARPENED, SHARPENING)
-        if not max(settled[2:]) < solution.residuals.largest:
+        systems, time, *residuals = settle_program(qp, state, point, SHARPENED, SHARPENING)
+        if not max(residuals) < solution.residuals.largest:
             return solution
         self._keep(qp.sizes, state)
-        systems = solution.iterations + settled[0]
-        time = solution.network_time + settled[1]
-        return Solution(point, qp.sizes, solution.status, systems, time, *settled[2:])
+        systems += solution.iterations
+        time += solution.network_time
+        return Solution(point, qp.sizes, solution.status, systems, time, *residuals)
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration`, settled or not.
@@ -231,37 +208,10 @@ class DNNSolver:
 
     def _take(self, qp: QP) -> Vector:
         """Take the warm state, or make one; nobody else has it until it is kept."""
-        if type(qp) is not QP:
-            checks.instance("qp", qp, QP)
-        state = self._warm.pop(qp.sizes, None)
-        if state is None:
-            state = np.array(self.network.initial_state(qp), dtype=np.float64)
-            check_size("network", state, self.network.state_size(qp))
-        return state
+        state = self._warm.pop(checks.instance("qp", qp, QP).sizes, None)
+        return np.array(self.network.initial_state(qp)) if state is None else state
 
     def _keep(self, sizes: Sizes, state: Vector) -> None:
         """Keep the state (size,) of programs of these sizes alone."""
         self._warm.clear()
         self._warm[sizes] = state
-
-
-def settle_scaled(
-    qp: QP, state: Vector, point: Vector, tol: float, budget: int, before: Settled
-) -> Settled:
-    """Settle a program from zero in scaled coordinates, then in its own; keep the better point.
-
-    The state is (3 n + m + p,), the point (2 n + m + p,) that of the progress `before`.
-    """
-    scaled, units, cost = equilibrate(qp)
-    state[:] = 0.0
-    other = np.empty_like(point)
-    stricter = STRICTER * tol * min(1.0, cost)
-    first = settle_program(scaled, state, other, stricter, budget)
-    state *= units
-    second = settle_program(qp, state, other, tol, budget - first[0])
-    residuals = before[2:]
-    if max(second[2:]) < max(residuals):
-        point[:] = other
-        residuals = second[2:]
-    systems = before[0] + first[0] + second[0]
-    return systems, before[1] + first[1] + second[1], *residuals

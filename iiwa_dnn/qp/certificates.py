@@ -36,7 +36,7 @@ _SLIGHT = 1e-5
 """Fraction of the largest entry below which a row takes no part in a polish."""
 
 
-def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
+def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
     """Look for a proof that there is no solution near, where a network has diverged.
 
     Its multipliers grow along Farkas multipliers, or x along a direction of recession. Least
@@ -48,8 +48,8 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
 
     Returns:
         ``PRIMAL_INFEASIBLE`` or ``NONE_FEASIBLE_NEAR`` with multipliers ``[y | z | z_box]`` of size
-        p + m + n, or ``UNBOUNDED`` or ``NONE_OPTIMAL_NEAR`` with a direction (n,); None where no
-        proof was found.
+        p + m + n, or ``UNBOUNDED`` or ``NONE_OPTIMAL_NEAR`` with a direction (n,); ``NOT_SETTLED``
+        where no proof was found.
     """
     n, m, p = qp.sizes
     multipliers = _clean_multipliers(qp, point[n : n + p + m])
@@ -66,7 +66,7 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector] | None:
     radius = unboundedness_radius(qp, direction)
     if radius >= RADIUS:
         return Status.NONE_OPTIMAL_NEAR if radius < np.inf else Status.UNBOUNDED, direction
-    return None
+    return Status.NOT_SETTLED, None
 
 
 def infeasibility_radius(qp: QP, multipliers: Vector) -> float:

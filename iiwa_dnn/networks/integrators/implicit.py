@@ -10,8 +10,8 @@ of x out, with which a step would no longer be a convex problem
 (`iiwa_dnn.networks.integrators.implicit_steps`): at the equilibrium the multipliers alone keep the
 bounds, so the answer is the same, and the one that is handed out is put inside its bounds.
 
-**Networks without compiled loops**, and the projection in `advance`, go through a Newton iteration
-on the whole state (`iiwa_dnn.networks.integrators.pseudo_transient`).
+**Other networks**, and the projection in `advance`, go through a Newton iteration on the whole
+state (`iiwa_dnn.networks.integrators.pseudo_transient`).
 
 Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
 SIAM J. Numer. Anal. 35 (1998).
@@ -19,7 +19,6 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import math
 from dataclasses import dataclass
-from functools import cache
 from typing import ClassVar
 
 import numpy as np
@@ -89,13 +88,13 @@ class ImplicitEuler(Integrator):
             NoSolutionError: A step could not be solved to working precision.
         """
         count = max(1, math.ceil(duration / self.step))
-        length = duration / count
         check_size("state", state, network.state_size(qp))
+        length = duration / count
         if is_projection(network) and not network.primal_projection:
-            systems = advance_implicit(qp.data, *qp.sizes, state, length, count, 1e-12)
-            if systems < 0:
+            taken = [step_program(qp.data, *qp.sizes, state, length) for _ in range(count)]
+            if min(taken) < 0:
                 raise NoSolutionError("an implicit step cannot be solved to working precision")
-            return systems
+            return sum(taken)
         flow = network.flow(qp)
         return sum(
             pseudo_transient.backward_euler(flow, state, length, 1e-12) for _ in range(count)
@@ -108,33 +107,27 @@ class ImplicitEuler(Integrator):
         primal projection.
         """
         if is_projection(network):
-            return settle_program(qp, state, point, tol, self.max_steps)
+            # Half of the systems are left to a second start (`DNNSolver.solve`).
+            return settle_program(qp, state, point, tol, (self.max_steps + 1) // 2)
         return pseudo_transient.settle(network, qp, state, point, tol, self.max_steps)
 
 
 @compiled
-def advance_implicit(
-    data: Vector, n: int, m: int, p: int, s: Vector, step: float, count: int, tol: float
-) -> int:
-    """Advance `s` (size,) in place by `count` backward Euler steps of one length, solved to `tol`.
+def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -> int:
+    """Advance a state `s` (size,) in place by one backward Euler step of a program, `QP.data`.
 
     Returns:
         Linear systems solved, or -1 if one could not be.
     """
-    qp = qp_views(data, n, m, p)
     rows = s.size - n
     matrix = Condensed(
-        np.empty(rows), np.zeros(p + m), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
+        np.empty(rows), np.zeros(m + p), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
     )
     new = np.empty(s.size)
-    total = 0
-    for _ in range(count):
-        systems = backward_euler(qp, s, step, new, tol, 2 * MAX_NEWTON, matrix)
-        if systems < 0:
-            return -1
-        total += systems
+    systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
+    if systems >= 0:
         copy_into(s, new)
-    return total
+    return systems
 
 
 @compiled
@@ -203,16 +196,11 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     return systems, time, primal, dual, gap
 
 
-@cache
-def settle_address() -> int:
-    """Return the address of `settle`, compiled at the first call."""
-    return enter_answer.address(settle)
-
-
 def settle_program(qp: QP, state: Vector, point: Vector, tol: float, max_systems: int) -> Settled:
     """Settle the projection network from `state` (size,); see `settle`."""
     n, m, p = qp.sizes
     check_size("state", state, 3 * n + m + p)
     check_size("point", point, 2 * n + m + p)
     constants = np.array([tol, max_systems])
-    return answer_program(qp.data, qp.sizes, settle_address(), 0, constants, state, point)
+    address = enter_answer.address(settle)
+    return answer_program(qp.data, qp.sizes, address, 0, constants, state, point)

@@ -173,35 +173,32 @@ def backward_euler(
         Newton iterations, or -1 if a matrix was not positive definite to working precision.
     """
     n = qp.q.size
-    rows = matrix.values.size
-    gradient = np.empty(n)
+    descent = np.empty(n)
     direction = np.empty(n)
-    slacks = np.empty(rows)
+    slacks = np.empty(matrix.values.size)
     copy_into(new, s)
-    _slacks(qp, new, slacks)
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
     for i in range(n):
         largest = max(largest, abs(new[i]))
     floor = 1e-15 * step * largest
-    taken = max_newton
-    for iteration in range(max_newton):
+    _slacks(qp, new, slacks)
+    taken = 0
+    while taken < max_newton:
         _multipliers(qp, s, step, slacks, new, matrix.active)
-        size = _gradient(qp, s, step, new, gradient)
-        if iteration > 0 and not size > max(tol, floor):
-            taken = iteration
+        size = _descent(qp, s, step, new, descent)
+        if taken > 0 and not size > max(tol, floor):
             break
         build_condensed(qp, step, matrix)
         if not cholesky_factor(matrix.K):
             return -1
-        factor_solve(matrix.K, gradient, direction)
-        for i in range(n):
-            direction[i] = -direction[i]
+        taken += 1
+        factor_solve(matrix.K, descent, direction)
         rows_times(qp, direction, matrix.values)
-        length = _line_search(qp, s, step, slacks, matrix.values, direction, gradient)
+        length = _line_search(qp, s, step, slacks, matrix.values, direction, descent)
         for i in range(n):
             new[i] += length * direction[i]
-        for k in range(rows):
+        for k in range(slacks.size):
             slacks[k] += length * matrix.values[k]
     # Once more from x itself: long steps would magnify the rounding of the updates.
     _slacks(qp, new, slacks)
@@ -242,14 +239,14 @@ def _multipliers(
 
 
 @compiled
-def _gradient(qp: QPViews, s: Vector, step: float, new: Vector, gradient: Vector) -> float:
-    """Write the gradient of the step's convex function; returns its largest entry."""
-    for i in range(qp.q.size):
-        gradient[i] = row_dot(qp.P, i, new) + qp.q[i] + (new[i] - s[i]) / step
-    add_transposed(qp, 1.0, new, gradient)
+def _descent(qp: QPViews, s: Vector, step: float, new: Vector, descent: Vector) -> float:
+    """Write minus the gradient of the step's convex function; returns its largest entry."""
     size = 0.0
     for i in range(qp.q.size):
-        size = larger(size, abs(gradient[i]))
+        descent[i] = -(row_dot(qp.P, i, new) + (qp.q[i] + (new[i] - s[i]) / step))
+    add_transposed(qp, -1.0, new, descent)
+    for i in range(qp.q.size):
+        size = larger(size, abs(descent[i]))
     return size
 
 
@@ -261,7 +258,7 @@ def _line_search(
     slacks: Vector,
     change: Vector,
     direction: Vector,
-    gradient: Vector,
+    descent: Vector,
 ) -> float:
     """Minimize the step's convex function along the Newton `direction`, to `SLOPE`.
 
@@ -273,7 +270,7 @@ def _line_search(
     start = 0.0
     shortest = 0.0
     for i in range(n):
-        start += gradient[i] * direction[i]
+        start -= descent[i] * direction[i]
         shortest += direction[i] * direction[i]
     # direction^T K direction is -start: that is the curvature where the active rows stay active.
     slope, second = _slope(n, p, s, step, slacks, change, 0.0)

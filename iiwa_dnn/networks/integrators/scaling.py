@@ -10,8 +10,30 @@ RAL-TR-2001-034.
 
 import numpy as np
 
+from iiwa_dnn.networks.integrators.base import Settled
+from iiwa_dnn.networks.integrators.implicit import settle_program
 from iiwa_dnn.qp.layout import Matrix, Vector
 from iiwa_dnn.qp.program import QP
+
+STRICTER = 1e-3
+"""Tolerance in scaled coordinates over that in the program's own, where the residuals grow."""
+
+
+def settle_scaled(
+    qp: QP, state: Vector, point: Vector, tol: float, budget: int, before: Settled
+) -> Settled:
+    """Settle a program from zero in scaled coordinates, then in its own.
+
+    The state is (3 n + m + p,), the point (2 n + m + p,); systems and time of the progress `before`
+    are added.
+    """
+    scaled, units, cost = equilibrate(qp)
+    state[:] = 0.0
+    first = settle_program(scaled, state, point, STRICTER * tol * min(1.0, cost), budget)
+    state *= units
+    second = settle_program(qp, state, point, tol, budget - first[0])
+    systems = before[0] + first[0] + second[0]
+    return systems, before[1] + first[1] + second[1], *second[2:]
 
 
 def equilibrate(qp: QP) -> tuple[QP, Vector, float]:
