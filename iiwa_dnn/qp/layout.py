@@ -27,10 +27,11 @@ Sizes = tuple[int, int, int]
 Triple = tuple[float, float, float]
 
 
-def check_size(argument: str, array: Vector, size: int) -> None:
-    """Raise InvalidInputError unless an array is flat and of this size: compiled code trusts it."""
+def check_size(argument: str, array: Vector, size: int) -> Vector:
+    """Return a flat array of this size; refuse any other, since compiled code trusts it."""
     if array.size != size or array.ndim != 1:
         raise InvalidInputError(argument, f"has shape {array.shape}, not ({size},)", array)
+    return array
 
 
 @compiled

@@ -198,12 +198,9 @@ class QP:
             z_box: Multipliers of the bounds, (n,).
         """
         n, m, p = self.sizes
-        point = np.zeros(2 * n + m + p)
-        at = 0
-        for part, size in ((x, n), (y, p), (z, m), (z_box, n)):
-            if part is not None:
-                point[at : at + size] = part
-            at += size
+        given = zip((x, y, z, z_box), (n, p, m, n), strict=True)
+        parts = [np.zeros(size) if part is None else part for part, size in given]
+        point = check_size("point", np.concatenate(parts), 2 * n + m + p)
         return Residuals(*residuals_of(self.data, n, m, p, point))
 
     def check_values(self) -> None:

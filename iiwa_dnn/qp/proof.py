@@ -100,8 +100,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     Nothing about the answer is trusted: its multipliers name the active set to begin with. That
     there is exactly one solution is a part of the proof where the bound is finite. The numbers of
     the program count as exact. Where an answer has a certificate instead, as a field or among its
-    extras, the reason says whether it proves that there is none; it needs no x then.
-    Nor does another solver's answer that is marked as not found.
+    extras, the reason says whether it proves that there is none.
 
     Args:
         qp: The program, also as qpsolvers has it.
@@ -124,10 +123,10 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
         return Proof(np.inf, nothing, INFEASIBLE)
     if "last_x" in extras:
         return Proof(np.inf, nothing, f"there is no answer: {extras['status']}")
-    unsolved = not (isinstance(solution, Solution) or getattr(solution, "found", True))
-    if unsolved and solution.x is None:
+    if solution.x is None:
         return Proof(np.inf, nothing, NO_ANSWER)
     proof = prove_point(qp, point_of(solution, qp))
+    unsolved = not (isinstance(solution, Solution) or getattr(solution, "found", True))
     return proof._replace(reason=NO_ANSWER) if unsolved and proof.bound == np.inf else proof
 
 
@@ -135,22 +134,19 @@ def point_of(solution: Any, qp: QP) -> Vector:
     """Return ``[x | y | z | z_box]`` of an answer, (2 n + m + p,); absent multipliers are zero.
 
     Raises:
-        InvalidInputError: The answer has no x, or a part of another size than the program's.
+        InvalidInputError: The answer has a part of another size than the program's.
     """
     n, m, p = qp.sizes
-    point = np.zeros(2 * n + m + p)
-    start = 0
+    parts = []
     for name, size in (("x", n), ("y", p), ("z", m), ("z_box", n)):
-        part = getattr(solution, name, None)
-        if part is not None and np.size(part):
-            if np.size(part) != size:
-                problem = f"has {np.size(part)} entries in {name}, not {size}"
-                raise InvalidInputError("solution", problem, solution)
-            point[start : start + size] = part
-        elif name == "x":
-            raise InvalidInputError("solution", f"has no x: {type(solution).__name__}", solution)
-        start += size
-    return point
+        part: Any = getattr(solution, name, None)
+        if part is None or not np.size(part):
+            part = np.zeros(size)
+        if np.size(part) != size:
+            problem = f"has {np.size(part)} entries in {name}, not {size}"
+            raise InvalidInputError("solution", problem, solution)
+        parts.append(part)
+    return np.concatenate(parts)
 
 
 class _Rows:

@@ -16,7 +16,7 @@ class Judgement(ExitStack):
         super().__init__()
         self._layout = layout
         self._stages = stages
-        self._pool = self.enter_context(CheckPool(check, steps * stages))
+        self._pool = CheckPool(check, steps * stages)
 
     def submit(self, rows: Matrix) -> None:
         """Hand the rows of a stretch of steps over to the check, (k, width)."""

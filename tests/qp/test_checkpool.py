@@ -1,11 +1,6 @@
-"""The check behind the loop: order, completeness, and workers that die."""
+"""The check behind the loop: order, completeness, and faults of the check itself."""
 
-from __future__ import annotations
-
-import os
-import signal
 import time
-from concurrent.futures.process import BrokenProcessPool
 
 import loky
 import numpy as np
@@ -30,23 +25,19 @@ def jobs(count: int, size: int = 20) -> list[tuple]:
     return made
 
 
-def judged(blocks: list[tuple], workers: int, check: CrossCheck = CHECK) -> Agreement:
-    with CheckPool(check, 1_000_000, workers) as pool:
-        for block in blocks:
-            pool.submit(*block)
-            time.sleep(0.01 * workers)
-        return pool.finish()
-
-
-def assert_same(one: Agreement, other: Agreement) -> None:
-    for left, right in zip(one, other, strict=True):
-        np.testing.assert_array_equal(left, right)
+def judged(blocks: list[tuple], workers: int) -> Agreement:
+    pool = CheckPool(CHECK, 1_000_000, workers)
+    for block in blocks:
+        pool.submit(*block)
+        time.sleep(0.01 * workers)
+    return pool.finish()
 
 
 def test_workers_change_nothing_and_keep_the_order() -> None:
     blocks = jobs(6)
     alone = judged(blocks, 0)
-    assert_same(judged(blocks, 1), alone)
+    for left, right in zip(judged(blocks, 1), alone, strict=True):
+        np.testing.assert_array_equal(left, right)
     # In order: the gap of program i of block j is the one that was put there.
     expected = 1e-7 * (100 * np.arange(6)[:, None] + np.arange(20)).ravel()
     np.testing.assert_allclose(alone.solution_gap[:, 0], expected, rtol=0, atol=1e-8)
@@ -56,33 +47,6 @@ def test_a_fault_of_the_check_itself_is_not_swallowed() -> None:
     programs, sizes, x = jobs(1)[0]
     with pytest.raises(ValueError, match="shape"):
         judged([(programs, sizes, np.hstack([x, x, x, x]))], 1)  # answers of a wrong shape
-
-
-@pytest.mark.long
-def test_a_worker_that_dies_in_the_middle_of_a_block() -> None:
-    class Dying(CrossCheck):
-        """Kills the process that it runs in, unless that is the test's own."""
-
-        home = os.getpid()
-
-        def check_block(self, *job: object) -> Agreement:
-            if os.getpid() != self.home:
-                os.kill(os.getpid(), signal.SIGKILL)
-            return super().check_block(*job)
-
-    blocks = jobs(6)
-    assert_same(judged(blocks, 1, Dying(CHECK.solvers)), judged(blocks, 0))
-
-
-def test_without_processes_to_be_had_the_caller_judges_alone(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def refuse(**options: object) -> None:
-        raise BrokenProcessPool
-
-    monkeypatch.setattr(loky, "get_reusable_executor", refuse)
-    blocks = jobs(2)
-    assert_same(judged(blocks, 1), judged(blocks, 0))
 
 
 def test_processes_are_started_where_solvers_are_asked_often() -> None:
