@@ -18,6 +18,15 @@ from iiwa_dnn.qp.layout import Sizes
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
+_BARE = {
+    "verbose": False,
+    "scaling": 0,
+    "check_termination": 0,
+    "adaptive_rho": False,
+    "polishing": False,
+}
+"""Settings of OSQP without what is not a part of the method."""
+
 
 @dataclass(frozen=True)
 class AdmmSolver(DNNSolver):
@@ -40,41 +49,28 @@ class AdmmSolver(DNNSolver):
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Take the iterations for this program; the duration [s] is not used."""
+        import osqp
+        from scipy import sparse
+
         n, m, p = qp.sizes
-        triangle = np.triu_indices(n)
+        triangle = sparse.csc_matrix(np.triu(np.ones((n, n))))
         rows = np.vstack([qp.A, qp.G, np.eye(n)])
         if qp.sizes not in self._osqp:
-            self._osqp[qp.sizes] = _prepared(n, len(rows), self.substeps)
+            # Every entry has a place, also those that are zero now.
+            pattern = sparse.csc_matrix(np.ones(rows.shape))
+            limits = np.ones(len(rows))
+            self._osqp[qp.sizes] = osqp.OSQP()
+            self._osqp[qp.sizes].setup(
+                triangle, qp.q, pattern, -limits, limits, max_iter=self.substeps, **_BARE
+            )
         solver = self._osqp[qp.sizes]
         solver.update(
             q=qp.q,
             l=np.concatenate([qp.b, np.full(m, -np.inf), qp.lb]),
             u=np.concatenate([qp.b, qp.h, qp.ub]),
-            Px=qp.P[triangle][np.lexsort(triangle)],
+            Px=qp.P.T[np.tril_indices(n)],
             Ax=rows.T.ravel(),
         )
         result = solver.solve(raise_error=False)
         state = np.concatenate([result.x, result.y[: p + m]])
         return self._advanced(qp, state, self.substeps, 0.0)
-
-
-def _prepared(n: int, rows: int, iterations: int) -> Any:
-    """Set OSQP up for dense programs of n variables."""
-    import osqp
-    from scipy import sparse
-
-    solver = osqp.OSQP()
-    solver.setup(
-        sparse.csc_matrix(np.triu(np.ones((n, n)) + n * np.eye(n))),
-        np.zeros(n),
-        sparse.csc_matrix(np.ones((rows, n))),
-        np.full(rows, -1.0),
-        np.full(rows, 1.0),
-        verbose=False,
-        max_iter=iterations,
-        scaling=0,
-        check_termination=0,
-        adaptive_rho=False,
-        polishing=False,
-    )
-    return solver

@@ -1,6 +1,6 @@
 """Many small programs of one shape."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,43 +70,25 @@ def solve_batch(
         InvalidInputError: An array has the wrong shape. The message names the argument.
     """
     checks.positive("tol", tol)
-    arrays = {
-        name: real_array(name, value)
-        for name, value in zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
-        if value is not None
-    }
+    given = zip(FIELDS, (P, q, G, h, A, b, lb, ub), strict=True)
+    arrays = {name: real_array(name, value) for name, value in given if value is not None}
     stacks = {name: array for name, array in arrays.items() if array.ndim > _AXES[name]}
-    count = _count(stacks)
-    solutions = []
-    for k in range(count):
-        own = {name: stack[k] for name, stack in stacks.items()}
-        solutions.append(_solve({"P": None, "q": None, **arrays, **own}, tol))
-    n, m, p = solutions[0].sizes
-    points = np.stack([solution.point for solution in solutions])
-    x, y, z, z_box = np.split(points, [n, n + p, n + p + m], axis=1)
-    return BatchSolution(
-        x,
-        y,
-        z,
-        z_box,
-        np.array([solution.found for solution in solutions]),
-        np.array([solution.residuals for solution in solutions]),
-        np.array([solution.iterations for solution in solutions]),
-    )
-
-
-def _count(stacks: dict[str, NDArray[np.float64]]) -> int:
-    """Count the programs (k, ...) that are stacked."""
     count = max((len(stack) for stack in stacks.values()), default=1)
     for name, stack in stacks.items():
         if len(stack) != count or count == 0:
             raise InvalidInputError(name, f"has shape {stack.shape}, for {count} programs")
-    return count
+    shared: dict[str, ArrayLike] = {"P": np.empty(0), "q": np.empty(0), **arrays}
+    own = [{name: stack[k] for name, stack in stacks.items()} for k in range(count)]
+    solutions = [_solve(QP(**{**shared, **each}), tol) for each in own]
+    parts = [
+        np.array([getattr(solution, name) for solution in solutions])
+        for name in BatchSolution._fields
+    ]
+    return BatchSolution(*parts)
 
 
-def _solve(fields: dict[str, Any], tol: float) -> Solution:
-    """Solve the program of these fields; without a solution where a value is wrong."""
-    qp = QP(**fields)
+def _solve(qp: QP, tol: float) -> Solution:
+    """Solve a program; without a solution where a value is wrong."""
     try:
         qp.check_values()
     except InvalidInputError:

@@ -26,7 +26,8 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
-from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
+from iiwa_dnn.networks.rows import add_transposed, write_slacks
+from iiwa_dnn.qp.dense import add_outer, extreme_eigenvalues, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger, qp_views
 from iiwa_dnn.qp.program import QP
 
@@ -39,40 +40,17 @@ def field(qp: QPViews, s: Vector, rates: Vector) -> float:
         The largest absolute rate: zero exactly at a KKT point, NaN if one is NaN.
     """
     n = qp.q.size
-    p = qp.b.size
-    at_z = n + p
-    at_u = at_z + qp.h.size
-    at_l = at_u + n
-    largest = 0.0
-    for i in range(n):  # the gradient, for now
-        rates[i] = qp.q[i] + s[at_u + i] - s[at_l + i] + row_dot(qp.P, i, s)
-    for j in range(p):
-        add_row(rates, s[n + j], qp.A, j)
-        rate = row_dot(qp.A, j, s) - qp.b[j]
-        rates[n + j] = rate
-        largest = larger(largest, abs(rate))
-    for j in range(qp.h.size):
-        z = s[at_z + j]
-        if z != 0.0:
-            add_row(rates, z, qp.G, j)
-        rate = _inequality_rate(z, row_dot(qp.G, j, s) - qp.h[j])
-        rates[at_z + j] = rate
-        largest = larger(largest, abs(rate))
     for i in range(n):
-        rate = -rates[i]
-        rates[i] = rate
-        upper = _inequality_rate(s[at_u + i], s[i] - qp.ub[i])
-        lower = _inequality_rate(s[at_l + i], qp.lb[i] - s[i])
-        rates[at_u + i] = upper
-        rates[at_l + i] = lower
-        largest = larger(larger(larger(largest, abs(rate)), abs(upper)), abs(lower))
+        rates[i] = -qp.q[i] - row_dot(qp.P, i, s)
+    add_transposed(qp, -1.0, s, rates)
+    write_slacks(qp, s, rates[n:])
+    for k in range(n + qp.b.size, s.size):
+        if not s[k] + rates[k] > 0.0:  # the multiplier decays
+            rates[k] = -s[k]
+    largest = 0.0
+    for k in range(s.size):
+        largest = larger(largest, abs(rates[k]))
     return largest
-
-
-@compiled
-def _inequality_rate(multiplier: float, slack: float) -> float:
-    """Return -mu + [mu + Omega x - chi]_+ of one row."""
-    return slack if multiplier + slack > 0.0 else -multiplier
 
 
 @compiled
@@ -112,9 +90,7 @@ def stable_step(qp: QPViews, active: Vector) -> float:
         for k in range(i):
             K[i, k] = K[k, i]
     _, coupling = extreme_eigenvalues(K)
-    for i in range(n):
-        for k in range(n):
-            K[i, k] = qp.P[i, k]
+    K[:] = qp.P
     smallest, largest = extreme_eigenvalues(K)
     # Passive multipliers and clipped variables decay at rate one: never more than 2.
     bound = 2.0 / max(largest, 1.0)

@@ -39,7 +39,6 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
     backward_euler,
-    copy_into,
     linear_step,
 )
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
@@ -107,8 +106,7 @@ class ImplicitEuler(Integrator):
         primal projection.
         """
         if is_projection(network):
-            # Half of the systems are left to a second start (`DNNSolver.solve`).
-            return settle_program(qp, state, point, tol, (self.max_steps + 1) // 2)
+            return settle_program(qp, state, point, tol, self.max_steps)
         return pseudo_transient.settle(network, qp, state, point, tol, self.max_steps)
 
 
@@ -126,7 +124,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     new = np.empty(s.size)
     systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
     if systems >= 0:
-        copy_into(s, new)
+        s[:] = new
     return systems
 
 
@@ -144,12 +142,9 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
     budget = int(constants[BUDGET])
     n = qp.q.size
     rows = s.size - n
-    active = np.empty(rows)
-    counted = np.zeros(rows - 2 * n)
-    gram = np.zeros((n, n))
-    K = np.empty((n, n))
-    values = np.empty(rows)
-    matrix = Condensed(active, counted, gram, K, values)
+    matrix = Condensed(
+        np.empty(rows), np.zeros(rows - 2 * n), np.zeros((n, n)), np.empty((n, n)), np.empty(rows)
+    )
     now = np.empty(s.size)
     then = np.empty(s.size)
     new = np.empty(s.size)
@@ -173,8 +168,8 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         if linear_step(qp, s, now, LONGEST, matrix, new):
             new_rate = field(qp, new, then)
             if new_rate < 0.5 * rate:
-                copy_into(s, new)
-                copy_into(now, then)
+                s[:] = new
+                now[:] = then
                 rate = new_rate
                 time += LONGEST
                 continue
@@ -188,7 +183,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
             continue
         systems += taken
         time += step
-        copy_into(s, new)
+        s[:] = new
         rate = field(qp, s, now)
         if step < LONGEST:
             step *= GROWTH

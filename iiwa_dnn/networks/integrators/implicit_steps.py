@@ -34,7 +34,8 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled, inlined
-from iiwa_dnn.qp.dense import add_outer, add_row, cholesky_factor, factor_solve, row_dot
+from iiwa_dnn.networks.rows import add_transposed, rows_times, write_slacks
+from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
 
 SLOPE = 0.3
@@ -117,44 +118,6 @@ def linear_step(
 
 
 @compiled
-def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
-    """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
-    n = qp.q.size
-    p = qp.b.size
-    first = p + qp.h.size
-    for j in range(p):
-        values[j] = row_dot(qp.A, j, x)
-    for j in range(qp.h.size):
-        values[p + j] = row_dot(qp.G, j, x)
-    for i in range(n):
-        values[first + i] = x[i]
-        values[first + n + i] = -x[i]
-
-
-@compiled
-def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
-    """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
-    n = qp.q.size
-    p = qp.b.size
-    at_z = n + p
-    at_u = at_z + qp.h.size
-    for i in range(n):
-        out[i] += factor * (s[at_u + i] - s[at_u + n + i])
-    for j in range(p):
-        add_row(out, factor * s[n + j], qp.A, j)
-    for j in range(qp.h.size):
-        if s[at_z + j] != 0.0:
-            add_row(out, factor * s[at_z + j], qp.G, j)
-
-
-@compiled
-def copy_into(out: Vector, values: Vector) -> None:
-    """Copy all values (k,) into the first entries of `out`."""
-    for k in range(values.size):
-        out[k] = values[k]
-
-
-@compiled
 def backward_euler(
     qp: QPViews,
     s: Vector,
@@ -176,13 +139,13 @@ def backward_euler(
     descent = np.empty(n)
     direction = np.empty(n)
     slacks = np.empty(matrix.values.size)
-    copy_into(new, s)
+    new[:] = s
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
     for i in range(n):
         largest = max(largest, abs(new[i]))
     floor = 1e-15 * step * largest
-    _slacks(qp, new, slacks)
+    write_slacks(qp, new, slacks)
     taken = 0
     while taken < max_newton:
         _multipliers(qp, s, step, slacks, new, matrix.active)
@@ -201,25 +164,9 @@ def backward_euler(
         for k in range(slacks.size):
             slacks[k] += length * matrix.values[k]
     # Once more from x itself: long steps would magnify the rounding of the updates.
-    _slacks(qp, new, slacks)
+    write_slacks(qp, new, slacks)
     _multipliers(qp, s, step, slacks, new, matrix.active)
     return taken
-
-
-@compiled
-def _slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
-    """Write A x - b, G x - h, x - ub and lb - x into `slacks` (p + m + 2n)."""
-    n = qp.q.size
-    p = qp.b.size
-    first = p + qp.h.size
-    rows_times(qp, x, slacks)
-    for j in range(p):
-        slacks[j] -= qp.b[j]
-    for j in range(qp.h.size):
-        slacks[p + j] -= qp.h[j]
-    for i in range(n):
-        slacks[first + i] -= qp.ub[i]
-        slacks[first + n + i] += qp.lb[i]
 
 
 @compiled
