@@ -21,7 +21,7 @@ The trajectories are those of the network, run through at another speed, so that
 the set from which it converges stay. Where :math:`\tfrac{d}{dt}\tfrac12\|s-s^*\|^2 \le
 -c\,\|F\|^2/\rho` and :math:`\|F\| \ge \kappa\,\|s-s^*\|` along the way, the error
 :math:`w = \kappa\,\|s - s^*\|` falls at least as :math:`\rho\,\dot w = -c\,\kappa^2\,\Phi(w)`: it
-settles within ``activation.settle_time(w) / (c kappa^2)`` [rho].
+settles within :math:`\int_0^w de/\Phi(e) / (c\,\kappa^2)` [rho].
 
 Source: K. Garg, D. Panagou, "Fixed-time stable gradient flows: applications to continuous-time
 optimization", IEEE Transactions on Automatic Control 66 (2021), whose scaling by the norm is taken
@@ -62,10 +62,6 @@ class Activation(ABC):
     @abstractmethod
     def magnitude(self, size: Vector) -> Vector:
         """Evaluate at errors of sizes (...,) of at least 0."""
-
-    def settle_time(self, error: float) -> float:
-        """Bound the time [rho] in which an error of this size vanishes; inf where it never does."""
-        return np.inf
 
 
 @dataclass(frozen=True)
@@ -120,12 +116,6 @@ class FixedTime(Activation):
         value: Vector = self.low * size**self.power + self.high * size**self.upper_power
         return value
 
-    def settle_time(self, error: float) -> float:
-        """Return the smaller of the two bounds [rho]."""
-        below = 1.0 / (self.low * (1.0 - self.power))
-        beyond = 1.0 / (self.high * (self.upper_power - 1.0))
-        return float(min(below + beyond, below * abs(error) ** (1.0 - self.power)))
-
 
 @dataclass(frozen=True)
 class SignBiPower(Activation):
@@ -143,10 +133,6 @@ class SignBiPower(Activation):
         """Evaluate at sizes (...,)."""
         value: Vector = 0.5 * (size**self.power + size ** (1.0 / self.power))
         return value
-
-    def settle_time(self, error: float) -> float:
-        """Return the bound [rho] of the two powers."""
-        return FixedTime(self.power, 1.0 / self.power, 0.5, 0.5).settle_time(error)
 
 
 @dataclass(frozen=True)
@@ -166,10 +152,6 @@ class PredefinedTime(Activation):
         grown = np.exp(np.minimum(size**self.power, 300.0))
         value: Vector = grown * size ** (1.0 - self.power) / (self.power * self.time)
         return value
-
-    def settle_time(self, error: float) -> float:
-        """Return the settle time itself [rho]."""
-        return float(-self.time * np.expm1(-(abs(error) ** self.power)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,7 +180,7 @@ class ActivatedNetwork(Network):
         return self.network.work(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Scale the rates of the network inside, with stable steps at a state alone.
+        """Scale the rates of the network inside.
 
         The derivative is that at a constant speed: a long implicit step is then Newton's.
         """
@@ -211,15 +193,10 @@ class ActivatedNetwork(Network):
         def jacobian(state: Vector) -> Matrix:
             return self._speed(inner.rates(state)) * inner.derivative(state)
 
-        def step(state: Vector | None) -> float:
-            if state is None or inner.step is None:
-                return 0.0  # near rest none may be stable
-            return inner.step(state) / self._speed(inner.rates(state))
-
         def limit(state: Vector) -> float:
             return inner.linear_limit(state) / self._speed(inner.rates(state))
 
-        return Flow(rates, jacobian, inner.unknowns, step, limit=limit)
+        return Flow(rates, jacobian, inner.unknowns, limit=limit)
 
     def _speed(self, rates: Vector) -> float:
         """Compute the speed at which the network inside, with rates (size,), is run through."""

@@ -9,8 +9,8 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.compiling.library import compiled, entry
-from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size, qp_views
+from iiwa_dnn.compiling.library import entry
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Triple, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.residuals import point_of_state
 
@@ -32,7 +32,8 @@ class Flow(NamedTuple):
             (state_size, state_size); None: it is computed by differences.
         unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
         step: Bound on the stable steps of explicit Euler [rho], at a state (size,) or for all
-            of them (None); 0 where none is known to be stable, as everywhere if this is None.
+            of them (None); 0 where none is known to be stable. If this is None, it is
+            `linear_limit`.
         limit: `linear_limit` at a state (size,), if it is not that of the derivative.
     """
 
@@ -80,18 +81,6 @@ class Flow(NamedTuple):
         return point_of_state(qp.data, n, m, p, unknowns, point)
 
 
-@compiled
-def evaluate_rates(
-    data: Vector, sizes: Sizes, address: int, constants: Vector, state: Vector, rates: Vector
-) -> None:
-    """Write the rates (size,) at a state (size,) of the network whose function is at the address.
-
-    The program is `QP.data`, of sizes (n, m, p); the constants (k,) are the function's.
-    """
-    n, m, p = sizes
-    enter_rates(address, qp_views(data, n, m, p), constants, state, rates)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Network:
     """A dynamic neural network for one quadratic program after another.
@@ -133,17 +122,15 @@ class Network:
             rate: Its rate of change [1/rho], field by field, zero where a field is infinite; None
                 or without effect in a network for programs that stand still.
         """
-        function = type(self).compiled_rates
-        if function is None:
-            raise NotImplementedError(f"{type(self).__name__} has no flow and no compiled_rates")
-        address = enter_rates.address(function)
+        address = enter_rates.address(type(self).compiled_rates)
         constants = self.constants(qp.sizes)
+        views = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub)
         size = self.state_size(qp)
 
         def rates(state: Vector) -> Vector:
             check_size("state", state, size)
             result = np.empty(size)
-            evaluate_rates(qp.data, qp.sizes, address, constants, state, result)
+            enter_rates(address, views, constants, state, result)
             return result
 
         return Flow(rates)
@@ -162,10 +149,13 @@ class Network:
 
         Args:
             qp: The program.
-            state: A state, (state_size,), around which the bound has to hold; None: everywhere.
+            state: A state, (state_size,), around which the bound has to hold. None: everywhere, if
+                the network knows such a bound, else around the initial state.
         """
-        step = self.flow(qp).step
-        return 0.0 if step is None else step(state)
+        flow = self.flow(qp)
+        if flow.step is not None:
+            return flow.step(state)
+        return flow.linear_limit(self.initial_state(qp) if state is None else state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.

@@ -35,7 +35,7 @@ import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
-from iiwa_dnn.networks.clipped import Clipped
+from iiwa_dnn.networks.primal_dual import Clipped
 from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
@@ -66,11 +66,7 @@ class DualNetwork(Network):
         return setup, 2.0 * (n + rows) ** 2
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; dependent equalities are solved in the least-squares sense.
-
-        Explicit Euler is stable on every active set below 2 over the largest eigenvalue of
-        E M E^T, or of 1: rows at a limit follow that matrix, the others decay at rate one.
-        """
+        """Set a program up; dependent equalities are solved in the least-squares sense."""
         n, m, p = qp.sizes
         try:
             inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
@@ -104,8 +100,7 @@ class DualNetwork(Network):
 
         eye = np.eye(len(gram))
         program = Clipped(gram - eye, rows @ offset, lower, upper, eye, 1.0)
-        step = 2.0 / max(float(np.linalg.eigvalsh(gram)[-1]), 1.0)
-        return Flow(program.rates, program.jacobian, unknowns, lambda state: step)
+        return Flow(program.rates, program.jacobian, unknowns)
 
 
 @dataclass(frozen=True, kw_only=True)

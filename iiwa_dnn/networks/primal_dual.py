@@ -40,14 +40,51 @@ monotone mappings", SIAM Journal on Control and Optimization 38 (2000), as a flo
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
-from iiwa_dnn.networks.clipped import Clipped
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
+
+
+class Clipped(NamedTuple):
+    r"""A network of k states that is affine but for one projection.
+
+    .. math::  \rho\,\dot s = O\,\bigl\{\Pi_{[l,\,u]}(A s + k) - s - \kappa\,(A s + k)\bigr\}
+
+    Attributes:
+        matrix: A, (k, k).
+        offset: k, (k,).
+        lower: Lower limits l of what is projected, in the units of the states, (k,).
+        upper: Upper limits u, in the units of the states, (k,).
+        outer: O, (k, k).
+        kappa: 1 where what is projected is taken off again, else 0.
+    """
+
+    matrix: Matrix
+    offset: Vector
+    lower: Vector
+    upper: Vector
+    outer: Matrix
+    kappa: float = 0.0
+
+    def rates(self, state: Vector) -> Vector:
+        """Evaluate the rates at a state, (k,) both."""
+        aim = self.matrix @ state + self.offset
+        clipped = np.minimum(np.maximum(aim, self.lower), self.upper)
+        result: Vector = self.outer @ (clipped - state - self.kappa * aim)
+        return result
+
+    def jacobian(self, state: Vector) -> Matrix:
+        """Differentiate the rates at a state (k,), (k, k)."""
+        aim = self.matrix @ state + self.offset
+        inside = (aim > self.lower) & (aim < self.upper)
+        inner = (inside - self.kappa)[:, np.newaxis] * self.matrix - np.eye(state.size)
+        result: Matrix = self.outer @ inner
+        return result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,12 +96,11 @@ class PrimalDualNetwork(Network):
         return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up, with the steps by which Euler gets nearer to every solution."""
+        """Set a program up."""
         H, c, lower, upper = variational(qp)
         eye = np.eye(c.size)
-        step = 2.0 / float(np.linalg.norm(eye + H, 2)) ** 2
         program = Clipped(eye - H, -c, lower, upper, eye + H.T)
-        return Flow(program.rates, program.jacobian, step=lambda state: step)
+        return Flow(program.rates, program.jacobian)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,15 +127,14 @@ class OneLayerNetwork(PrimalDualNetwork):
         return setup, two if self.corrected else 0.5 * two
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up, with the steps that get nearer to every solution, if corrected."""
+        """Set a program up."""
         H, c, lower, upper = variational(qp)
         alpha = self.share / float(np.linalg.norm(H, 2))
         eye = np.eye(c.size)
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye
-        step = 2.0 * (1.0 - self.share) / (1.0 + self.share) ** 2
         program = Clipped(matrix, -alpha * c, lower, upper, outer)
-        return Flow(program.rates, program.jacobian, step=lambda state: step)
+        return Flow(program.rates, program.jacobian)
 
 
 def variational(qp: QP) -> tuple[Matrix, Vector, Vector, Vector]:

@@ -26,10 +26,56 @@ import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
-from iiwa_dnn.networks.rows import add_transposed, write_slacks
-from iiwa_dnn.qp.dense import add_outer, extreme_eigenvalues, row_dot
-from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger, qp_views
+from iiwa_dnn.qp.dense import add_outer, add_row, extreme_eigenvalues, row_dot
+from iiwa_dnn.qp.layout import Matrix, QPViews, Sizes, Vector, larger
 from iiwa_dnn.qp.program import QP
+
+
+@compiled
+def rows_times(qp: QPViews, x: Vector, values: Vector) -> None:
+    """Write [A; G; I; -I] x into `values`, of size p + m + 2n."""
+    n = qp.q.size
+    p = qp.b.size
+    first = p + qp.h.size
+    for j in range(p):
+        values[j] = row_dot(qp.A, j, x)
+    for j in range(qp.h.size):
+        values[p + j] = row_dot(qp.G, j, x)
+    for i in range(n):
+        values[first + i] = x[i]
+        values[first + n + i] = -x[i]
+
+
+@compiled
+def add_transposed(qp: QPViews, factor: float, s: Vector, out: Vector) -> None:
+    """Add factor (A^T y + G^T z + u - l) of a state s to the first n entries of `out` (size,)."""
+    n = qp.q.size
+    p = qp.b.size
+    at_z = n + p
+    at_u = at_z + qp.h.size
+    for i in range(n):
+        out[i] += factor * (s[at_u + i] - s[at_u + n + i])
+    for j in range(p):
+        add_row(out, factor * s[n + j], qp.A, j)
+    for j in range(qp.h.size):
+        if s[at_z + j] != 0.0:
+            add_row(out, factor * s[at_z + j], qp.G, j)
+
+
+@compiled
+def write_slacks(qp: QPViews, x: Vector, slacks: Vector) -> None:
+    """Write A x - b, G x - h, x - ub and lb - x into `slacks` (p + m + 2n)."""
+    n = qp.q.size
+    p = qp.b.size
+    first = p + qp.h.size
+    rows_times(qp, x, slacks)
+    for j in range(p):
+        slacks[j] -= qp.b[j]
+    for j in range(qp.h.size):
+        slacks[p + j] -= qp.h[j]
+    for i in range(n):
+        slacks[first + i] -= qp.ub[i]
+        slacks[first + n + i] += qp.lb[i]
 
 
 @compiled
@@ -95,12 +141,6 @@ def stable_step(qp: QPViews, active: Vector) -> float:
     # Passive multipliers and clipped variables decay at rate one: never more than 2.
     bound = 2.0 / max(largest, 1.0)
     return min(bound, max(smallest, 0.0) / coupling) if coupling > 0.0 else bound
-
-
-@compiled
-def stable_step_of(data: Vector, n: int, m: int, p: int, active: Vector) -> float:
-    """Compute `stable_step` of an active set (p + m + 2n,), for `QP.data`."""
-    return stable_step(qp_views(data, n, m, p), active)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -180,7 +220,8 @@ class ProjectionNetwork(Network):
         else:
             active = np.where(moved[n:] > 0.0, 1.0, 0.0)
             active[:p] = 1.0
-        return stable_step_of(qp.data, n, m, p, active)
+        views = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub)
+        return stable_step(views, active)
 
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:

@@ -171,13 +171,13 @@ class DNNSolver:
             return solution
         state = warm.copy()
         point = np.empty_like(solution.point)
-        systems, time, *residuals = settle_program(qp, state, point, SHARPENED, SHARPENING)
-        if not max(residuals) < solution.residuals.largest:
+        settled = settle_program(qp, state, point, SHARPENED, SHARPENING)
+        if not max(settled[2:]) < solution.residuals.largest:
             return solution
         self._keep(qp.sizes, state)
-        systems += solution.iterations
-        time += solution.network_time
-        return Solution(point, qp.sizes, solution.status, systems, time, *residuals)
+        systems = solution.iterations + settled[0]
+        time = solution.network_time + settled[1]
+        return Solution(point, qp.sizes, solution.status, systems, time, *settled[2:])
 
     def advance(self, qp: QP, duration: float) -> Solution:
         """Advance the network by `duration`, settled or not.

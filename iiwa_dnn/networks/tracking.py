@@ -52,8 +52,8 @@ TAYLOR4 = Formula(2.25, (-0.125, 0.75, 0.625, -0.25), 4, 0.28)
 TAYLOR5 = Formula(2.0, (5 / 24, 12 / 24, 6 / 24, 4 / 24, -3 / 24), 4, 1 / 3)
 """Five steps: from (24 x[k+1] - 5 x[k] - 12 x[k-1] - 6 x[k-2] - 4 x[k-3] + 3 x[k-4]) / (48 tau)."""
 
-_BACKWARD = ((1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3))
-"""Backward differences of orders 1 to 3, the newest program first."""
+_BACKWARD = ((0.0,), (1.0, -1.0), (1.5, -2.0, 0.5), (11 / 6, -3.0, 1.5, -1 / 3))
+"""Backward differences of orders 0 to 3, the newest program first."""
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,7 @@ class TrackingSolver(DNNSolver):
 
     formula: Formula = EULER
     substeps: int = 1
-    _states: list[Vector] = field(default_factory=list, init=False, repr=False)
-    _programs: list[Vector] = field(default_factory=list, init=False, repr=False)
-    _rates: list[Vector] = field(default_factory=list, init=False, repr=False)
+    _past: dict[str, list[Vector]] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the settings."""
@@ -83,8 +81,7 @@ class TrackingSolver(DNNSolver):
     def reset(self) -> None:
         """Forget states and programs: the next call starts from the network's initial state."""
         super().reset()
-        for past in (self._states, self._programs, self._rates):
-            past.clear()
+        self._past.update(states=[], programs=[], rate=[])
 
     def advance(self, qp: QP, duration: float, rate: Vector | None = None) -> Solution:
         """Move on by `duration` from the last program to this one, and answer it.
@@ -101,12 +98,12 @@ class TrackingSolver(DNNSolver):
         if self.warm_state(qp.sizes) is None:
             self.reset()
         state = self._take(qp)
-        steps = 0
-        if self._programs:
-            self._follow(state, duration, qp.sizes)
-            steps = self.substeps
-        self._programs.insert(0, qp.data.copy())
-        del self._programs[self.formula.order :]
+        programs = self._past["programs"]
+        steps = self.substeps if programs else 0
+        for i in range(steps):
+            self._step(state, qp.sizes, duration / steps, i)
+        programs.insert(0, qp.data.copy())
+        del programs[self.formula.order :]
         self.predict(self._difference(duration) if rate is None else rate)
         return self._advanced(qp, state, steps, duration / self.network.rho)
 
@@ -115,31 +112,25 @@ class TrackingSolver(DNNSolver):
 
         It may be set after the call, where it depends on the answer.
         """
-        check_size("rate", rate, self._programs[0].size)
-        self._rates[:] = [rate]
+        size = self._past["programs"][0].size
+        self._past["rate"] = [check_size("rate", rate, size)]
 
     def _difference(self, duration: float) -> Vector:
         """Estimate the rate of change of the program [1/s] at the newest one."""
-        known = np.array(self._programs)
-        if len(known) < 2:
-            return np.zeros(known[0].size)
-        finite = np.where(np.isfinite(known), known, 0.0)
-        rate: Vector = np.array(_BACKWARD[len(known) - 2]) @ finite / duration
+        known = np.array(self._past["programs"])
+        weights = np.array(_BACKWARD[len(known) - 1])
+        rate: Vector = weights @ np.where(np.isfinite(known), known, 0.0) / duration
         return rate
 
-    def _follow(self, state: Vector, duration: float, sizes: Sizes) -> None:
-        """Advance the state in place, from the last program to the end of the time [s]."""
-        network = self.network
-        formula = self.formula
-        rate = self._rates[0]
-        step = duration / self.substeps
-        moving = QP.from_data(network.rho * rate, sizes)
-        for i in range(self.substeps):
-            now = QP.from_data(self._programs[0] + i * step * rate, sizes)
-            change = step / network.rho * network.flow(now, moving).rates(state)
-            past = [state.copy(), *self._states]
-            known = formula if len(past) >= len(formula.past) else EULER
-            state[:] = known.rate * change
-            for share, old in zip(known.past, past, strict=False):
-                state += share * old
-            self._states[:] = past[: len(formula.past) - 1]
+    def _step(self, state: Vector, sizes: Sizes, step: float, i: int) -> None:
+        """Advance the state in place by the formula's step number i [s] from the last program."""
+        rate = self._past["rate"][0]
+        now = QP.from_data(self._past["programs"][0] + i * step * rate, sizes)
+        moving = QP.from_data(self.network.rho * rate, sizes)
+        change = step / self.network.rho * self.network.flow(now, moving).rates(state)
+        past = [state.copy(), *self._past["states"]]
+        known = self.formula if len(past) >= len(self.formula.past) else EULER
+        state[:] = known.rate * change
+        for share, old in zip(known.past, past, strict=False):
+            state += share * old
+        self._past["states"] = past[: len(self.formula.past) - 1]

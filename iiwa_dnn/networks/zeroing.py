@@ -1,6 +1,6 @@
 r"""Networks on the residual of the KKT conditions: zeroing, gradient, noise-suppressing.
 
-The residual E(s, t) of the KKT conditions (`iiwa_dnn.networks.kkt_system`) is to vanish along
+The residual E(s, t) of the KKT conditions is to vanish along
 :math:`\rho\,\dot E = -\Phi(E)`. With W its derivative in s and :math:`\partial_t E` the program's
 part of its rate, each evaluation solves one linear system:
 
@@ -35,7 +35,7 @@ online time-varying matrix inversion", IEEE Transactions on Automatic Control 54
 **The noise-suppressing neural dynamics** are a zeroing network with bounded activations in series.
 
 With the residual E of the KKT conditions in its ``"smooth"`` form, the perturbed Fischer-Burmeister
-function as the NCP function (`iiwa_dnn.networks.kkt_system`), and n the noise,
+function as the NCP function, and n the noise,
 
 .. math::
 
@@ -50,9 +50,23 @@ Source: L. Wei, L. Jin et al., "Noise-suppressing neural dynamics for time-depen
 nonlinear optimization with applications", IEEE Transactions on Systems, Man, and Cybernetics:
 Systems, equation (12); the form above was read out of the authors' published programs
 (docs/papers.md), not of the text.
+
+**The residual.** Two forms of the complementarity, both with :math:`A x = b` as rows:
+
+* ``"projected"``, s = [x | y | z], with :math:`g = P x + q + A^T y + G^T z`: the rows
+  :math:`x - \Pi_{[lb,\,ub]}(x - g)` and :math:`[z + G x - h]_+ - z`;
+* ``"smooth"``, s = [x | y | w], where bounds are rows too, :math:`C = [G; I; -I]`,
+  :math:`d = [h; ub; -lb]`: the rows g (with :math:`C^T w`) and, with the slack
+  :math:`\sigma = d - C x`, the perturbed Fischer-Burmeister function
+  :math:`w + \sigma - \sqrt{w^2 + \sigma^2 + \varepsilon^2}`, which vanishes exactly where both are
+  positive with :math:`w\,\sigma = \varepsilon^2/2`.
+
+Source of the second: C. Kanzow, "Some noninterior continuation methods for linear complementarity
+problems", SIAM Journal on Matrix Analysis and Applications 17 (1996).
 """
 
 from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -60,10 +74,104 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.activations import Activation, Linear
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
-from iiwa_dnn.networks.kkt_system import FORMS, Form, evaluate, system_size
-from iiwa_dnn.networks.primal_dual import variational
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
+
+Form = Literal["projected", "smooth"]
+FORMS: tuple[Form, ...] = ("projected", "smooth")
+
+EPSILON = 1e-6
+"""Perturbation of the smooth form, in the unit of multipliers and slacks."""
+
+REGULAR = 1e-10
+"""Entry of the rows' diagonal that keeps the matrix regular where rows are dependent."""
+
+
+def system_size(qp: QP, form: Form) -> int:
+    """Count the unknowns of a form."""
+    n, m, p = qp.sizes
+    return n + p + m + (2 * n if form == "smooth" else 0)
+
+
+class KktResidual(NamedTuple):
+    """The system at one point.
+
+    Attributes:
+        error: Residual E, (size,).
+        drift: Its rate at a point that stays, (size,).
+        matrix: Its derivative in s, (size, size).
+    """
+
+    error: Vector
+    drift: Vector
+    matrix: Matrix
+
+
+def evaluate(qp: QP, form: Form, s: Vector, rate: QP | None = None) -> KktResidual:
+    """Compute the residual at a point s (size,), its drift and its derivative.
+
+    The rate of change of a program that moves is zero where a field is infinite.
+    """
+    if rate is None:
+        rate = QP.from_data(np.zeros(qp.data.size), qp.sizes)
+    n, _, p = qp.sizes
+    matrix, offset = _linear_part(qp, form, 1.0)
+    moving, moved = _linear_part(rate, form, 0.0)
+    system = KktResidual(matrix @ s + offset, moving @ s + moved, matrix)
+    matrix[range(n, s.size), range(n, s.size)] = -REGULAR
+    if form == "smooth":
+        _smooth(system, s, n + p)
+    else:
+        _project(system, s, qp, rate)
+    return system
+
+
+def _smooth(system: KktResidual, s: Vector, first: int) -> None:
+    """Put the complementarity in place of the rows of C x - d, from the `first` on."""
+    error, drift, matrix = system
+    rows = np.arange(first, s.size)
+    limited = np.isfinite(error[rows])
+    w = s[rows]
+    slack = np.where(limited, -error[rows], 0.0)
+    root = np.sqrt(w**2 + slack**2 + EPSILON**2)
+    slope = np.where(limited, slack / root - 1.0, 0.0)
+    error[rows] = np.where(limited, w + slack - root, w)
+    drift[rows] *= slope
+    matrix[rows] *= slope[:, np.newaxis]
+    matrix[rows, rows] = np.where(limited, 1.0 - w / root, 1.0)
+
+
+def _project(system: KktResidual, s: Vector, qp: QP, rate: QP) -> None:
+    """Put projections in place of rows at a bound and of idle rows."""
+    error, drift, matrix = system
+    n, _, p = qp.sizes
+    eye = np.eye(s.size)
+    aim = s[:n] - error[:n]
+    idle = n + p + np.flatnonzero(~(s[n + p :] + error[n + p :] > 0.0))
+    for reached, bound, moved in (
+        (aim <= qp.lb, qp.lb, rate.lb),
+        (aim >= qp.ub, qp.ub, rate.ub),
+    ):
+        at = np.flatnonzero(reached)
+        error[at] = s[at] - bound[at]
+        drift[at] = -moved[at]
+        matrix[at] = eye[at]
+    error[idle] = -s[idle]
+    drift[idle] = 0.0
+    matrix[idle] = -eye[idle]
+
+
+def _linear_part(qp: QP, form: Form, unit: float) -> tuple[Matrix, Vector]:
+    """Return matrix (size, size) and constant (size,) of the system without complementarity.
+
+    The rows of the smooth form's bounds are plus and minus the `unit` times the identity.
+    """
+    eye = unit * np.eye(qp.q.size)
+    smooth = form == "smooth"
+    rows = np.vstack([qp.A, qp.G, eye, -eye] if smooth else [qp.A, qp.G])
+    limits = [-qp.b, -qp.h, -qp.ub, qp.lb] if smooth else [-qp.b, -qp.h]
+    matrix = np.block([[qp.P, rows.T], [rows, np.zeros((len(rows), len(rows)))]])
+    return matrix, np.concatenate([qp.q, *limits])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,7 +230,7 @@ class ZeroingNetwork(Network):
 
         # Exact at rest; elsewhere it makes of a long implicit step Newton's.
         jacobian = (lambda state: -np.eye(size)) if linear else None
-        return Flow(rates, jacobian, step=self.step)
+        return Flow(rates, jacobian)
 
     def removal(self, error: Vector, state: Vector) -> Vector:
         """Return the rate (size,) at which a residual (size,) is removed at a state."""
@@ -132,15 +240,6 @@ class ZeroingNetwork(Network):
         if self.integral:
             wanted = wanted + self.integral * state[error.size : 2 * error.size]
         return wanted
-
-    def step(self, state: Vector | None) -> float:
-        """Bound the steps of explicit Euler [rho]: 2 where all is linear, else none is known.
-
-        The bound is the same at every state (size,).
-        """
-        if self.growth or not isinstance(self.activation, Linear):
-            return 0.0
-        return min(2.0, 1.0 / self.integral) if self.integral else 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -152,11 +251,7 @@ class GradientNetwork(ZeroingNetwork):
         return 0.0, 2.0 * kkt_product(sizes)
 
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
-        """Set a program up; its rate of change has no effect.
-
-        Steps of explicit Euler are stable below 2 / ||W||^2, if the activation is linear. Over all
-        active sets of the projected form, W has the rows of the whole KKT matrix or the identity's.
-        """
+        """Set a program up; its rate of change has no effect."""
 
         def rates(state: Vector) -> Vector:
             error, _, matrix = evaluate(qp, self.form, state)
@@ -167,15 +262,9 @@ class GradientNetwork(ZeroingNetwork):
             matrix = evaluate(qp, self.form, state).matrix
             return -matrix.T @ matrix
 
-        def step(state: Vector | None) -> float:
-            if state is None:
-                return 2.0 / (float(np.linalg.norm(variational(qp)[0], 2)) ** 2 + 1.0)
-            matrix = evaluate(qp, self.form, state).matrix
-            return 2.0 / max(float(np.linalg.norm(matrix, 2)) ** 2, 1.0)
-
         # W is constant on an active set of the projected form.
         exact = self.form == "projected" and isinstance(self.activation, Linear)
-        return Flow(rates, jacobian if exact else None, step=step)
+        return Flow(rates, jacobian if exact else None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -211,10 +300,3 @@ class NoiseSuppressingNetwork(ZeroingNetwork):
         summed = self.proportional * np.clip(state[size : 2 * size], -bound, bound)
         second: Vector = self.integral * np.clip(error + summed, -bound, bound)
         return first + second - self.noise
-
-    def step(self, state: Vector | None) -> float:
-        """Bound the steps of explicit Euler [rho] near rest, where the activations are linear.
-
-        The bound is the same at every state (size,). Both eigenvalues, -gamma and -eta, are real.
-        """
-        return 2.0 / max(self.integral, self.proportional)

@@ -25,10 +25,9 @@ def register() -> None:
 
     From then on ``qpsolvers.solve_qp(P, q, ..., solver="iiwa_dnn")`` and ``solve_problem`` run
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
-    Keyword arguments: ``eps_abs``, the absolute tolerance on primal residual, dual residual and gap
-    (1e-9); ``eps_rel``, a tolerance relative to the largest term of each, that is added (0). The
-    start is always cold: ``initvals`` is not used, nor is ``verbose``. A malformed or nonconvex
-    problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
+    Its keyword argument is ``eps_abs``, the absolute tolerance on primal residual, dual residual
+    and gap (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A
+    malformed or nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
     """
     from qpsolvers import solvers
 
@@ -43,15 +42,12 @@ def _solve_problem(
     initvals: Vector | None = None,
     verbose: bool = False,
     eps_abs: float = 1e-9,
-    eps_rel: float = 0.0,
 ) -> qpsolvers.Solution:
     """Solve a problem as qpsolvers' own functions do; see `register`."""
     from qpsolvers import ProblemError
 
     try:
-        solution: qpsolvers.Solution = _solve[0](
-            problem, tol=eps_abs, sharpen=True, eps_rel=eps_rel
-        )
+        solution: qpsolvers.Solution = _solve[0](problem, tol=eps_abs, sharpen=True)
         return solution
     except InvalidInputError as error:
         raise ProblemError(str(error)) from error

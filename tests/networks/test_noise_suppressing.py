@@ -5,7 +5,7 @@ import pytest
 
 from iiwa_dnn import QP
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.kkt_system import EPSILON
+from iiwa_dnn.networks.zeroing import EPSILON
 
 GAMMA, ETA, NOISE = 30.0, 20.0, 5.0
 

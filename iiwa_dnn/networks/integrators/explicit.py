@@ -51,10 +51,10 @@ class ExplicitEuler(Integrator):
                 `substeps` was not given.
         """
         check_size("state", state, network.state_size(qp))
-        flow = network.flow(qp)
+        rates = network.flow(qp).rates
         count = self.substeps
         if count is None:
-            stable = 0.0 if flow.step is None else SAFETY * flow.step(state)
+            stable = SAFETY * network.stable_step(qp, state)
             if not stable > 0.0:
                 problem = "is singular, so no explicit step is known to be stable"
                 raise InvalidInputError("P", f"{problem}; integrate implicitly")
@@ -62,7 +62,7 @@ class ExplicitEuler(Integrator):
         step = duration / count
         with np.errstate(over="ignore", invalid="ignore"):  # the caller judges the state
             for _ in range(count):
-                state += step * flow.rates(state)
+                state += step * rates(state)
         return count
 
 

@@ -34,7 +34,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled, inlined
-from iiwa_dnn.networks.rows import add_transposed, rows_times, write_slacks
+from iiwa_dnn.networks.projection import add_transposed, rows_times, write_slacks
 from iiwa_dnn.qp.dense import add_outer, cholesky_factor, factor_solve, row_dot
 from iiwa_dnn.qp.layout import Matrix, QPViews, Vector, larger
 
