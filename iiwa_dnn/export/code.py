@@ -37,8 +37,8 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.export.kernels import move_centers
 from iiwa_dnn.export.scratch import scratch_size
 from iiwa_dnn.networks.base import Network
-from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET
-from iiwa_dnn.networks.integrators.implicit import settle_address
+from iiwa_dnn.networks.integrators.base import BUDGET as OWN_BUDGET, enter_answer
+from iiwa_dnn.networks.integrators.implicit import settle
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import IntMatrix
 from iiwa_dnn.qp.program import QP
@@ -190,7 +190,8 @@ class _Code:
         arrays = step.plan.arrays
         table: IntMatrix = arrays.table.copy()
         network = table[1 + table[0, 4]]
-        settles = network[1] == settle_address()  # and does not enter the network's rates
+        # `settle` does not enter the rates of a network.
+        settles = network[1] == enter_answer.address(settle)
         network[2] = 0 if settles else self._part(int(network[2]))
         for row in table[1:]:
             row[1] = self._part(int(row[1]))

@@ -34,7 +34,6 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.dual import DualNetwork
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
@@ -46,13 +45,9 @@ class Activation(ABC):
     """An odd, increasing function of an error, entry by entry."""
 
     def __post_init__(self) -> None:
-        """Check the parameters: above 0, `power` below 1 and `upper_power` above 1."""
+        """Check the parameters: above 0."""
         for each in fields(self):
             checks.positive(each.name, getattr(self, each.name))
-        if not getattr(self, "power", 0.5) < 1.0:
-            raise InvalidInputError("power", "must be below 1")
-        if not getattr(self, "upper_power", 2.0) > 1.0:
-            raise InvalidInputError("upper_power", "must be above 1")
 
     def __call__(self, error: Vector) -> Vector:
         """Evaluate at errors (...,)."""

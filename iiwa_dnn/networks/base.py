@@ -31,16 +31,12 @@ class Flow(NamedTuple):
         jacobian: Its derivative where it has one, and one of its limits at a kink,
             (state_size, state_size); None: it is computed by differences.
         unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
-        step: Bound on the stable steps of explicit Euler [rho], at a state (size,) or for all
-            of them (None); 0 where none is known to be stable. If this is None, it is
-            `linear_limit`.
         limit: `linear_limit` at a state (size,), if it is not that of the derivative.
     """
 
     rates: Callable[[Vector], Vector]
     jacobian: Callable[[Vector], Matrix] | None = None
     unknowns: Callable[[Vector], Vector] | None = None
-    step: Callable[[Vector | None], float] | None = None
     limit: Callable[[Vector], float] | None = None
 
     def derivative(self, state: Vector) -> Matrix:
@@ -147,15 +143,14 @@ class Network:
     def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         """Bound the stable steps of explicit Euler [rho]; 0 where none is known to be stable.
 
+        By default the bound is that of the derivative, `Flow.linear_limit`.
+
         Args:
             qp: The program.
             state: A state, (state_size,), around which the bound has to hold. None: everywhere, if
                 the network knows such a bound, else around the initial state.
         """
-        flow = self.flow(qp)
-        if flow.step is not None:
-            return flow.step(state)
-        return flow.linear_limit(self.initial_state(qp) if state is None else state)
+        return self.flow(qp).linear_limit(self.initial_state(qp) if state is None else state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.

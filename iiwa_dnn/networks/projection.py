@@ -189,12 +189,9 @@ class ProjectionNetwork(Network):
             result[decays] = -np.eye(state.size)[decays]
             return result
 
-        def step(state: Vector | None) -> float:
-            return self._stable_step(qp, None if state is None else state + rates(state))
+        return Flow(rates, jacobian)
 
-        return Flow(rates, jacobian, step=step)
-
-    def _stable_step(self, qp: QP, moved: Vector | None) -> float:
+    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.
 
         On a fixed active set the network is linear. For an eigenvalue with eigenvector (v, w),
@@ -206,19 +203,19 @@ class ProjectionNetwork(Network):
 
         Args:
             qp: The program.
-            moved: A state and its rates, added up, (state_size,), whose active rows are counted;
-                None counts every inequality row, and the bound holds on every active set.
+            state: A state, (state_size,), whose active rows are counted; None counts every
+                inequality row, and the bound holds on every active set.
 
         Returns:
             The bound; zero where P is singular, since then no step is known to be stable.
         """
         n, m, p = qp.sizes
-        if moved is None:
+        if state is None:
             # Both bounds of one variable are active together only if they coincide.
             bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
             active = np.concatenate([np.ones(p + m), bounded, qp.lb == qp.ub])
         else:
-            active = np.where(moved[n:] > 0.0, 1.0, 0.0)
+            active = np.where((state + self.rates(qp, state))[n:] > 0.0, 1.0, 0.0)
             active[:p] = 1.0
         views = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub)
         return stable_step(views, active)

@@ -27,7 +27,8 @@ def register() -> None:
     `iiwa_dnn.solve_problem` with ``sharpen=True``, and ``qpsolvers.available_solvers`` lists it.
     Its keyword argument is ``eps_abs``, the absolute tolerance on primal residual, dual residual
     and gap (1e-9). The start is always cold: ``initvals`` is not used, nor is ``verbose``. A
-    malformed or nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name ``TypeError``.
+    malformed or nonconvex problem raises ``qpsolvers.ProblemError``, an option of another name
+    ``TypeError``.
     """
     from qpsolvers import solvers
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import suppress
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -226,9 +225,6 @@ class QP:
         scale = max(float(np.abs(self.P).max()), np.finfo(float).tiny)
         if np.abs(self.P - self.P.T).max() > ROUNDING * scale:
             raise InvalidInputError("P", "is not symmetric")
-        with suppress(np.linalg.LinAlgError):
-            np.linalg.cholesky(self.P + 0.5 * ROUNDING * scale * np.eye(self.sizes[0]))
-            return
         smallest = float(np.linalg.eigvalsh(self.P)[0])
         if smallest < -ROUNDING * scale:
             raise InvalidInputError(

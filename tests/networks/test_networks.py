@@ -345,8 +345,6 @@ def test_the_robot_runs_on_every_network(case: str, mode: str) -> None:
         (lambda: ZeroingNetwork(growth=-1), "growth"),
         (lambda: NoiseSuppressingNetwork(proportional=0.0), "proportional"),
         (lambda: NoiseSuppressingNetwork(noise=np.inf), "noise"),
-        (lambda: SignBiPower(1.0), "power"),
-        (lambda: FixedTime(upper_power=1.0), "upper_power"),
         (lambda: FixedTime(low=0.0), "low"),
         (lambda: ExplicitEuler(substeps=0), "substeps"),
         (lambda: ImplicitEuler(step=0.0), "step"),
