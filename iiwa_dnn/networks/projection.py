@@ -136,7 +136,9 @@ def stable_step(qp: QPViews, active: Vector) -> float:
         for k in range(i):
             K[i, k] = K[k, i]
     _, coupling = extreme_eigenvalues(K)
-    K[:] = qp.P
+    for i in range(n):
+        for k in range(n):
+            K[i, k] = qp.P[i, k]
     smallest, largest = extreme_eigenvalues(K)
     # Passive multipliers and clipped variables decay at rate one: never more than 2.
     bound = 2.0 / max(largest, 1.0)

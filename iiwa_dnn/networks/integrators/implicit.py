@@ -39,6 +39,7 @@ from iiwa_dnn.networks.integrators.base import (
 from iiwa_dnn.networks.integrators.implicit_steps import (
     Condensed,
     backward_euler,
+    copy_into,
     linear_step,
 )
 from iiwa_dnn.networks.projection import field, is_projection, mark_active
@@ -124,7 +125,7 @@ def step_program(data: Vector, n: int, m: int, p: int, s: Vector, step: float) -
     new = np.empty(s.size)
     systems = backward_euler(qp_views(data, n, m, p), s, step, new, 1e-12, 2 * MAX_NEWTON, matrix)
     if systems >= 0:
-        s[:] = new
+        copy_into(s, new)
     return systems
 
 
@@ -168,8 +169,8 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
         if linear_step(qp, s, now, LONGEST, matrix, new):
             new_rate = field(qp, new, then)
             if new_rate < 0.5 * rate:
-                s[:] = new
-                now[:] = then
+                copy_into(s, new)
+                copy_into(now, then)
                 rate = new_rate
                 time += LONGEST
                 continue
@@ -183,7 +184,7 @@ def settle(qp: QPViews, rates: int, constants: Vector, s: Vector, point: Vector)
             continue
         systems += taken
         time += step
-        s[:] = new
+        copy_into(s, new)
         rate = field(qp, s, now)
         if step < LONGEST:
             step *= GROWTH

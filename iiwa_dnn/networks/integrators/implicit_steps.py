@@ -118,6 +118,13 @@ def linear_step(
 
 
 @compiled
+def copy_into(out: Vector, values: Vector) -> None:
+    """Copy all values (k,) into the first entries of `out`."""
+    for k in range(values.size):
+        out[k] = values[k]
+
+
+@compiled
 def backward_euler(
     qp: QPViews,
     s: Vector,
@@ -139,7 +146,7 @@ def backward_euler(
     descent = np.empty(n)
     direction = np.empty(n)
     slacks = np.empty(matrix.values.size)
-    new[:] = s
+    copy_into(new, s)
     # A slack is known to its rounding, and its multiplier to `step` times that.
     largest = 1.0
     for i in range(n):
