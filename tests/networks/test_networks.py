@@ -28,7 +28,7 @@ from iiwa_dnn import (
     ZeroingNetwork,
 )
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.activations import FixedTime, SignBiPower
+from iiwa_dnn.networks.activations import FixedTime
 from iiwa_dnn.networks.admm import AdmmSolver
 from iiwa_dnn.networks.primal_dual import variational
 from iiwa_dnn.networks.zeroing import evaluate
