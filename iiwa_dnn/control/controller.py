@@ -42,8 +42,7 @@ from iiwa_dnn.qp import QP, Matrix, Status, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
-from iiwa_dnn.schemes.base import targets_of
-from iiwa_dnn.schemes.program import StepProgram
+from iiwa_dnn.schemes.program import StepProgram, targets_of
 from iiwa_dnn.schemes.step import TARGET_SIZE
 
 Mode = Literal["converged", "continuous"]

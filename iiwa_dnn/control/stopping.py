@@ -38,7 +38,8 @@ from iiwa_dnn.control.state import LAST, Q
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.qp.layout import Triple
 from iiwa_dnn.references.rotations import combined, dot
-from iiwa_dnn.schemes.distances import (
+from iiwa_dnn.schemes.program import ProgramArrays
+from iiwa_dnn.schemes.scene import (
     SECOND,
     SPEED,
     contact_of,
@@ -47,7 +48,6 @@ from iiwa_dnn.schemes.distances import (
     scene_views,
     second_order,
 )
-from iiwa_dnn.schemes.program import ProgramArrays
 from iiwa_dnn.schemes.step import rate_along
 
 LONGEST = 1e6

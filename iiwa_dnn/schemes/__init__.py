@@ -7,7 +7,6 @@ from iiwa_dnn.robot.obstacles import (
     Obstacle as Obstacle,
     Sphere as Sphere,
 )
-from iiwa_dnn.schemes.base import Scheme as Scheme
 from iiwa_dnn.schemes.collisions import CollisionAvoidance as CollisionAvoidance
 from iiwa_dnn.schemes.costs import (
     CyclicMotion as CyclicMotion,
@@ -25,6 +24,7 @@ from iiwa_dnn.schemes.literature import (
     PseudoInverse as PseudoInverse,
 )
 from iiwa_dnn.schemes.parts import Cost as Cost, Limit as Limit, Part as Part, Task as Task
+from iiwa_dnn.schemes.program import Scheme as Scheme
 from iiwa_dnn.schemes.step import Step as Step
 from iiwa_dnn.schemes.tasks import (
     AxisTask as AxisTask,

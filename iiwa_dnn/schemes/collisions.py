@@ -32,16 +32,17 @@ from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.robot.collision import collision_model, unwatched_links
 from iiwa_dnn.robot.obstacles import Obstacle, make_obstacles
-from iiwa_dnn.schemes.distances import (
+from iiwa_dnn.schemes.parts import Checks, Limit
+from iiwa_dnn.schemes.scene import (
     SPEED,
     Contact,
+    Scene,
     contact_of,
+    make_scene,
     place_bodies,
     scene_views,
     second_order,
 )
-from iiwa_dnn.schemes.parts import Checks, Limit
-from iiwa_dnn.schemes.scene import Scene, make_scene
 from iiwa_dnn.schemes.step import Step, StepViews, rate_along
 
 
@@ -177,8 +178,7 @@ class CollisionAvoidance(Limit):
     def row_names(self, robot: Robot) -> list[str]:
         """Return the pair of each row; none where rows change their pair."""
         pairs = self.scene(robot).pairs
-        named = [f"{pair.second} and {pair.first}" for pair in pairs]
-        return named if len(pairs) <= self.nearest else []
+        return [f"{b} and {a}" for a, b in pairs] if len(pairs) <= self.nearest else []
 
     def extra_frames(self, robot: Robot) -> tuple[str, ...]:
         """Return the links whose placements the rows need."""
@@ -199,8 +199,7 @@ class CollisionAvoidance(Limit):
 
     def settings(self) -> dict[str, Any]:
         """Return name and parameters, as values that JSON can hold."""
-        obstacles = [obstacle.settings() for obstacle in self.obstacles]
-        return super().settings() | {"obstacles": obstacles}
+        return super().settings() | {"obstacles": [each.settings() for each in self.obstacles]}
 
 
 def avoidance_of(scheme: object) -> CollisionAvoidance | None:
@@ -218,15 +217,15 @@ def collision_settings(scheme: object, robot: Robot) -> dict[str, Any]:
     part = avoidance_of(scheme)
     if part is None:
         return {}
-    obstacles = [obstacle.settings() for obstacle in part.obstacles]
-    stated = {
-        "distance": part.distance,
-        "obstacles": obstacles,
-        "pairs": part.scene(robot).pairs,
-        "left_out": collision_model(robot).left_out if part.self_collision else (),
-        "unwatched": unwatched_links(robot),
+    return {
+        "collisions": {
+            "distance": part.distance,
+            "obstacles": part.settings()["obstacles"],
+            "pairs": part.scene(robot).pairs,
+            "left_out": collision_model(robot).left_out if part.self_collision else (),
+            "unwatched": unwatched_links(robot),
+        }
     }
-    return {"collisions": stated}
 
 
 def collision_arrays(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict[str, Any]:
@@ -237,5 +236,4 @@ def collision_arrays(scheme: object, robot: Robot, q: Matrix, t: Vector) -> dict
     part = avoidance_of(scheme)
     if part is None:
         return {}
-    distance, nearest = part.scene(robot).nearest(q, t)
-    return {"distance": distance, "nearest": nearest}
+    return dict(zip(("distance", "nearest"), part.scene(robot).nearest(q, t), strict=True))

@@ -114,11 +114,10 @@ class CyclicMotion(WeightedCost):
         Raises:
             InvalidInputError: `home` has another length than the robot has joints.
         """
-        if self.home is None:
-            return np.concatenate([[self.weight, 0.0], np.zeros(robot.dof)])
-        if len(self.home) != robot.dof:
-            raise InvalidInputError("home", f"has {len(self.home)} values for {robot.dof} joints")
-        return np.concatenate([[self.weight, self.gain], self.home])
+        home = (0.0,) * robot.dof if self.home is None else self.home
+        if len(home) != robot.dof:
+            raise InvalidInputError("home", f"has {len(home)} values for {robot.dof} joints")
+        return np.array([self.weight, 0.0 if self.home is None else self.gain, *home])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,20 +144,15 @@ class Manipulability(WeightedCost):
         """Return P (n, n), zero, and q (n,)."""
         J = step.frame(self.frame).jacobian
         n = J.shape[1]
-        return np.zeros((n, n)), -self.weight * manipulability_gradient(J)[1]
-
-
-def manipulability_gradient(J: Matrix) -> tuple[float, Vector]:
-    """Compute Yoshikawa's measure of a chain's Jacobian J (6, n), n >= 6, and its gradient (n,)."""
-    gram = J @ J.T
-    measure = float(np.sqrt(max(np.linalg.det(gram), 0.0)))
-    if measure == 0.0:
-        return 0.0, np.zeros(J.shape[1])
-    linear = J[:3].T
-    angular = J[3:].T
-    # About a fixed point, which the measure does not depend on, a joint i moves the axis of each
-    # joint j after it, and no other: d column j / d q_i, (i, j, row).
-    turned = np.cross(angular[:, np.newaxis], linear) + np.cross(linear[:, np.newaxis], angular)
-    change = np.concatenate([turned, np.cross(angular[:, np.newaxis], angular)], axis=2)
-    moved = np.einsum("ijr,rj->ij", change, np.linalg.solve(gram, J))
-    return measure, measure * np.triu(moved).sum(axis=1)
+        gram = J @ J.T
+        measure = np.sqrt(max(np.linalg.det(gram), 0.0))
+        if measure == 0.0:
+            return np.zeros((n, n)), np.zeros(n)
+        linear = J[:3].T
+        angular = J[3:].T
+        # About a fixed point, which the measure does not depend on, a joint i moves the axis of
+        # each joint j after it, and no other: d column j / d q_i, (i, j, row).
+        turned = np.cross(angular[:, np.newaxis], linear) + np.cross(linear[:, np.newaxis], angular)
+        change = np.concatenate([turned, np.cross(angular[:, np.newaxis], angular)], axis=2)
+        moved = np.einsum("ijr,rj->ij", change, np.linalg.solve(gram, J))
+        return np.zeros((n, n)), -self.weight * measure * np.triu(moved).sum(axis=1)

@@ -295,9 +295,8 @@ def check_ranges(constants: Vector, rate: float) -> None:
     short = (jerk < np.inf) & (steepest**3 > usable**2 * (upper - lower))
     if short.any():
         i = int(np.flatnonzero(short)[0])
-        problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range"
-        if rate < np.inf:
-            problem += f", and more cannot be used at {1.0 / rate:g} s a step"
+        step = f", and more cannot be used at {1.0 / rate:g} s a step" if rate < np.inf else ""
+        problem = f"joint {i + 1}: {usable[i]:g} rad/s^3 is too little to stop in its range{step}"
         raise InvalidInputError("jerk", problem, jerk)
 
 

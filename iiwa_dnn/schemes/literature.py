@@ -29,10 +29,10 @@ from iiwa_dnn import checks
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
 from iiwa_dnn.robot import Configuration, Robot
-from iiwa_dnn.schemes.base import Scheme
 from iiwa_dnn.schemes.costs import CyclicMotion, Kinetic, KineticEnergy, WeightedCost
 from iiwa_dnn.schemes.limits import JointLimits
 from iiwa_dnn.schemes.parts import Limit
+from iiwa_dnn.schemes.program import Scheme
 from iiwa_dnn.schemes.step import Step
 from iiwa_dnn.schemes.tasks import ORIENTATIONS, Orientation, OrientationTask, PositionTask
 
@@ -75,11 +75,6 @@ class DoubleIndicator(Scheme):
     extra_limits: tuple[Limit, ...] = ()
     tracking: Tracking = "paper"
 
-    @property
-    def ahead(self) -> bool:  # type: ignore[override]
-        """Test whether the rows ask for the next target."""
-        return self.tracking == "next"
-
     def __post_init__(self) -> None:
         if checks.not_negative("weight", self.weight) > 1.0:
             raise InvalidInputError("weight", f"must be in [0, 1], not {self.weight}", self.weight)
@@ -92,6 +87,7 @@ class DoubleIndicator(Scheme):
             problem = f"must be a tuple of limits, not {self.extra_limits!r}"
             raise InvalidInputError("extra_limits", problem, self.extra_limits)
         tasks = tip_tasks(self.position_gain, self.orientation_gain, self.orientation)
+        object.__setattr__(self, "ahead", self.tracking == "next")
         if self.ahead:
             tasks = [replace(task, gain=np.inf) for task in tasks]
         energy = KineticEnergy(weight=self.weight, kinetic=self.kinetic)
@@ -158,9 +154,8 @@ class LargestSpeed(WeightedCost):
 
     def quadratic(self, step: Step) -> tuple[Matrix, Vector]:
         """Return P (n + 1, n + 1) and q (n + 1,) of a scheme with one slack variable."""
-        P = np.zeros((step.q.size + 1, step.q.size + 1))
-        P[-1, -1] = self.weight
-        return P, np.zeros(len(P))
+        none = np.zeros(step.q.size + 1)
+        return np.diag([*none[1:], self.weight]), none
 
 
 class SpeedsBelowSlack(Limit):

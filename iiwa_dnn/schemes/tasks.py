@@ -47,10 +47,8 @@ from iiwa_dnn.schemes.step import (
     write_velocity,
 )
 
-Form = Literal["so3", "block"]
 Orientation = Literal["so3", "block", "none"]
 ORIENTATIONS: tuple[Orientation, ...] = ("so3", "block", "none")
-Rows = tuple[tuple[float, ...], ...]
 
 ROTATION_LENGTH = 0.5
 """Weight of a missing 1 rad/s of a task beside a missing 1 m/s where a policy lets it yield [m].
@@ -249,7 +247,7 @@ class OrientationTask(FrameTask):
 
     kernel = staticmethod(rotation_rows)
     _checks: ClassVar[Checks] = {"form": partial(checks.one_of, choices=("so3", "block"))}
-    form: Form = "so3"
+    form: Literal["so3", "block"] = "so3"
     rows = 3
     row_weight = ROTATION_LENGTH
 
@@ -296,7 +294,7 @@ class RelativePoseTask(FrameTask):
     }
     frame: str = field()
     base: str = field()
-    pose: Rows | None = None
+    pose: tuple[tuple[float, ...], ...] | None = None
     tracks = False
     rows = 6
 
@@ -327,9 +325,11 @@ def axis_rows(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
     wanted = vector_at(constants, OWN + 9)
     if dot(wanted, wanted) == 0.0:
         spin = vector_at(target, 15)
-        x = dot(row_of(target, 0), axis)
-        y = dot(row_of(target, 1), axis)
-        wanted = (x, y, dot(row_of(target, 2), axis))
+        wanted = (
+            dot(row_of(target, 0), axis),
+            dot(row_of(target, 1), axis),
+            dot(row_of(target, 2), axis),
+        )
     here = axis_at(placement, axis)
     turn = cross(here, wanted)
     sine = np.sqrt(dot(turn, turn))

@@ -30,7 +30,7 @@ from iiwa_dnn.control.stopping import (
     way_along,
     within_rates,
 )
-from iiwa_dnn.schemes.distances import second_order
+from iiwa_dnn.schemes.scene import second_order
 from judge_limits import breaches
 
 ROBOT = load_robot("iiwa7")

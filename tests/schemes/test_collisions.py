@@ -15,8 +15,7 @@ from helpers_simulation import rows_of
 from iiwa_dnn.robot import collision
 from iiwa_dnn.robot.collision import collision_model, make_collision_model, unwatched_links
 from iiwa_dnn.robot.kinematics import Kinematics
-from iiwa_dnn.schemes.distances import second_order, write_distances
-from iiwa_dnn.schemes.scene import bounds_of_motion
+from iiwa_dnn.schemes.scene import bounds_of_motion, second_order, write_distances
 from random_motion import SLACK, Judge, obstacles_for, wander
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from iiwa_dnn.schemes.distances import beyond, depth, nearest_parameter
+from iiwa_dnn.schemes.scene import beyond, depth, nearest_parameter
 
 
 def distance(segment: np.ndarray, half: np.ndarray) -> float:
