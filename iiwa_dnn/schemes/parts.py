@@ -225,8 +225,9 @@ def copy_task(step: StepViews, constants: Vector, target: Vector, A: Matrix, b: 
     """Write A and b from the constants."""
     n = A.shape[1]
     for j in range(b.size):
-        A[j, :] = constants[n * j : n * j + n]
-    b[:] = constants[n * b.size : n * b.size + b.size]
+        b[j] = constants[n * b.size + j]
+        for i in range(n):
+            A[j, i] = constants[n * j + i]
 
 
 @compiled

@@ -481,11 +481,9 @@ def assemble(data: Vector, arrays: ProgramArrays, past: Matrix, targets: Matrix,
         targets,
     )
     qp = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
-    for i in range(data.size):
-        data[i] = 0.0
-    for i in range(qp.lb.size):
-        qp.lb[i] = -np.inf
-        qp.ub[i] = np.inf
+    data[:] = 0.0
+    qp.lb[:] = -np.inf
+    qp.ub[:] = np.inf
     for k in range(1, 1 + table[0, 4]):
         kind = table[k, 0]
         address = table[k, 1]

@@ -108,7 +108,7 @@ def test_an_answer_that_is_none_is_refused_by_name(part: Any, problem: str) -> N
     [
         (OwnRows((ROW, [-20.0])), "row 1 of OwnRows, iiwa7_joint_2 lower velocity limit"),
         (OwnRows((0.0 * ROW, [-1.0])), "row 1 of OwnRows"),
-        (OwnBounds((ZEROS + 5.0, ZEROS + np.inf)), "iiwa7_joint_1 upper position limit or bound"),
+        (OwnBounds((ZEROS + 5.0, ZEROS + np.inf)), "iiwa7_joint_1 lower position limit or bound"),
         (OwnTask((0.0 * ROW, [1.0])), "no bound, a singular pose or tasks against each other"),
     ],
 )
