@@ -36,5 +36,8 @@ napoleon_use_ivar = True
 
 html_extra_path = ["heart.html"]
 html_theme = "furo"
+# Lines of 95 characters without a scroll bar.
+FONT = {"code-font-size": "0.75rem"}
+html_theme_options = {"light_css_variables": FONT, "dark_css_variables": FONT}
 html_title = "iiwa_dnn"
 html_show_sphinx = False
