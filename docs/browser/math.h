@@ -5,6 +5,8 @@
 #define isinf(x) __builtin_isinf(x)
 #define isfinite(x) __builtin_isfinite(x)
 
+#define copysign(x, y) __builtin_copysign(x, y)
+
 double atan2(double y, double x);
 double ceil(double x);
 double cos(double x);

@@ -9,8 +9,6 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -28,50 +26,34 @@ def library(package: Path) -> Path:
 
 def digest(package: Path) -> str:
     """Return a digest of all that the library is made from."""
-    whole = hashlib.sha256()
     sources = [*package.rglob("*.py"), *(package / "compiling").glob("*.[ch]")]
-    for path in sorted(sources):
-        whole.update(path.read_bytes())
-    return whole.hexdigest()
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
 
 
 def is_current(package: Path) -> bool:
     """Test whether a package's library is made from the sources that stand beside it."""
     stamp = library(package).with_suffix(".digest")
-    return stamp.is_file() and stamp.read_text().split()[0] == digest(package)
+    return stamp.is_file() and stamp.read_text().startswith(digest(package))
 
 
 def build(package: Path) -> Path:
-    """Translate and compile the kernels of a package, unless that is done; return the library.
+    """Translate the kernels of a package, compile them if they have changed; return the library.
 
     Raises:
         TranslationError: A kernel leaves the subset of Python that is translated.
         RuntimeError: There is no compiler, or it refuses the code.
     """
     made = library(package)
-    with _alone(package):
-        if is_current(package):
-            return made
-        translator = Translator(package)
-        translator.all()
-        text = extension(translator)
-        own = hashlib.sha256(" ".join([text, *FLAGS]).encode()).hexdigest()
-        stamp = made.with_suffix(".digest")
-        if not (made.is_file() and stamp.is_file() and own in stamp.read_text()):
-            _compile(text, made)
-        stamp.write_text(f"{digest(package)} {own}\n")
+    stamp = made.with_suffix(".digest")
+    now = digest(package)
+    translator = Translator(package)
+    translator.all()
+    text = extension(translator)
+    own = hashlib.sha256(" ".join([text, *FLAGS]).encode()).hexdigest()
+    if not (made.is_file() and stamp.is_file() and own in stamp.read_text()):
+        _compile(text, made)
+    stamp.write_text(f"{now} {own}\n")
     return made
-
-
-@contextmanager
-def _alone(package: Path) -> Iterator[None]:
-    """Let one process build at a time."""
-    with (package / "_kernels.lock").open("w") as lock:
-        if sys.platform != "win32":
-            import fcntl
-
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
 
 
 def compiler() -> list[str]:

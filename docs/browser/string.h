@@ -1,0 +1,5 @@
+/* What an exported controller needs of C's strings; `page.c` has the functions. */
+#include <stddef.h>
+
+void *memcpy(void *to, const void *from, size_t size);
+void *memset(void *to, int value, size_t size);
