@@ -5,9 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import shutil
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -40,18 +38,6 @@ def loaded(folder: Path, compiler: str = "gcc") -> ExportedController:
 
 
 @pytest.fixture(scope="module")
-def folders(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """Folders of the exported controllers of `MADE` by name, each written at its first use."""
-
-    @cache
-    def export(name: str) -> Path:
-        controller, q0 = MADE[name]()
-        return c99(controller, tmp_path_factory.mktemp("export"), q0, verify=False)
-
-    return export
-
-
-@pytest.fixture(scope="module")
 def library(heart: Path) -> ctypes.CDLL:
     return loaded(heart)._library
 
@@ -62,7 +48,7 @@ def exported(heart: Path, library: ctypes.CDLL) -> ExportedController:
     return ExportedController(library, (heart / "controller.h").read_text(encoding="utf-8"))
 
 
-REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move, a floor")
+REACHING = ("velocity limits active", "collisions, 21 pairs", "obstacles that move")
 """Controllers whose limits become active."""
 
 STEPS = {
@@ -76,51 +62,8 @@ STEPS = {
 """Steps until what a controller is there for has come and gone; 500 for all others."""
 
 
-def in_blocks() -> tuple[Controller, np.ndarray]:
-    """The inertia matrix in the cost, the rows in block form, a path through poses."""
-    path = SETTINGS["poses"]()[0].reference
-    return drawing(DoubleIndicator(kinetic="inertia", orientation="block"), path)
-
-
-def softly_along_axis() -> tuple[Controller, np.ndarray]:
-    """Soft tasks of elbow, posture and center of mass beside an axis and a coupling."""
-    along = SETTINGS["axis and coupling"]()[0].scheme
-    soft = [task for task in SETTINGS["soft tasks"]()[0].scheme.tasks if task.weight is not None]
-    return drawing(iiwa_dnn.Scheme(along.costs, [*along.tasks, *soft], along.limits))
-
-
-def among_moving_above_a_floor() -> tuple[Controller, np.ndarray]:
-    """Obstacles that move, a floor, and the arm itself."""
-    scheme = SETTINGS["obstacles that move"]()[0].scheme
-    (avoidance,) = (part for part in scheme.limits if type(part) is iiwa_dnn.CollisionAvoidance)
-    limits = [part for part in scheme.limits if part is not avoidance]
-    floor = iiwa_dnn.HalfSpace((0.0, 0.0, 1.0), -0.3)
-    both = iiwa_dnn.CollisionAvoidance([*avoidance.obstacles, floor])
-    return drawing(iiwa_dnn.Scheme(scheme.costs, scheme.tasks, [*limits, both]))
-
-
-def along_a_cone() -> tuple[Controller, np.ndarray]:
-    """The UR5, of six joints, on its way to the next target of a path that turns."""
-    scheme = DoubleIndicator(tracking="next")
-    return drawing(scheme, iiwa_dnn.Cone(), iiwa_dnn.load_robot("ur5"))
-
-
-COMBINED = {
-    "ur5, next target, cone": along_a_cone,
-    "inertia, block form, poses": in_blocks,
-    "soft tasks, axis and coupling": softly_along_axis,
-    "obstacles that move, a floor": among_moving_above_a_floor,
-}
-"""Controllers each of which has the code of several `SETTINGS`."""
-
-SHOWN_BY_OTHERS = (
-    *("inertia", "block form", "poses", "soft tasks", "axis and coupling"),
-    *("obstacles that move", "collisions with itself, a box, a floor"),
-    *("ur5", "next target, cone", "heart", "acceleration", "panda", "xarm7"),
-)
-"""Controllers whose code is another's too, of those in `COMBINED` or of `SETTINGS`."""
-
-MADE = {**{k: v for k, v in SETTINGS.items() if k not in SHOWN_BY_OTHERS}, **COMBINED}
+SHOWN_BY_OTHERS = ("heart", "acceleration", "panda", "xarm7")
+"""Controllers whose code is another's too."""
 
 
 def take_kernels_kinematics(controller: Controller) -> None:
@@ -133,13 +76,11 @@ def take_kernels_kinematics(controller: Controller) -> None:
     )
 
 
-@pytest.mark.parametrize("name", MADE)
-def test_commands_have_pythons_bits_in_closed_loop(
-    name: str, folders: Callable[[str], Path]
-) -> None:
+@pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHOWN_BY_OTHERS])
+def test_commands_have_pythons_bits_in_closed_loop(name: str, tmp_path: Path) -> None:
     """Pinocchio's own kinematics have other last digits: tests/robot/test_kinematics_kernel.py."""
-    controller, q0 = MADE[name]()
-    exported = loaded(folders(name), QUICKEST)
+    controller, q0 = SETTINGS[name]()
+    exported = loaded(c99(controller, tmp_path, q0, verify=False), QUICKEST)
     controller.anchor(iiwa_dnn.Configuration(controller.robot, q0))
     take_kernels_kinematics(controller)
     layout = controller.layout
@@ -218,8 +159,8 @@ def test_make_and_the_example_run_as_the_readme_says(heart: Path, tmp_path: Path
 
 @needs("clang")
 def test_clang_has_no_warning_either(heart: Path) -> None:
-    for name in ("controller.c", "test_controller.c", "example.c"):
-        run("clang", *WARNINGS, "-fsyntax-only", heart / name)
+    names = ("controller.c", "test_controller.c", "example.c")
+    run("clang", *WARNINGS, "-fsyntax-only", *(heart / name for name in names))
 
 
 def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
@@ -232,10 +173,6 @@ def test_the_code_is_plain_c_without_global_state(heart: Path) -> None:
     variables = [line for line in outside.splitlines() if line.startswith("static") and "=" in line]
     assert variables
     assert all(line.startswith("static const") for line in variables)
-
-
-def test_names_and_first_lines_of_docstrings_are_carried_over(heart: Path) -> None:
-    text = (heart / "controller.c").read_text(encoding="utf-8")
     for words in (
         "static ptrdiff_t control_step_take_step(struct arena *arena, vector row,",
         "/* Tighten the bounds to those of `JointLimits`, whose constants these are.",
