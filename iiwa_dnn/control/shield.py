@@ -97,34 +97,54 @@ def approach_positions(
 
     Args:
         q: Joint positions [rad], (n,).
-        past: `ControllerState.past`, (5, n).
+        past: `ControllerState.past`, (8, n).
         goal: Joint positions to reach [rad], (n,).
         limits: `MotionLimits.constants`, (6 n,).
         dt: Control period [s].
         dq: The velocities [rad/s], (n,), overwritten.
     """
-    n = q.size
-    for i in range(n):
+    for i in range(q.size):
         left = goal[i] - q[i]
         above = left if left >= 0.0 else np.inf
         below = -left if left < 0.0 else np.inf
-        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
-        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
+        lower, upper = bounds_of(i, past, above, below, limits, dt)
         dq[i] = upper if left >= 0.0 else lower
         if not abs(dq[i]) < np.inf:
             dq[i] = left / dt
 
 
 @compiled
-def approach_velocities(past: Matrix, aim: Vector, limits: Vector, dt: float, dq: Vector) -> None:
-    """Write the next velocities dq (n,) [rad/s] on the quickest way to `aim` that passes none.
+def approach_velocities(
+    q: Vector, past: Matrix, held: bool, limits: Vector, dt: float, dq: Vector
+) -> None:
+    """Replace wished velocities dq (n,) [rad/s] by the next ones on the quickest way to them.
 
-    The aim (n,) [rad/s] is held; the other arguments are those of `approach_positions`.
+    A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
+    as in the last step (`held`), does not pass it on that way. The other arguments are those of
+    `approach_positions`.
     """
-    n = aim.size
+    n = q.size
     for i in range(n):
-        behind = past[LAST, i] - aim[i]
-        dq[i] = aim[i] + braking(behind, -np.inf, np.inf, limits[4 * n + i], dt)
+        above = limits[n + i] - q[i]
+        below = q[i] - limits[i]
+        lower, upper = bounds_of(i, past, above, below, limits, dt)
+        if held or dq[i] < lower or dq[i] > upper:
+            behind = past[LAST, i] - dq[i]
+            dq[i] += braking(behind, -np.inf, np.inf, limits[4 * n + i], dt)
+
+
+@compiled
+def bounds_of(
+    i: int, past: Matrix, above: float, below: float, limits: Vector, dt: float
+) -> tuple[float, float]:
+    """Compute the bounds of joint i by `joint_bounds`, for its distances [rad] from two positions.
+
+    The other arguments are those of `approach_positions`.
+    """
+    n = past.shape[1]
+    rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+    lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
+    return lower, upper
 
 
 class ShieldState(NamedTuple):
@@ -401,8 +421,8 @@ class Shield:
         past = self._kept.now.past
         if self._kind == "position":
             approach_positions(positions, past, wish, self.motion, self.dt, aim)
-        elif held:
-            approach_velocities(past, wish, self.motion, self.dt, aim)
+        else:
+            approach_velocities(positions, past, held, self.motion, self.dt, aim)
         # From here a network that has nothing to do hands the aim out as it is.
         sizes = controller.layout.sizes
         state = controller.solver.warm_state(sizes)

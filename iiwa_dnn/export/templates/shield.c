@@ -21,9 +21,7 @@ int shield_step(struct controller *c, const double *q, const double *wish, doubl
     @take_positions@(&arena, joints, &kept, settings);
     const bool held = @take_wish@(&arena, asked, wish != NULL, &kept, settings);
     memcpy(c->aim, c->wish, sizeof c->wish);
-    if (held) {
-        @approach@(&arena, past, kept.wish, limits, CONTROLLER_DT, aim);
-    }
+    @approach@(&arena, kept.positions, past, held, limits, CONTROLLER_DT, aim);
     memset(c->state, 0, sizeof c->state);
     memcpy(c->state, c->aim, sizeof c->wish);
     const int action = controller_step(c, c->positions, c->aim, dq);
