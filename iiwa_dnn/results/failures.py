@@ -45,13 +45,17 @@ def failures(run: Record | Mapping[str, Any]) -> list[str]:
     if not hasattr(run, "get") or "settings" not in run:
         raise InvalidInputError("run", f"must be a record or its metrics, not {run!r:.80}", run)
     converged = run["settings"]["mode"] == "converged"
-    return [
+    check = run["crosscheck"]
+    reasons = [
         *_incomplete(run),
-        *(_policies(run) if converged and "incidents" in run else ()),
+        *(_policies(run) if converged else ()),
         *(_unsolved(run) if converged else ()),
-        *_crosscheck(run["crosscheck"], run["steps"]),
+        *_crosscheck(check, run["steps"]),
         *_broken_limits(run),
     ]
+    if not reasons and any(steps for kind, steps in check["kinds"].items() if kind != "own"):
+        return [programs_checked(check)]
+    return reasons
 
 
 def programs_checked(check: Mapping[str, Any]) -> str:
@@ -110,8 +114,8 @@ def _incomplete(metrics: Mapping[str, Any]) -> Iterator[str]:
 
 def _policies(metrics: Mapping[str, Any]) -> Iterator[str]:
     """Name the steps without the network's answer; clipping and active bounds are no failures."""
-    incidents = metrics["incidents"]
-    done = {word: incidents[name] for name, word in _DONE.items() if incidents[name]}
+    incidents = metrics.get("incidents", {})
+    done = {word: incidents[name] for name, word in _DONE.items() if incidents.get(name)}
     if not done:
         return
     counts = ", ".join(f"{steps:,} {word}" for word, steps in done.items())
@@ -156,8 +160,6 @@ def _crosscheck(check: Mapping[str, Any], steps: int) -> Iterator[str]:
     unchecked = steps - check["steps_checked"] - check["kinds"]["stopped"]
     if unchecked:
         yield f"{counted(unchecked)} of {steps:,} not checked"
-    if any(count and kind != "own" for kind, count in check["kinds"].items()):
-        yield programs_checked(check)
 
 
 def _disagreement(check: Mapping[str, Any], first: Mapping[str, Any]) -> str:

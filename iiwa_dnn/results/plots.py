@@ -38,7 +38,7 @@ CAPTIONS = {
 _JOINTS = {
     "q": (r"$q_{{{}}}$", "Joint angle [rad]", "q_upper"),
     "dq": (r"$\dot{{q}}_{{{}}}$", "Joint velocity [rad/s]", "dq_max"),
-    "torque": (r"$\tau_{{{}}}$", "Joint torque [N m]", "torque_max"),
+    "torque": (r"$\tau_{{{}}}$", "Joint torque [% of its limit]", "torque_max"),
 }
 _ERRORS = (
     ("$e_x$", "0.35", "--"),
@@ -178,6 +178,9 @@ def draw_joints(axes: Axes, record: Record, name: str) -> None:
     symbol, quantity, limit = _JOINTS[name]
     curves: FloatArray = getattr(record, name).T
     upper = limits(record, limit)
+    if name == "torque":
+        curves = 100.0 * curves / upper[:, np.newaxis]
+        upper = np.full(record.dof, 100.0)
     bounds = np.array([limits(record, "q_lower", -np.inf) if name == "q" else -upper, upper])
     colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, record.dof))
     names = short_names(record.settings, record.dof)

@@ -27,7 +27,7 @@ _RESULTS = (
     ("mean squared position error", "mse_position_error_m2", "m²"),
     ("largest orientation error", "max_orientation_error_rad", "rad"),
     ("joint drift, start to end", "joint_drift_rad", "rad"),
-    ("largest kinetic index", "max_kinetic_index", "rad²/s², or J with inertia"),
+    ("largest kinetic index", "max_kinetic_index", "rad²/s²"),
     ("wall time", "wall_time_s", "s"),
     ("time simulated / wall time", "realtime_factor", ""),
     ("largest KKT residual", "max_kkt_residual", ""),
@@ -153,7 +153,7 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
         value = _at(metrics, place)
         if value is not None and (value or not place.startswith("incidents.")):
             beside = f" (the paper's {_text(paper[place])})" if paper and place in paper else ""
-            yield name, _text(value) + beside, unit
+            yield name, _text(value) + beside, _unit(settings, place, unit)
     near = metrics.get("collisions")
     if near is not None:
         least = f"{_text(near['least_distance_m'])}, allowed {_text(near['allowed_m'])}"
@@ -169,6 +169,12 @@ def rows(metrics: Mapping[str, Any], paper: Mapping[str, float] | None = None) -
             yield f"{describe(limit)} {verb}", steps, ""
         if len(limits) > _MOST:
             yield f"further limits {verb}", str(len(limits) - _MOST), ""
+
+
+def _unit(settings: Mapping[str, Any], place: str, unit: str) -> str:
+    """Return the unit of a metric, which the scheme decides for one of them."""
+    heavy = place == "max_kinetic_index" and "inertia" in str(settings.get("scheme"))
+    return "J" if heavy else unit
 
 
 def _at(metrics: Mapping[str, Any], place: str) -> Any:

@@ -17,7 +17,6 @@ import pytest
 import iiwa_dnn
 from helpers_commands import QUICK, call
 from iiwa_dnn.app.main import COMMANDS
-from iiwa_dnn.results.record import Record
 
 ROOT = Path(__file__).parents[2]
 
@@ -149,18 +148,3 @@ def test_a_command_that_is_ended_leaves_no_half_files(
     for path in (tmp_path / "run").rglob("*.json"):
         assert json.loads(path.read_text())  # finished cells are whole
     assert (tmp_path / "run").exists() == (words[0] == "paper")  # no empty folder is left
-
-
-def test_what_was_written_before_a_signal_is_whole(tmp_path: Path) -> None:
-    process = start(tmp_path, "track", "--dt", "1e-3", "--duration", "0.05", "-q", "--out", "run")
-    for _ in range(6000):
-        if (tmp_path / "run" / "metrics.json").exists() or process.poll() is not None:
-            break
-        time.sleep(0.01)
-    process.terminate()  # while it draws
-    process.communicate(timeout=60)
-    assert process.returncode == 143
-    assert Record.load(tmp_path / "run" / "record.npz").steps == 50
-    assert not list((tmp_path / "run").glob(".*"))
-    for path in (tmp_path / "run").glob("*.png"):
-        assert path.read_bytes().endswith(b"IEND\xaeB`\x82")

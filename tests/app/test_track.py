@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import socket
 import subprocess
 import sys
 from functools import wraps
@@ -51,15 +50,6 @@ def test_no_plots_and_quiet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert call("track", *QUICK, "-q", "--out", tmp_path) == 0
     assert capsys.readouterr() == ("", "")
     assert not list(tmp_path.glob("*.p[nd]*"))
-
-
-def test_no_network_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*args: object, **options: object) -> None:
-        raise AssertionError("a connection was opened")
-
-    monkeypatch.setattr(socket.socket, "connect", refuse)
-    monkeypatch.setattr(socket, "getaddrinfo", refuse)
-    track(tmp_path, "-q")
 
 
 @pytest.mark.parametrize(
@@ -115,28 +105,6 @@ def test_metrics_can_be_recomputed_from_the_record_alone(
     assert check["reference_failures"] == (record["reference_residual"] > 1e-8).sum()
     if settings["mode"] == "converged":
         assert check["disagreements"] == (gap > 1e-6).sum()
-
-
-@pytest.mark.parametrize(
-    ("check", "solver", "columns"),
-    [
-        ("osqp", "osqp", 1),
-        ("both", "proxqp+osqp", 2),
-        ("daqp", "daqp", 1),
-        ("proof", "proof", 1),
-        ("none", "none", 0),
-    ],
-)
-def test_the_reference_of_every_step(check: str, solver: str, columns: int, tmp_path: Path) -> None:
-    if check == "daqp":
-        pytest.importorskip("daqp", reason="pip install 'iiwa-dnn[bench]'")
-    record, metrics = track(tmp_path, "--check", check)
-    assert record["solution_gap"].shape == (50, columns)
-    assert metrics["crosscheck"]["solver"] == solver
-    assert metrics["crosscheck"]["steps_checked"] == (50 if columns else 0)
-    assert metrics["crosscheck"]["disagreements"] == 0
-    if columns:
-        assert 0.0 < metrics["crosscheck"]["max_solution_gap"] <= 1e-6
 
 
 # Words and tables
@@ -361,31 +329,6 @@ def test_a_broken_limit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert captured.err.startswith("iiwa-dnn track: the start posture ")
 
 
-def test_a_step_that_is_not_solved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    # A heart of 3 m: out of the arm's reach.
-    far = (*QUICK, "--scale", "0.1", "--duration", "2", "--policy", "stop")
-    assert call("track", *far, "--out", tmp_path) == 1
-    record, metrics = results(tmp_path)
-    steps = len(record["dq"])
-    assert steps < 2000
-    assert metrics["settings"]["status"].startswith(f"stopped at step {steps - 1} ")
-    assert f"ended after {steps} of 2,000 steps" in capsys.readouterr().out
-    np.testing.assert_array_equal(record["dq"][-1], np.zeros(7))
-
-
-def test_too_few_joints_for_a_pose_are_said_once_before_the_run(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = (*QUICK, "--lock", "iiwa7_joint_3", "iiwa7_joint_5", "--scale", "1e-3")
-    assert call("track", *words, "--out", tmp_path / "pose") == 1
-    said = capsys.readouterr().err
-    assert said.count("iiwa-dnn track: 5 joints cannot hold a pose: orientation='none' ") == 1
-    assert said.count("iiwa-dnn track: no start posture is known of 'iiwa7': ") == 1
-    assert said.count("\n") == 2
-    assert call("track", *words, "--orientation", "none", "--out", tmp_path / "position") == 0
-    assert "cannot" not in capsys.readouterr().err
-
-
 def test_obstacles_are_kept_away_from_and_links_without_geometry_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -471,16 +414,6 @@ def two_ends(file: Path) -> None:
         '<parent link="iiwa7_link_6"/><child link="probe"/></joint></robot>'
     )
     file.write_text(IIWA7.read_text(encoding="utf-8").replace("</robot>", probe))
-
-
-def test_a_file_with_several_ends_is_drawn_with_and_exported_by_its_tip(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    two_ends(tmp_path / "iiwa7.urdf")
-    words = ("--robot", tmp_path / "iiwa7.urdf", "--tip", "iiwa7_flange")
-    track(tmp_path / "run", *words)
-    assert "verdict" in capsys.readouterr().out
-    assert call("export", *words, "--out", tmp_path / "c") == 0
 
 
 @pytest.mark.parametrize("code", [errno.ENOSPC, errno.EIO])

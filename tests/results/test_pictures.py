@@ -132,13 +132,3 @@ def test_without_the_encoder_one_line_says_what_to_install(robot, record, tmp_pa
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     with pytest.raises(MissingDependencyError, match=re.escape("pip install 'iiwa-dnn[sim]'")):
         pictures.save_video(robot, record, tmp_path / "video.mp4")
-
-
-def test_a_path_in_space_is_drawn_too(robot):
-    from helpers_physics import START
-    from iiwa_dnn import Configuration, DoubleIndicator, Line, simulate
-
-    line = Line(offset=(0.0, 0.05, 0.08), period=2.0).anchored(Configuration(robot, START))
-    record = simulate(robot, DoubleIndicator(), line, START, dt=0.02, duration=1.0)
-    with ArmRenderer(robot, record, (200, 150)) as renderer:
-        assert red(renderer.draw(record.steps)).sum() > 20

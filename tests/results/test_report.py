@@ -62,7 +62,7 @@ def test_the_reports_numbers_are_the_metrics(run):
     for row, value, unit in [
         ("mean squared position error", metrics["mse_position_error_m2"], "m²"),
         ("largest orientation error", metrics["max_orientation_error_rad"], "rad"),
-        ("largest kinetic index", metrics["max_kinetic_index"], "rad²/s², or J with inertia"),
+        ("largest kinetic index", metrics["max_kinetic_index"], "rad²/s²"),
         ("largest KKT residual", metrics["max_kkt_residual"], ""),
         ("wall time", metrics["wall_time_s"], "s"),
         ("largest gap to the reference", check["max_solution_gap"], "rad/s"),
@@ -158,17 +158,10 @@ def test_active_and_blocking_limits_have_rows(tmp_path):
     assert "steps slowed" not in table
 
 
-def test_pairs_that_are_watched_and_that_are_not_are_named(tmp_path):
-    collisions = {
-        "pairs": [["link_1", "link_3"]],
-        "left_out": [["link_5", "link_7", "start"], ["link_1", "link_2", "by hand"]],
-        "unwatched": ["camera"],
-    }
-    text = report(make_record(settings={"collisions": collisions}), tmp_path)
-    assert (
-        "pairs = (link_1 link_3), left_out = (link_5 link_7 start) (link_1 link_2 by hand)" in text
-    )
-    assert "Beware: nothing keeps these links clear" in text
+def test_the_kinetic_index_with_inertia_is_an_energy():
+    heavy = {"scheme": {"name": "DoubleIndicator", "kinetic": "inertia"}}
+    text = summary(compute_metrics(make_record(settings=heavy)))
+    assert re.search(r"largest kinetic index +0 J\n", text)
 
 
 def test_cells_do_not_break_a_table(tmp_path):

@@ -9,6 +9,7 @@ import pytest
 
 from iiwa_dnn import InvalidInputError
 from iiwa_dnn.simulation.disturbances import Disturbances, Encoder, Push
+from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 
 def test_the_default_is_none_and_typical_is_all_but_the_push():
@@ -57,30 +58,22 @@ def test_encoder_noise_and_rounding():
 
 
 @pytest.mark.parametrize(
-    ("options", "name"),
+    ("make", "options", "name"),
     [
-        ({"mass_error": 1.0}, "mass_error"),
-        ({"mass_error": -0.1}, "mass_error"),
-        ({"friction": -1.0}, "friction"),
-        ({"encoder_noise": np.inf}, "encoder_noise"),
-        ({"encoder_bits": 60}, "encoder_bits"),
-        ({"encoder_bits": 1.5}, "encoder_bits"),
-        ({"delay": -1}, "delay"),
+        (Disturbances, {"mass_error": 1.0}, "mass_error"),
+        (Disturbances, {"mass_error": -0.1}, "mass_error"),
+        (Disturbances, {"friction": -1.0}, "friction"),
+        (Disturbances, {"encoder_noise": np.inf}, "encoder_noise"),
+        (Disturbances, {"encoder_bits": 60}, "encoder_bits"),
+        (Disturbances, {"delay": -1}, "delay"),
+        (Push, {"force": (1.0, np.nan, 0.0)}, "push"),
+        (Push, {"start": -1.0}, "push_at"),
+        (Push, {"duration": np.inf}, "push_for"),
+        (TorqueGains, {"bandwidth": 0.0}, "bandwidth"),
+        (TorqueGains, {"observer_bandwidth": -1.0}, "observer_bandwidth"),
+        (TorqueGains, {"leash": np.inf}, "leash"),
     ],
 )
-def test_wrong_disturbances(options, name):
+def test_refusals(make, options, name):
     with pytest.raises(InvalidInputError, match=name):
-        Disturbances(**options)
-
-
-@pytest.mark.parametrize(
-    ("options", "name"),
-    [
-        ({"force": (1.0, np.nan, 0.0)}, "push"),
-        ({"start": -1.0}, "push_at"),
-        ({"duration": np.inf}, "push_for"),
-    ],
-)
-def test_wrong_pushes(options, name):
-    with pytest.raises(InvalidInputError, match=name):
-        Push(**options)
+        make(**options)

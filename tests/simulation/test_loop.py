@@ -18,7 +18,7 @@ from iiwa_dnn.control.policies import Action
 from iiwa_dnn.control.posing import solve_pose
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks import PrimalDualNetwork
-from iiwa_dnn.networks.integrators import ExplicitEuler, ImplicitEuler
+from iiwa_dnn.networks.integrators import ExplicitEuler
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.qp.program import QP
@@ -131,10 +131,10 @@ def test_the_answers_are_the_programs_solutions() -> None:
 
 
 def test_settings_say_what_was_asked_and_with_what() -> None:
-    robot = paper_robot().with_limits(velocity=1.0)
+    home = tuple(np.add(PAPER_Q0, 0.1))
     settings = run(
-        DoubleIndicator(weight=0.3, kinetic="inertia"),
-        robot=robot,
+        DoubleIndicator(weight=0.3, kinetic="inertia", home=home),
+        robot=paper_robot().with_limits(velocity=1.0),
         noise=0.001,
         filter_window=4,
         seed=11,
@@ -142,44 +142,19 @@ def test_settings_say_what_was_asked_and_with_what() -> None:
         check=CrossCheck(("osqp",), tolerance=1e-5),
     ).settings
     expected = {
-        "robot": "iiwa7",
-        "tip": robot.tip,
-        "q_lower": [-2.5] * 7,
-        "q_upper": [2.5] * 7,
-        "dq_max": [1.0] * 7,
-        "q0": list(PAPER_Q0),
-        "dt": 1e-3,
-        "duration": 0.05,
-        "mode": "converged",
-        "motion": "euler",
-        "noise": 0.001,
-        "filter_window": 4,
-        "seed": 11,
-        "tol": 1e-8,
-        "rho": 9e-5,
-        "status": "completed",
-    }
+        "robot": "iiwa7", "tip": paper_robot().tip, "q_lower": [-2.5] * 7, "dq_max": [1.0] * 7,
+        "q0": list(PAPER_Q0), "dt": 1e-3, "duration": 0.05, "mode": "converged", "motion": "euler",
+        "noise": 0.001, "filter_window": 4, "seed": 11, "tol": 1e-8, "status": "completed",
+    }  # fmt: skip
     assert expected.items() <= settings.items()
-    assert settings["scheme"]["weight"] == 0.3
-    assert settings["scheme"]["kinetic"] == "inertia"
-    assert settings["scheme"]["home"] == list(PAPER_Q0)
+    scheme = {"weight": 0.3, "kinetic": "inertia", "home": list(home)}
+    assert scheme.items() <= settings["scheme"].items()
     assert settings["reference"] == {"name": "heart", "scale": 3.45e-3, "period": 10.0}
-    assert settings["check"] == {
-        "solvers": ["osqp"],
-        "second": ["proxqp"],
-        "tolerance": 1e-5,
-        "reference_tolerance": 1e-8,
-    }
+    check = {"solvers": ["osqp"], "second": ["proxqp"], "tolerance": 1e-5}
+    assert check.items() <= settings["check"].items()
     assert settings["network"]["name"] == "ProjectionNetwork"
-    assert settings["integrator"]["name"] == "ImplicitEuler"
     assert {"iiwa-dnn", "numpy", "pin", "qpsolvers"} <= set(settings["versions"])
     json.dumps(settings, allow_nan=False)
-
-
-def test_a_given_home_is_kept() -> None:
-    home = tuple(np.add(PAPER_Q0, 0.1))
-    settings = run(DoubleIndicator(home=home), duration=0.002).settings
-    assert settings["scheme"]["home"] == list(home)
 
 
 def test_another_reference_scheme_and_robot() -> None:
@@ -195,17 +170,8 @@ def test_another_reference_scheme_and_robot() -> None:
 
 
 def test_progress_adds_up_to_the_steps() -> None:
-    told = []
-    simulate(
-        paper_robot(),
-        DoubleIndicator(),
-        heart(),
-        PAPER_Q0,
-        dt=1e-3,
-        duration=1.234,
-        check=UNCHECKED,
-        progress=told.append,
-    )
+    told: list[int] = []
+    run(duration=1.234, progress=told.append)
     assert sum(told) == 1234
     assert told[0] == 0  # the arguments are right
     assert min(told[1:]) > 0
@@ -224,21 +190,6 @@ def test_the_same_call_saves_the_same_bytes(
             tmp_path / name
         )
     assert (tmp_path / "one").read_bytes() == (tmp_path / "two").read_bytes()
-
-
-def test_with_proxqp_all_but_its_own_last_digits_is_the_same(tmp_path: Path) -> None:
-    # ProxQP's answers vary in the last bits from call to call, those of one process included.
-    check = CrossCheck(("proxqp",))
-    first, second = run(check=check, duration=0.2), run(check=check, duration=0.2)
-    for name in ("q", "dq", "dq_solver", "position", "rotation", "kkt_residual", "iterations"):
-        assert getattr(first, name).tobytes() == getattr(second, name).tobytes()
-    for name in REFERENCE_ARRAYS:
-        np.testing.assert_allclose(getattr(first, name), getattr(second, name), rtol=0, atol=1e-13)
-
-
-def test_seeds_differ_with_noise_and_do_not_matter_without() -> None:
-    assert drift(run(noise=0.01, seed=1)) != drift(run(noise=0.01, seed=2))
-    np.testing.assert_array_equal(run(seed=1).q, run(seed=2).q)
 
 
 # What the paper claims
@@ -271,14 +222,6 @@ def test_a_network_that_diverges_is_called_that() -> None:
     assert "the network diverged: take a smaller dt" in reasons[1]
 
 
-def test_the_orientation_is_held() -> None:
-    record = run(reference=heart(period=2.0), duration=1.0, motion="midpoint")
-    desired = dh_pose(PAPER_Q0)[1]
-    assert rotation_angle(dh_pose(record.q)[1], desired).max() < 1e-6
-    free = run(DoubleIndicator(orientation="none"), reference=heart(period=2.0), duration=1.0)
-    assert rotation_angle(dh_pose(free.q)[1], desired).max() > 1e-2
-
-
 def test_a_joint_that_meets_its_limit_stays_inside_and_the_tip_on_its_path() -> None:
     # Without it, joint 1 would go to -2.48 rad.
     lower = np.full(7, -2.5)
@@ -292,21 +235,6 @@ def test_a_joint_that_meets_its_limit_stays_inside_and_the_tip_on_its_path() -> 
     metrics = compute_metrics(record)
     assert metrics["position_limit_violation_rad"] == 0.0
     assert metrics["velocity_limit_violation_rad_s"] == 0.0
-    assert failures(record) == []
-    assert position_error(record).max() < 1e-4
-
-
-def test_a_velocity_limit_that_binds_is_kept_and_the_tip_stays_on_its_path() -> None:
-    options = {
-        "scheme": DoubleIndicator(orientation="none"),
-        "reference": heart(period=2.0),
-        "duration": 1.0,
-        "check": CrossCheck(),
-    }
-    fastest = np.abs(run(**options).dq).max()
-    record = run(robot=paper_robot().with_limits(velocity=0.9 * fastest), **options)
-    assert np.abs(record.dq).max() <= 0.9 * fastest
-    assert np.count_nonzero(np.abs(record.dq).max(axis=1) > 0.8999 * fastest) > 20
     assert failures(record) == []
     assert position_error(record).max() < 1e-4
 
@@ -332,36 +260,6 @@ def test_the_continuous_network_lags_as_much_as_the_papers() -> None:
     settled = run(DoubleIndicator(orientation="block"), dt=1e-4, duration=0.1)
     assert position_error(settled).max() < 0.05 * position_error(record)[:1001].max()
     assert failures(record) == []
-
-
-def network_matrix(qp: QP) -> np.ndarray:
-    """The network's linear part with no bound active: x, equality multipliers, idle others."""
-    n, p = qp.q.size, qp.b.size
-    matrix = -np.eye(3 * n + p)
-    matrix[:n, :n] = -qp.P
-    matrix[:n, n : n + p], matrix[n : n + p, :n] = -qp.A.T, qp.A
-    matrix[n : n + p, n : n + p] = 0.0
-    matrix[:n, n + p : 2 * n + p], matrix[:n, 2 * n + p :] = -np.eye(n), np.eye(n)
-    return matrix
-
-
-def test_eight_substeps_are_stable_at_the_papers_start_and_seven_chatter() -> None:
-    scheme = DoubleIndicator(orientation="block", home=PAPER_Q0)
-    matrix = network_matrix(scheme.build_qp(paper_start(), heart().at(0.0)))
-    radius = {}
-    roughness = {}
-    for substeps in (7, 8):
-        step = 1e-4 / 9e-5 / substeps
-        radius[substeps] = np.abs(1.0 + step * np.linalg.eigvals(matrix)).max()
-        solver = DNNSolver(follower=ExplicitEuler(substeps=substeps))
-        record = run(scheme, mode="continuous", dt=1e-4, duration=0.15, solver=solver)
-        assert (record.iterations == substeps).all()
-        roughness[substeps] = np.abs(np.diff(record.dq[-100:], n=2, axis=0)).max()
-    # The row that depends on the others gives an eigenvalue of one exactly.
-    assert radius[8] <= 1.0 + 1e-9
-    assert radius[7] > 1.001
-    assert roughness[8] < 1e-7
-    assert roughness[7] > 1e-2
 
 
 # How a run stops
@@ -412,25 +310,6 @@ def test_a_stopped_run_is_recorded_as_it_was(entry: str, motion: str) -> None:
     np.testing.assert_array_equal(record.q[1:], record.q[:-1] + 1e-3 * record.dq)
     np.testing.assert_allclose(record.position, dh_pose(record.q)[0], rtol=0, atol=1e-12)
     np.testing.assert_allclose(record.kinetic_index, (record.dq**2).sum(axis=1), rtol=1e-12)
-
-
-def test_a_tolerance_that_cannot_be_met_stops_the_run() -> None:
-    # The first program, at rest, has the answer zero, residual zero; the second has rounding.
-    record = run(solver=DNNSolver(tol=1e-30), policy="stop")
-    assert record.steps == 2
-    assert record.settings["status"].startswith("stopped at step 1 ")
-    np.testing.assert_array_equal(record.dq[-1], np.zeros(7))
-    assert any("KKT residual" in reason for reason in failures(record))
-
-
-def test_a_budget_that_is_too_small_is_made_good_by_a_second_attempt() -> None:
-    # Too few linear systems to settle from rest; the second attempt has more.
-    solver = DNNSolver(settler=ImplicitEuler(max_steps=1))
-    record = run(solver=solver, check=CrossCheck(("osqp",)))
-    assert not record.action.any()
-    assert (record.kkt_residual <= 1e-9).all()
-    assert (record.solution_gap <= 1e-6).all()
-    np.testing.assert_allclose(record.dq, run().dq, rtol=0, atol=1e-7)
 
 
 def test_a_stage_without_a_solution_is_recorded() -> None:
@@ -520,8 +399,3 @@ def test_a_bad_argument_is_named(argument: str, value: object) -> None:
     words = {"dt": 1e-3, "duration": 0.01, "check": UNCHECKED} | words
     with pytest.raises(InvalidInputError, match=rf"^{argument}0?\b"):
         simulate(paper_robot(), scheme, heart(), q0, **words)
-
-
-def test_continuous_mode_takes_euler_only() -> None:
-    with pytest.raises(InvalidInputError, match=r"^motion\b.*continuous"):
-        run(mode="continuous", motion="rk4")

@@ -53,20 +53,6 @@ def test_order_on_a_field_that_depends_on_time(motion: str) -> None:
     assert slope(steps, errors) == pytest.approx(ORDERS[motion], abs=0.25)
 
 
-@pytest.mark.parametrize(("motion", "stages"), [("euler", 1), ("midpoint", 2), ("rk4", 4)])
-def test_stages_are_at_the_ends_and_the_middle_of_the_step(motion: str, stages: int) -> None:
-    times = []
-
-    def velocity(q: Array, t: float) -> Array:
-        times.append(t)
-        return q
-
-    MOTIONS[motion].step(velocity, np.ones(2), 1.0, 0.5)
-    assert len(times) == MOTIONS[motion].stages == stages
-    np.testing.assert_allclose(times, 1.0 + 0.5 * np.array(MOTIONS[motion].nodes), rtol=0)
-    assert set(times) <= {1.0, 1.25, 1.5}
-
-
 @pytest.mark.parametrize("motion", ORDERS)
 def test_order_on_the_heart(motion: str) -> None:
     # A heart in 2 s, its first 0.8 s; the position by the DH formula, not by the record.

@@ -15,14 +15,6 @@ from iiwa_dnn.schemes import DoubleIndicator
 from iiwa_dnn.simulation import NOISE_ENTRIES, gaussian_noise
 
 
-def test_same_seed_same_bits_and_another_seed_others() -> None:
-    first = gaussian_noise(0.01, 1000, 7, seed=3)
-    assert first.tobytes() == gaussian_noise(0.01, 1000, 7, seed=3).tobytes()
-    assert not np.isclose(first, gaussian_noise(0.01, 1000, 7, seed=4)).any(axis=1).all()
-    np.random.default_rng().standard_normal(10)  # no hidden state is shared
-    assert first.tobytes() == gaussian_noise(0.01, 1000, 7, seed=3).tobytes()
-
-
 def test_a_longer_run_begins_with_the_shorter_ones_noise() -> None:
     np.testing.assert_array_equal(
         gaussian_noise(0.01, 500, 7, seed=3), gaussian_noise(0.01, 1000, 7, seed=3)[:500]
@@ -90,8 +82,3 @@ def test_at_the_measurement_the_controller_sees_other_angles_and_the_record_the_
 def test_without_noise_all_entries_are_the_same_run(entry: str, mode: str) -> None:
     record, quiet = run(noise_at=entry, mode=mode), run(mode=mode)
     np.testing.assert_array_equal(record.q, quiet.q)
-
-
-def test_an_unknown_entry_is_named() -> None:
-    with pytest.raises(InvalidInputError, match=r"^noise_at\b.*velocity.*'motor'"):
-        run(noise_at="motor")

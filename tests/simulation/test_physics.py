@@ -5,20 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from helpers_physics import START, distance, heart_in_physics, papers_robot
+from helpers_physics import distance, heart_in_physics, papers_robot
 from iiwa_dnn import (
     Configuration,
-    CrossCheck,
-    DoubleIndicator,
-    Heart,
     InvalidInputError,
     Record,
     compute_metrics,
     failures,
-    simulate,
 )
-from iiwa_dnn.control.estimation import NoiseModel
-from iiwa_dnn.control.policies import Action
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.mujoco import MujocoPlant
 
@@ -99,21 +93,6 @@ def test_back_within_a_second_after_the_push(robot, disturbed):
     assert limits_are_kept(record)
 
 
-def test_the_delay_is_as_long_as_it_is_said_to_be(robot):
-    def lag(record: Record) -> int:
-        """Steps by which the arm's velocity follows the network's."""
-        steps = record.steps
-        misfits = [
-            np.abs(record.dq[shift:] - record.dq_solver[: steps - shift]).max()
-            for shift in range(15)
-        ]
-        return int(np.argmin(misfits))
-
-    prompt = heart_in_physics(robot, duration=0.2)
-    late = heart_in_physics(robot, duration=0.2, disturbances=Disturbances(delay=7))
-    assert lag(late) == lag(prompt) + 7
-
-
 def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
     files = []
     for name in "ab":
@@ -125,53 +104,6 @@ def test_the_same_seed_gives_the_same_bytes(robot, tmp_path):
     assert files[0] == files[1]
     other = heart_in_physics(robot, disturbances=Disturbances.typical(), seed=8, duration=0.2)
     assert not np.array_equal(other.q, record.q)
-
-
-@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
-def test_policies_decide_in_physics_too(robot, policy):
-    far = Heart(scale=10.0).anchored(Configuration(robot, START))
-    record = simulate(
-        robot, DoubleIndicator(), far, START, plant=MujocoPlant(), dt=1e-3, duration=0.1,
-        policy=policy, check=CrossCheck(()),
-    )  # fmt: skip
-    action = {"slow": Action.SLOW, "relax": Action.RELAX, "stop": Action.STOP}[policy]
-    assert action in record.action
-    assert failures(record)
-    assert (np.abs(record.dq_solver) <= robot.dq_max).all()
-    if policy == "stop":
-        assert record.steps < 100
-        assert "no solution" in record.settings["status"]
-        assert not record.dq[-1].any()
-    else:
-        assert record.settings["status"] == "completed"
-    if policy == "slow":
-        assert record.fraction.min() < 1.0
-
-
-def test_noise_filter_and_estimator_act_in_physics_too(robot):
-    # Measured through a filter that knows the encoders' noise, the command is calmer.
-    noisy = {"disturbances": Disturbances(encoder_noise=1e-4), "duration": 0.25, "seed": 2}
-    plain = heart_in_physics(robot, **noisy)
-    filtered = heart_in_physics(
-        robot, estimator=NoiseModel(velocity=1e-3, measurement=1e-4), **noisy
-    )
-    averaged = heart_in_physics(robot, noise=0.01, filter_window=20, **noisy)
-    unfiltered = heart_in_physics(robot, noise=0.01, **noisy)
-    rough = [np.abs(np.diff(r.dq_solver, axis=0)).mean() for r in (plain, filtered)]
-    assert rough[1] < 0.5 * rough[0]
-    shaken = [np.abs(np.diff(r.torque, axis=0)).mean() for r in (unfiltered, averaged)]
-    assert shaken[1] < 0.5 * shaken[0]
-
-
-def test_physics_that_blows_up_is_noticed(robot):
-    from iiwa_dnn.simulation.plants.torque_control import TorqueGains
-
-    record = heart_in_physics(
-        robot, gains=TorqueGains(bandwidth=1e5, observer_bandwidth=1e6), timestep=1e-3,
-        duration=2.0,
-    )  # fmt: skip
-    # Torques are limited, so it need not diverge; but it must not pass for a good run.
-    assert failures(record)
 
 
 def test_a_state_that_is_not_a_number_ends_the_run(robot, monkeypatch):

@@ -9,12 +9,11 @@ import pytest
 
 from helpers_kinematics import rotation_angle
 from helpers_simulation import UNCHECKED, paper_robot
-from iiwa_dnn.control.controller import Controller
 from iiwa_dnn.control.policies import ProgramKind
-from iiwa_dnn.references import Line, Target
+from iiwa_dnn.references import Line
 from iiwa_dnn.results.record import Record
 from iiwa_dnn.robot.configuration import Configuration
-from iiwa_dnn.schemes import AccelerationLimits, DoubleIndicator, JerkLimits, Limit
+from iiwa_dnn.schemes import DoubleIndicator, JerkLimits
 from iiwa_dnn.simulation import simulate
 
 JERK = JerkLimits(500.0)
@@ -69,18 +68,6 @@ def tilt(record: Record) -> np.ndarray:
     return rotation_angle(record.rotation, record.rotation_desired)
 
 
-def test_the_start_has_its_tool_vertical() -> None:
-    conf = vertical_start()
-    assert conf.rotation[2, 2] == pytest.approx(-1.0, abs=1e-12)
-    target = conf  # any target at rest here: its rows are what is looked at
-    ranks = {}
-    for form in ("so3", "block"):
-        scheme = DoubleIndicator(orientation=form)
-        qp = scheme.build_qp(conf, Target(target.position, target.rotation))
-        ranks[form] = int(np.linalg.matrix_rank(qp.A[3:], tol=1e-9))
-    assert ranks == {"so3": 3, "block": 1}
-
-
 def test_the_block_sees_a_tilt_at_second_order_only() -> None:
     # Settled, so3 takes the tilt back at the rate nu, the block, which sees half its square, at
     # nu / 2. At the paper's own pace the block's weak rows lag further behind.
@@ -124,42 +111,3 @@ def test_the_slow_policy_keeps_to_the_path_up_to_the_singular_pose(dt: float) ->
     assert error[: creeps + 1].max() < 2e-3
     # Changes of the velocities in a second: shaking at every step would make 1e3 and more.
     assert np.abs(np.diff(record.dq, axis=0)).sum() / record.t[-1] < 50.0
-
-
-def test_the_slow_policy_comes_back_from_the_singular_pose() -> None:
-    record = stretched_run("slow", 1e-2, 18.0)
-    assert record.fraction is not None
-    error = np.linalg.norm(record.position - record.position_desired, axis=1)
-    shoulder = np.array([0.0, 0.0, 0.34])
-    reach = np.linalg.norm(record.position - shoulder, axis=1).max()
-    beyond = np.flatnonzero(np.linalg.norm(record.position_desired - shoulder, axis=1) > reach)
-    assert error[beyond].max() > 0.1
-    back = beyond[-1] + 50  # half a second later
-    assert error[back:].max() < 1e-2
-    assert record.fraction[back + 100] == 1.0
-    assert error[-1] < 1e-3
-
-
-@pytest.mark.parametrize("limits", [(), (AccelerationLimits(), JERK)])
-def test_an_arm_held_stretched_for_long_follows_its_target_back_at_once(
-    limits: tuple[Limit, ...],
-) -> None:
-    robot, dt, speed = paper_robot(), 4e-3, 0.1
-    shoulder, out = np.array([0.0, 0.0, 0.34]), np.array([0.6, 0.0, 0.8])
-    q = np.array([0.0, 0.3, 0.0, -0.9, 0.0, -0.3, 0.0])
-    start, length = Configuration(robot, q), np.linalg.norm
-    scheme = DoubleIndicator(orientation="none", extra_limits=limits)
-    controller = Controller(robot, scheme, dt=dt)
-    reach = float(length(Configuration(robot, [0.0] * 7).position - shoulder))
-    for k in range(1250):
-        target = start.position + (shoulder + (reach + 0.1) * out - start.position) * min(
-            k / 150, 1
-        )
-        q = q + dt * controller.step(q, k * dt, Target(target, start.rotation)).dq
-    for k in range(750):  # back at 0.1 m/s, within reach after a second
-        target = shoulder + (reach + 0.1 - speed * k * dt) * out
-        command = controller.step(q, 5.0 + k * dt, Target(target, start.rotation))
-        q = q + dt * command.dq
-        assert k * dt < 1.5 or np.abs(command.dq).max() > 0.1
-    # No more than the lag of a target without a velocity of its own.
-    assert float(length(Configuration(robot, q).position - target)) < 1.2 * speed / 10.2

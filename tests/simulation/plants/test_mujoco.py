@@ -7,10 +7,8 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from helpers_kinematics import example_urdf
 from helpers_physics import START
-from iiwa_dnn import Configuration, InvalidInputError, load_robot
-from iiwa_dnn.robot.arms import ARMS
+from iiwa_dnn import Configuration, load_robot
 from iiwa_dnn.robot.mujoco_model import JointDynamics
 from iiwa_dnn.simulation.disturbances import Disturbances, Push
 from iiwa_dnn.simulation.plants.base import Plant
@@ -94,26 +92,6 @@ def test_its_settings_say_everything(robot):
             "torque_loop": {"bandwidth": 50.0, "observer_bandwidth": 300.0, "leash": 0.1},
         }
     }
-
-
-def test_an_arm_with_its_gripper_locked_follows_too():
-    example_urdf(ARMS["panda"].file)
-    robot, start = load_robot("panda"), np.array(ARMS["panda"].start)
-    plant = MujocoPlant()
-    plant.start(robot, start, DT, 0)
-    q = drive(plant, 500)
-    np.testing.assert_allclose((q[-1] - q[-2]) / DT, COMMAND, rtol=1e-3)
-    # From rest to the command within one period, then at its pace.
-    np.testing.assert_allclose(q[-1], start + (500 - 0.5) * DT * COMMAND, atol=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("timestep", "problem"),
-    [(0.0, "physics_dt"), (np.nan, "physics_dt"), (2e-3, "at most 0.001 s")],
-)
-def test_wrong_timesteps_are_refused_before_there_is_a_robot(timestep, problem):
-    with pytest.raises(InvalidInputError, match=problem):
-        MujocoPlant(timestep=timestep)
 
 
 def test_the_push_has_the_impulse_that_is_asked_for(robot):

@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 
 from helpers_physics import START
-from iiwa_dnn import InvalidInputError, load_robot
+from iiwa_dnn import load_robot
 from iiwa_dnn.robot.mujoco_model import JointDynamics, torque_limits
 from iiwa_dnn.simulation.plants.torque_control import TorqueController, TorqueGains
 
@@ -99,10 +99,3 @@ def test_torques_stay_within_the_limits_and_it_does_not_wind_up(robot):
             arm.step(torques.torque(arm.q))
     assert np.abs(arm.dq).max() < 1e-3
     assert np.abs(arm.q - START).max() < 0.3
-
-
-@pytest.mark.parametrize("name", ["bandwidth", "observer_bandwidth", "leash"])
-@pytest.mark.parametrize("value", [0.0, -1.0, np.inf])
-def test_wrong_gains(name, value):
-    with pytest.raises(InvalidInputError, match=name):
-        TorqueGains(**{name: value})
