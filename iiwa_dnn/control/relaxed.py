@@ -166,8 +166,7 @@ def settled(
         figures[1] = time
         if within(primal, dual, gap, tolerances * settings[TOLERANCE]):
             return True
-        for i in range(state.size):
-            state[i] = 0.0
+        state[:] = 0.0
     return False
 
 
@@ -278,8 +277,7 @@ def _move_into_cost(qp: QPViews, j: int, square: float, shrink: float) -> None:
         qp.q[i] -= rhs * qp.A[j, i]
         for k in range(n):
             qp.P[i, k] += square * qp.A[j, i] * qp.A[j, k]
-    for i in range(n):
-        qp.A[j, i] = 0.0
+    qp.A[j, :] = 0.0
     qp.b[j] = 0.0
 
 

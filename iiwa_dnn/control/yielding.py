@@ -159,8 +159,8 @@ def yield_step(
     if kind == STOPPED:
         copied(views.program, data)
         rest = _brake(own, past, yielding, x)
-        for k in range(views.point.size):
-            views.point[k] = x[k] if k < dof else 0.0
+        views.point[:] = 0.0
+        copied(views.point, x)
     _note_decision(views, own, yielding.weights, x, kind, factor, action)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
     following[REST, 0] = rest
@@ -436,8 +436,7 @@ def _brake(limits: QPViews, past: Matrix, yielding: Yielding, dq: Vector) -> flo
     Returns:
         Periods that are left afterwards; 0 if the motion was not in hand.
     """
-    for i in range(dq.size):
-        dq[i] = 0.0
+    dq[:] = 0.0
     if yielding.limits.size == 0:
         return 0.0
     rest: float = past[REST, 0]
