@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 
 from helpers_kinematics import finite_difference
-from helpers_simulation import paper_robot, paper_start
+from helpers_simulation import paper_robot
 from iiwa_dnn import (
     Configuration,
     CyclicMotion,
-    DNNSolver,
     JointLimits,
-    KineticEnergy,
     Manipulability,
     PoseTask,
-    PositionTask,
     Scheme,
     Target,
 )
@@ -34,18 +31,6 @@ def test_manipulability_gradient_is_that_of_finite_differences() -> None:
     expected = finite_difference(lambda q: np.array([measure(q)]), START.q)[0]
     np.testing.assert_allclose(qp.q, -2.0 * expected, atol=1e-7)
     assert not qp.P.any()
-
-
-def test_manipulability_grows_where_the_arm_is_free_to() -> None:
-    home = paper_start()
-    scheme = Scheme(
-        [KineticEnergy(weight=1.0), Manipulability(weight=5.0)], [PositionTask()], [JointLimits()]
-    )
-    target, solver, q = Target(home.position, home.rotation), DNNSolver(), home.q
-    for _ in range(200):
-        q = q + 0.01 * solver.solve(scheme.build_qp(Configuration(ROBOT, q), target)).x
-    assert measure(q) > 1.05 * measure(home.q)
-    np.testing.assert_allclose(Configuration(ROBOT, q).position, home.position, atol=1e-3)
 
 
 def test_parts_leave_slack_variables_out() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import coal
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -36,32 +35,6 @@ def test_random_bodies_agree_with_a_general_minimiser(extents: int) -> None:
         segment = random.normal(size=(2, 3)) + 3.0 * random.normal(size=3)
         half = random.uniform(0.1, 1.0, 3) * (np.arange(3) < extents)
         assert distance(segment, half) == pytest.approx(minimised(segment, half), abs=2e-5)
-
-
-def test_capsule_and_box_agree_with_coal() -> None:
-    random, half = np.random.default_rng(0), np.array([0.1, 0.2, 0.3])
-    request, result = coal.DistanceRequest(), coal.DistanceResult()
-    for _ in range(300):
-        segment = random.normal(size=(2, 3)) * 0.5 + random.normal(size=3) * 0.5
-        ends = np.linalg.norm(segment[1] - segment[0])
-        turn = coal.Transform3s()
-        x = (segment[1] - segment[0]) / ends
-        other = np.linalg.svd(x[np.newaxis])[2][1:]
-        turn.setRotation(np.column_stack([*other, x]) * [1, np.linalg.det([*other, x]), 1])
-        turn.setTranslation(segment.mean(axis=0))
-        result.clear()
-        theirs = coal.distance(
-            coal.Capsule(0.01, ends),
-            turn,
-            coal.Box(*(2 * half)),
-            coal.Transform3s(),
-            request,
-            result,
-        )
-        if theirs > 1e-3:
-            assert distance(segment, half) - 0.01 == pytest.approx(theirs, abs=2e-6)
-        else:
-            assert distance(segment, half) <= 0.01 + 1e-3 + 2e-6
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-5, 0.3])

@@ -109,18 +109,3 @@ def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
     incidents = compute_metrics(record)["incidents"]
     said = {limit["limit"] for limit in incidents["blocking"] + incidents["active"]}
     assert said == {"acceleration"}
-
-
-def test_a_path_that_ended_is_completed_however_long_the_run_goes_on() -> None:
-    start = paper_start()
-    path = Waypoints([0.0, 0.1], [[0.0, 0.0, 0.0], 0.1 * SIDEWAYS]).anchored(start)
-    robot = paper_robot().with_limits(velocity=0.4)
-    options = {"dt": DT, "check": None}
-    scheme = DoubleIndicator(orientation="none")
-    whole = simulate(robot, scheme, path, PAPER_Q0, duration=0.5, **options)
-    slowed = whole.path_time < 0.5 - 1e-6
-    assert slowed
-    assert np.linalg.norm(whole.position[-1] - whole.position_desired[-1]) < 1e-4
-    assert whole.path_completed == 1.0
-    half = simulate(robot, scheme, path, PAPER_Q0, duration=0.1, **options)
-    assert 0.1 < half.path_completed < 0.9

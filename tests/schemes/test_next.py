@@ -10,18 +10,12 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import paper_robot, paper_start
 from iiwa_dnn import simulate
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.crosscheck import CrossCheck
 from iiwa_dnn.references import Heart, MovingTarget, Reference, Tilting
-from iiwa_dnn.results.metrics import compute_metrics, orientation_error, position_error
+from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.robot import Configuration
 from iiwa_dnn.schemes import (
-    CyclicMotion,
     DoubleIndicator,
-    JointLimits,
-    PoseTask,
-    PostureTask,
-    Scheme,
 )
 
 DT = 1e-3
@@ -88,30 +82,3 @@ def test_a_controller_tracks_as_a_run_does_and_a_target_set_from_outside_too() -
     for k in range(200, 400):
         q = q + DT * controller.step(q, k * DT).dq
     assert np.abs(Configuration(robot, q).position - target.at(0.4).position).max() < 1e-8
-
-
-def test_tasks_ask_for_the_next_target_by_their_gain() -> None:
-    scheme = Scheme(
-        [CyclicMotion(gain=10.2, home=PAPER_Q0)], [PoseTask(gain=np.inf)], [JointLimits()]
-    )
-    record = simulate(
-        paper_robot(), scheme, PATH.ahead(DT), PAPER_Q0, dt=DT, duration=0.5, check=CrossCheck(())
-    )
-    assert compute_metrics(record)["max_position_error_m"] < 4e-9
-    assert compute_metrics(record)["max_orientation_error_rad"] < 1e-7
-    assert record.settings["reference"] == PATH.settings()
-
-
-def test_what_does_not_fit_is_told() -> None:
-    robot, start = paper_robot(), paper_start()
-    posture = Scheme(tasks=[PostureTask({robot.joint_names[0]: 0.1}, gain=np.inf)])
-    scheme = DoubleIndicator(home=PAPER_Q0, tracking="next")
-    for asks in (posture, scheme):
-        with pytest.raises(InvalidInputError, match=r"^dt\b"):
-            asks.build_qp(start, PATH.at(0.0))
-    with pytest.raises(InvalidInputError, match=r"^motion.*next target"):
-        simulate(robot, scheme, PATH, PAPER_Q0, dt=DT, motion="rk4")
-    with pytest.raises(InvalidInputError, match=r"^tracking"):
-        DoubleIndicator(tracking="last")
-    with pytest.raises(InvalidInputError, match=r"^dt\b"):
-        PATH.ahead(0.0)

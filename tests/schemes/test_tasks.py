@@ -11,8 +11,7 @@ import scipy.linalg
 from scipy.spatial.transform import Rotation
 
 from helpers_kinematics import finite_difference
-from helpers_simulation import block_map, near_target, orientation_rows, paper_robot, rows_of
-from iiwa_dnn.errors import InvalidInputError, NotFoundError
+from helpers_simulation import near_target, orientation_rows, paper_robot, rows_of
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Configuration
@@ -21,7 +20,6 @@ from iiwa_dnn.schemes import (
     JointCouplingTask,
     JointLimits,
     KineticEnergy,
-    Manipulability,
     OrientationTask,
     PoseTask,
     PositionTask,
@@ -112,16 +110,6 @@ def test_a_gain_beyond_one_over_the_period_is_cut_to_it(name: str) -> None:
     np.testing.assert_allclose(found.b, 100.0 * rows(task, q, target)[1], rtol=1e-12, atol=1e-13)
 
 
-def test_block_rows_lose_the_tilt_where_the_tool_is_vertical() -> None:
-    # PAPER, slip 4: with R31 = R32 = 0 the block sees rotations about the vertical only.
-    for yaw in (0.0, 0.7, -2.0):
-        for flip in (np.eye(3), np.diag([1.0, -1.0, -1.0])):
-            rotation = Rotation.from_euler("z", yaw).as_matrix() @ flip
-            assert np.linalg.matrix_rank(block_map(rotation), tol=1e-12) == 1
-    tilted = Rotation.from_euler("zy", (0.7, 0.2)).as_matrix()
-    assert np.linalg.matrix_rank(block_map(tilted), tol=1e-12) == 3
-
-
 def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() -> None:
     # Its feed-forward is the rate of r_d along a turning target, here by finite differences.
     for seed, q in enumerate(POSTURES):
@@ -172,31 +160,3 @@ def test_the_baselines_answer_is_the_pseudo_inverse_times_the_task(orientation: 
         assert np.isinf([qp.lb, qp.ub]).all()
         expected = np.linalg.pinv(qp.A, rcond=1e-10) @ qp.b
         np.testing.assert_allclose(DNNSolver().solve(qp).x, expected, rtol=0, atol=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("make", "named"),
-    [
-        (lambda: AxisTask(axis=(0.0, 0.0, 0.0)), "axis"),
-        (lambda: PoseTask(gain=-1.0), "gain"),
-        (lambda: PoseTask(weight=-1.0), "weight"),
-        (lambda: RelativePoseTask("a", "b", ((1.0,),)), "pose"),
-        (lambda: RemoteCenterTask((0.0, 1.0)), "point"),
-        (lambda: PostureTask({"a": np.nan}), "joints"),
-        (lambda: PostureTask([0.0] * 7), "joints"),  # type: ignore[arg-type]
-        (lambda: JointCouplingTask({"a": 1.0}, np.inf), "offset"),
-        (lambda: OrientationTask(form="euler"), "form"),  # type: ignore[arg-type]
-        (lambda: Manipulability(weight=-1.0), "weight"),
-        (lambda: PseudoInverse(position_gain=-1.0), "position_gain"),
-        (lambda: PseudoInverse(orientation_gain=np.inf), "orientation_gain"),
-        (lambda: PseudoInverse(orientation="euler"), "orientation"),  # type: ignore[arg-type]
-    ],
-)
-def test_bad_parameters_are_named(make: Any, named: str) -> None:
-    with pytest.raises(InvalidInputError, match=rf"^{named}\b"):
-        make()
-
-
-def test_an_unknown_joint_is_named() -> None:
-    with pytest.raises(NotFoundError, match="iiwa7_joint_33"):
-        rows(PostureTask({"iiwa7_joint_33": 0.0}), START.q, Target(START.position, START.rotation))

@@ -5,7 +5,6 @@ import pytest
 
 import iiwa_dnn
 from helpers_simulation import paper_robot, paper_start, rows_of
-from iiwa_dnn.errors import InvalidInputError
 
 DT = 2e-3
 LAST = np.array([0.3, -0.2, 0.1, 0.4, -0.3, 0.2, 0.5])
@@ -60,9 +59,3 @@ def test_the_tip_is_no_quicker_where_its_target_jumps(wanted: float | None) -> N
         assert fastest > 0.6
     else:
         assert 0.36 < fastest < 0.44
-
-
-@pytest.mark.parametrize("argument", [{"limit": 0.0}, {"limit": 1.0, "gain": -1.0}])
-def test_numbers_that_are_none_are_refused(argument: dict[str, float]) -> None:
-    with pytest.raises(InvalidInputError, match=list(argument)[-1]):
-        iiwa_dnn.TipSpeedLimit(**argument)

@@ -1,0 +1,98 @@
+"""Wrong parameters of costs, tasks, limits and schemes: each is refused by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import iiwa_dnn as d
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import near_target, paper_robot, paper_start, run
+
+ROBOT = paper_robot()
+COARSE = d.Scheme(limits=[d.AccelerationLimits(30.0), d.JerkLimits(375.0)])
+
+
+def build(**lists: Any) -> d.QP:
+    return d.Scheme(**lists).build_qp(paper_start(), near_target(PAPER_Q0, 1))
+
+
+def lay_out(*limits: d.Limit) -> Any:
+    return d.Scheme(limits=limits).program(ROBOT)
+
+
+CALLS: list[tuple[Callable[[], Any], str]] = [
+    (lambda: d.AxisTask(axis=(0.0, 0.0, 0.0)), "axis"),
+    (lambda: d.PoseTask(gain=-1.0), "gain"),
+    (lambda: d.PoseTask(weight=-1.0), "weight"),
+    (lambda: d.RelativePoseTask("a", "b", ((1.0,),)), "pose"),
+    (lambda: d.RemoteCenterTask((0.0, 1.0)), "point"),
+    (lambda: d.PostureTask({"a": np.nan}), "joints"),
+    (lambda: d.PostureTask([0.0] * 7), "joints"),  # type: ignore[arg-type]
+    (lambda: d.JointCouplingTask({"a": 1.0}, np.inf), "offset"),
+    (lambda: d.OrientationTask(form="euler"), "form"),  # type: ignore[arg-type]
+    (lambda: d.Manipulability(weight=-1.0), "weight"),
+    (lambda: d.PseudoInverse(position_gain=-1.0), "position_gain"),
+    (lambda: d.PseudoInverse(orientation_gain=np.inf), "orientation_gain"),
+    (lambda: d.PseudoInverse(orientation="euler"), "orientation"),  # type: ignore[arg-type]
+    (lambda: d.DoubleIndicator(tracking="last"), "tracking"),  # type: ignore[arg-type]
+    (lambda: d.DoubleIndicator(home=(0.0, np.nan)), "home"),
+    (lambda: d.DoubleIndicator(home=("here",)), "home"),  # type: ignore[arg-type]
+    (lambda: d.DoubleIndicator(limit_gain=0.0), "limit_gain"),  # nothing would move
+    (lambda: d.DoubleIndicator(kinetic="mass"), "kinetic"),  # type: ignore[arg-type]
+    (lambda: d.DoubleIndicator(extra_limits=d.AccelerationLimits()), "extra_limits: must be a tup"),
+    (lambda: build(costs=[d.CyclicMotion(home=(0.0, 0.0, 0.0))]), "home: has 3 values for 7"),
+    (lambda: build(tasks=[d.PositionTask(frame="iiwa7_link_44")]), "no frame 'iiwa7_link_44'"),
+    (lambda: build(tasks=[d.PositionTask(frame="iiwa7_link_4")]), "target: is missing for frame"),
+    (lambda: build(tasks=[d.PostureTask({"iiwa7_joint_33": 0.0})]), "no joint 'iiwa7_joint_33'"),
+    (lambda: build(tasks=[d.PoseTask(gain=np.inf)]), "dt"),
+    (lambda: d.Scheme(tasks=[d.JointLimits()]), "tasks: must be an iiwa_dnn.Task"),
+    (lambda: d.Scheme(limits=d.JointLimits()), "limits: must be a list of parts"),
+    (lambda: d.Scheme(slack=-1), "slack"),
+    *[
+        (lambda limit=limit: d.AccelerationLimits(limit), "limit: must be a finite number above 0")
+        for limit in (0.0, -1.0, np.nan, "fast", [1.0, -2.0])
+    ],
+    (lambda: lay_out(d.AccelerationLimits([1.0, 2.0])), "acceleration: must be one number or 7"),
+    (lambda: lay_out(d.JerkLimits()), "jerk: is needed: robot iiwa7"),
+    (lambda: lay_out(d.AccelerationLimits(), d.JerkLimits(1.0)), "jerk: joint 1: 1 rad/s.3 is too"),
+    # 375 rad/s^3 is enough, but at 80 ms a step braking cannot make use of so much.
+    (
+        lambda: d.Controller(ROBOT.with_limits(velocity=9.0), COARSE, dt=0.08).step(
+            PAPER_Q0, 0.0, near_target(PAPER_Q0, 1)
+        ),
+        "jerk: joint 1: .* at 0.08 s a step",
+    ),
+    (lambda: d.TipSpeedLimit(0.0), "limit"),
+    (lambda: d.TipSpeedLimit(1.0, gain=-1.0), "gain"),
+    (lambda: d.CollisionAvoidance(["ball"]), "obstacles"),  # type: ignore[list-item]
+    (lambda: d.CollisionAvoidance(nearest=0), "nearest"),
+    (
+        lambda: d.CollisionAvoidance(self_collision=False).scene(ROBOT),
+        "obstacles: there is no pair",
+    ),
+    (lambda: d.CollisionAvoidance().scene(ROBOT.with_limits(velocity=np.inf)), "robot"),
+    (lambda: run(d.DoubleIndicator(tracking="next"), motion="rk4"), "motion: .*next target"),
+]
+
+
+@pytest.mark.parametrize(("call", "said"), CALLS)
+def test_a_wrong_parameter_is_refused_by_name(call: Callable[[], Any], said: str) -> None:
+    with pytest.raises(d.IiwaDnnError, match=rf"^{said}"):
+        call()
+
+
+@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf, None, "high"])
+@pytest.mark.parametrize(
+    "argument", ["weight", "drift_gain", "position_gain", "orientation_gain", "limit_gain"]
+)
+def test_numbers_of_the_papers_scheme_are_refused_by_name(argument: str, bad: Any) -> None:
+    with pytest.raises(d.InvalidInputError, match=rf"^{argument}\b"):
+        d.DoubleIndicator(**{argument: bad})
+
+
+def test_a_jerk_limit_that_suffices_is_taken() -> None:
+    assert d.Controller(ROBOT, COARSE, dt=1e-3).program.rate_limits is not None
