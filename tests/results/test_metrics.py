@@ -125,6 +125,8 @@ def test_acceleration_and_jerk_are_judged_where_the_scheme_limits_them():
     free = make_record(dq=dq, settings={"ddq_max": [None] * 7, "dddq_max": [None] * 7})
     assert compute_metrics(free)["jerk_limit_violation_rad_s3"] == 0.0
     assert "jerk_limit_violation_rad_s3" not in compute_metrics(make_record(dq=dq))
+    at_once = make_record(dq=np.ones((10, 7)), settings={"ddq_max": [9.0] * 7})  # from rest
+    assert failures(at_once)[0].startswith("joint acceleration limit broken by 1 rad/s²")
     at_limit = make_record(dq=dq, settings={"ddq_max": most[0], "dddq_max": most[1]})
     assert failures(at_limit) == []
     broken = make_record(dq=dq, settings={"ddq_max": most[0] - 0.5, "dddq_max": most[1] - 3.0})

@@ -131,11 +131,14 @@ def test_curves_are_told_apart_without_colour_and_by_their_joints_names(heart):
 
 
 def test_each_limit_near_the_curves_has_the_color_of_its_joint(heart):
-    settings = {"q_lower": [None] * 7, "q_upper": [2.5, 2.501, *[9.0] * 4, 1.2]}
+    settings = {
+        "q_lower": [*[None] * 3, -2.0, *[None] * 3],
+        "q_upper": [2.5, 2.501, *[9.0] * 4, 1.2],
+    }
     record = dataclasses.replace(heart, settings=heart.settings | settings)
     lines = axes_of(draw_joints, record, "q").lines
     drawn = [(line.get_ydata()[0], tuple(line.get_color())) for line in lines[7:]]
-    expected = ((2.5, 0), (2.501, 1), (1.2, 6))
+    expected = ((-2.0, 3), (2.5, 0), (2.501, 1), (1.2, 6))
     assert drawn == [(value, tuple(lines[joint].get_color())) for value, joint in expected]
 
 

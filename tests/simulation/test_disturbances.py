@@ -46,7 +46,7 @@ def test_an_encoder_without_faults_returns_a_copy():
 def test_encoder_noise_and_rounding():
     step = Encoder(0.0, 18, seed=0).step
     assert step == pytest.approx(2.0 * np.pi / 262144)
-    q = np.full(7, 0.3)
+    q = np.linspace(0.3, 0.30001, 7)
     rounded = Encoder(0.0, 18, seed=0)(q)
     np.testing.assert_allclose(rounded / step, np.round(rounded / step), atol=1e-9)
     assert 0.0 < np.abs(rounded - q).max() <= 0.5 * step
