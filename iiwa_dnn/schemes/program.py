@@ -528,8 +528,8 @@ class LimitNames:
         """Take the limits of a step program and its control period [s]."""
         self._settings = program.settings()
         self.dt = dt
-        motion = program.rate_limits or MotionLimits()
-        self._limits = motion.constants(program.robot).reshape(6, -1)
+        constants = (program.rate_limits or MotionLimits()).constants(program.robot)
+        self._limits = constants.reshape(6, -1)
 
     def in_words(
         self, bounds: Matrix, sides: NDArray[Any], rows: NDArray[Any], past: Matrix
@@ -569,10 +569,9 @@ class LimitNames:
         """
         _, last, before = past
         _, _, velocity, acceleration, jerk, braking = self._limits
-        dt = self.dt
-        unit = dt * dt * np.fmin(jerk, np.fmin(braking / dt, velocity / (dt * dt)) / SHARE)
+        unit = self.dt**2 * np.fmin(jerk, np.fmin(braking / self.dt, velocity / self.dt**2) / SHARE)
         room = [approach(x) for x in (velocity - last) / unit]
         # The velocity after which the acceleration can still be taken back in time.
         fastest = np.where(jerk < np.inf, last + unit * room, velocity)
-        rates = [2.0 * last - before + jerk * dt * dt, last + acceleration * dt]
-        return [*rates, fastest]
+        by_jerk = 2.0 * last - before + self.dt**2 * jerk
+        return [by_jerk, last + self.dt * acceleration, fastest]

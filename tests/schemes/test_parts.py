@@ -1,4 +1,4 @@
-"""Programs composed of parts: built-in ones, parts of one's own, slack variables, other frames."""
+"""Programs composed of parts: built-in ones, parts of one's own, slack variables, costs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from helpers_kinematics import PAPER_Q0, Array
+from helpers_kinematics import PAPER_Q0, Array, finite_difference
 from helpers_simulation import heart, near_target, paper_robot, paper_start, run
 from iiwa_dnn import (
     Configuration,
@@ -20,7 +20,9 @@ from iiwa_dnn import (
     JointLimits,
     KineticEnergy,
     Limit,
+    Manipulability,
     OrientationTask,
+    PoseTask,
     PositionTask,
     PseudoInverse,
     Scheme,
@@ -158,3 +160,35 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
     assert anchored.settings()["costs"][1] == {
         "name": "CyclicMotion", "weight": 1.0, "gain": 10.2, "home": PAPER_Q0
     }  # fmt: skip
+
+
+ROBOT = paper_robot()
+START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
+
+
+def measure(q: np.ndarray) -> float:
+    J = Configuration(ROBOT, q).jacobian
+    return float(np.sqrt(np.linalg.det(J @ J.T)))
+
+
+def test_manipulability_gradient_is_that_of_finite_differences() -> None:
+    qp = Scheme([Manipulability(weight=2.0)]).build_qp(START, Target(START.position))
+    expected = finite_difference(lambda q: np.array([measure(q)]), START.q)[0]
+    np.testing.assert_allclose(qp.q, -2.0 * expected, atol=1e-7)
+    assert not qp.P.any()
+
+
+def test_parts_leave_slack_variables_out() -> None:
+    scheme = Scheme([CyclicMotion(), Manipulability()], [PoseTask()], [JointLimits()], slack=2)
+    qp = scheme.build_qp(START, Target(START.position, START.rotation))
+    np.testing.assert_array_equal(qp.A[:, 7:], 0.0)
+    np.testing.assert_allclose(qp.A[:, :7], START.jacobian, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("weight", [0.5, 2.0])
+def test_the_pull_home_is_the_gradient_of_a_square(weight: float) -> None:
+    home = tuple(START.q - 0.1)
+    cost = CyclicMotion(weight=weight, gain=3.0, home=home)
+    qp = Scheme([cost]).build_qp(START, Target(START.position))
+    np.testing.assert_array_equal(qp.P, weight * np.eye(7))
+    np.testing.assert_allclose(qp.q, weight * 3.0 * 0.1, rtol=1e-12)
