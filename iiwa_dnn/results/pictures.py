@@ -218,7 +218,7 @@ def _aim(camera: Any, record: Record) -> None:
     path = record.position_desired.mean(axis=0)
     radius = max(float(np.linalg.norm(record.position, axis=1).max()), 0.4)
     camera.lookat[:] = 0.5 * path + np.array([0.0, 0.0, 0.26 * radius])
-    camera.distance = 1.8 * radius
+    camera.distance = 2.0 * radius
     # MuJoCo's azimuth is the direction of sight.
     camera.azimuth = np.degrees(np.arctan2(path[1], path[0])) + 120.0
     camera.elevation = -38.0
