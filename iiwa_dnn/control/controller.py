@@ -244,22 +244,40 @@ class Controller:
         relaxed = state.relaxed
         if relaxed.size != step.relaxed_size:
             relaxed = np.zeros(step.relaxed_size)
-        network = self._warm_state(step)
-        if network is None:
-            solved = begin_step(row, step.plan, past, following, _NOTHING, t, samples, False)
-            if past[YIELDS, 0] == past[HALTED, 0] == 0.0:
-                solved = self._ask(step, row, following)
-            action = finish_step(row, step.plan, past, following, _NOTHING, relaxed, solved)
-        else:
-            plan = step.plan
-            action = take_step(row, plan, past, following, network, relaxed, t, samples)
+        action = self._take(step, row, following, relaxed, t, samples)
         if action == INVALID:
             checks.finite_array("q", past[Q], (layout.dof,))
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
-        if action and state.blocking is not None:
-            layout.view(row, "blocking")[:] = state.blocking
-        self._kept.next = ControllerState(following, True, state.blocking, relaxed)
-        return Command(row, layout, _ACTIONS[action])
+        return self._command(Command(row, layout, _ACTIONS[action]), following, relaxed)
+
+    def _command(self, command: Command, following: Matrix, relaxed: Vector) -> Command:
+        """Note the state after a command that is handed out."""
+        blocking = self._kept.now.blocking
+        if command.action and blocking is not None:
+            command.sides[:] = blocking[: command.sides.size]
+            command.rows[:] = blocking[command.sides.size :]
+        self._kept.next = ControllerState(following, True, blocking, relaxed)
+        return command
+
+    def _take(
+        self,
+        step: ControlStep,
+        row: Vector,
+        following: Matrix,
+        relaxed: Vector,
+        t: float,
+        samples: bool,
+    ) -> int:
+        """Take a step (`take_step`); a network that is not compiled is asked between its halves."""
+        plan = step.plan
+        past = self._kept.now.past
+        network = self._warm_state(step)
+        if network is not None:
+            return take_step(row, plan, past, following, network, relaxed, t, samples)
+        solved = begin_step(row, plan, past, following, _NOTHING, t, samples, False)
+        if past[YIELDS, 0] == past[HALTED, 0] == 0.0:
+            solved = self._ask(step, row, following)
+        return finish_step(row, plan, past, following, _NOTHING, relaxed, solved)
 
     def _ask(self, step: ControlStep, row: Vector, following: Matrix) -> bool:
         """Ask a network that is not compiled, or has no state yet, for the answer to a program."""

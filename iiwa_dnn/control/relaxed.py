@@ -193,12 +193,7 @@ def largest_factor(
     n = qp.q.size
     data = np.zeros(data_size(n + 1, qp.h.size, qp.b.size))
     wider = qp_views(data, n + 1, qp.h.size, qp.b.size)
-    largest = max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n)))
-    weight = PENALTY / max(largest, TINY)
-    for i in range(n):
-        wider.q[i] = weight * qp.q[i]
-        for k in range(n):
-            wider.P[i, k] = weight * qp.P[i, k]
+    _copy_cost(qp, wider)
     _copy_limits(qp, wider)
     longest = largest_entry(qp.b)
     if retreats or longest == 0.0:
@@ -220,6 +215,18 @@ def largest_factor(
         return -1.0
     factor: float = max(point[n] / longest, 0.0)
     return 1.0 if factor >= FEASIBLE else ALMOST * factor
+
+
+@compiled
+def _copy_cost(qp: QPViews, other: QPViews) -> None:
+    """Write w times the cost into a program that has more variables."""
+    n = qp.q.size
+    largest = max(largest_entry(qp.q), largest_entry(qp.P.reshape(n * n)))
+    weight = PENALTY / max(largest, TINY)
+    for i in range(n):
+        other.q[i] = weight * qp.q[i]
+        for k in range(n):
+            other.P[i, k] = weight * qp.P[i, k]
 
 
 @compiled

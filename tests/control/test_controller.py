@@ -371,6 +371,8 @@ def test_the_reference_is_judged_at_the_time_of_the_first_step() -> None:
         warnings.simplefilter("error")
         again.warm_up(q)
         again.step(q, half * DT)
+    with pytest.warns(UserWarning, match=r"begins 0\.07\d* m from the tip;"):
+        Controller(paper_robot(), DoubleIndicator(), heart(2.0), dt=DT).step(PAPER_Q0, half * DT)
     elsewhere = Controller(paper_robot(), DoubleIndicator(), Circle(), dt=DT)
     elsewhere.warm_up(PAPER_Q0)
     with pytest.warns(UserWarning, match="the reference begins"):
