@@ -47,7 +47,7 @@ $(PLAIN): pyproject.toml constraints.txt
 	@touch $@
 
 $(FULL): pyproject.toml constraints.txt $(if $(filter command,$(origin EXTRAS)),force)
-	@$(call install,.[$(EXTRAS)],2.3 GB on disk with all extras)
+	@$(call install,.[$(EXTRAS)],2.1 GB on disk with all extras)
 	@touch $(PLAIN) $@
 
 # Beside the package, what Debian leaves out of its own Python is asked for by name.
