@@ -115,11 +115,6 @@ def test_solution_of_qpsolvers_carries_the_certificate() -> None:
     np.testing.assert_allclose(solution.extras["certificate"], [0.0, -1.0], atol=1e-12)
 
 
-def test_a_program_that_is_both_is_called_infeasible() -> None:
-    qp = QP(np.zeros((2, 2)), [0.0, 1.0], A=[[1.0, 0.0], [1.0, 0.0]], b=[0.0, 1.0])
-    assert DNNSolver().solve(qp).status is Status.NONE_FEASIBLE_NEAR
-
-
 @pytest.mark.parametrize(
     ("qp", "x", "status"),
     [

@@ -43,10 +43,3 @@ def test_sparse_programs_of_known_solution_are_solved() -> None:
         assert solution.is_optimal(1e-9)
         # No eigenvalue of P is below 0.1, and half of it times |dx|^2 is at most the gap.
         np.testing.assert_allclose(solution.x, x, atol=np.sqrt(2e-9 / 0.1))
-
-
-def test_a_warm_start_is_at_rest() -> None:
-    qp, _ = blend(1)
-    solver = iiwa_dnn.DNNSolver()
-    assert solver.solve(qp).found
-    assert solver.solve(qp).iterations <= 2

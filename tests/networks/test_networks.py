@@ -8,7 +8,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import iiwa_dnn
-import programs
 from helpers_qp import known_qp, network_rates
 from iiwa_dnn import (
     QP,
@@ -24,7 +23,6 @@ from iiwa_dnn import (
     PrimalDualNetwork,
     ProjectionNetwork,
     SimplifiedDualNetwork,
-    Status,
     ZeroingNetwork,
 )
 from iiwa_dnn.networks import NoiseSuppressingNetwork
@@ -221,11 +219,6 @@ def test_the_projection_networks_stable_step_separates_decay_from_growth() -> No
     assert ProjectionNetwork().stable_step(singular) == 0.0
 
 
-def test_infinite_bounds_make_no_nan() -> None:
-    qp = QP(np.eye(2), np.ones(2), lb=[-np.inf, 0.0], ub=[np.inf, np.inf])
-    assert np.isfinite(ProjectionNetwork().rates(qp, np.ones(6))).all()
-
-
 def test_the_gradient_network_descends_at_the_smallest_eigenvalue() -> None:
     network, start = GradientNetwork(), np.array([0.3, -0.2, 0.1, 0.4])
     rest = np.linalg.solve(MATRIX, np.concatenate([-LINEAR.q, LINEAR.b]))
@@ -275,23 +268,6 @@ def test_the_yardstick_reaches_the_solution_and_starts_warm() -> None:
     assert np.abs(solver.advance(qp, 1e-3).x - x).max() == pytest.approx(first)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("case", OTHERS)
-def test_random_programs_are_solved_or_not_claimed(case: str) -> None:
-    found, solver = 0, DNNSolver(SOURCES[case][0])
-    for seed in range(40):
-        qp, x = programs.strictly_convex(np.random.default_rng([7, seed]), None, 1e2)
-        solver.reset()
-        solution = solver.solve(qp)
-        found += solution.found
-        assert solution.certificate is None
-        if solution.found:
-            residuals = qp.residuals(solution.x, solution.y, solution.z, solution.z_box)
-            assert residuals.largest <= 1e-9
-            assert np.abs(solution.x - x).max() < 1e-5
-    assert found >= 38
-
-
 def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
     qp = QP(np.diag([1.0, 0.0]), [0.0, 1.0], A=[[1.0, 1.0]], b=[1.0], lb=[-5.0, -5.0])
     solution = iiwa_dnn.solve_problem(qp, solver=DNNSolver(PrimalDualNetwork()))
@@ -301,14 +277,6 @@ def test_singular_cost_settles_but_not_with_the_dual_networks() -> None:
         with pytest.raises(InvalidInputError, match="singular") as caught:
             iiwa_dnn.solve_problem(qp, solver=DNNSolver(network))
         assert caught.value.argument == "P"
-
-
-@pytest.mark.parametrize("case", OTHERS)
-def test_contradictions_are_proven_with_every_network(case: str) -> None:
-    qp = QP(np.eye(3), np.ones(3), A=[[1.0, 1.0, 0.0], [2.0, 2.0, 0.0]], b=[0.0, 1.0])
-    solver = DNNSolver(SOURCES[case][0])
-    assert solver.solve(qp).status is Status.NONE_FEASIBLE_NEAR
-    assert solver.solve(QP(qp.P, qp.q, A=qp.A, b=[0.0, 0.0])).found
 
 
 def test_x_of_the_state_is_disturbed() -> None:

@@ -78,15 +78,3 @@ def test_a_constant_noise_is_taken_out_below_gamma(noise: float, rejected: bool)
     assert bool(np.abs(error).max() < 1e-9) is rejected
     if rejected:
         np.testing.assert_allclose(state[3:], noise / (GAMMA * ETA), rtol=1e-6)
-
-
-def test_steps_below_the_stable_one_settle_and_others_do_not() -> None:
-    qp = QP(np.eye(2), [0.3, -0.2], A=[[1.0, 2.0]], b=[0.4], lb=[-1.0, -1.0], ub=[1.0, 1.0])
-    network = NoiseSuppressingNetwork(form="projected", integral=GAMMA, proportional=ETA)
-    limit = network.stable_step(qp)
-    rates = network.flow(qp).rates
-    for share, settles in ((0.95, True), (1.05, False)):
-        state = network.initial_state(qp)
-        for _ in range(500):
-            state = state + share * limit * rates(state)
-        assert bool(np.abs(rates(state)[3:]).max() < 1e-9) is settles

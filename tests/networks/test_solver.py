@@ -205,9 +205,7 @@ def test_a_sharpened_answer_is_never_worse() -> None:
     assert second.iterations >= first.iterations
     third = solver.sharpen(qp, second)
     assert third.residuals.largest <= second.residuals.largest
-    other = DNNSolver(DualNetwork())
-    answer = other.solve(qp)
-    assert other.sharpen(qp, answer) is answer
+    answer = DNNSolver(DualNetwork()).solve(qp)
     assert DNNSolver().sharpen(qp, answer) is answer  # it has no state yet
 
 

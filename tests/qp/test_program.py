@@ -73,14 +73,8 @@ def test_fields_are_views_of_one_array_and_copies_of_what_was_given() -> None:
     arrays = [getattr(qp, name) for name in FIELDS]
     assert sum(array.size for array in arrays) == qp.data.size
     assert all(np.shares_memory(array, qp.data) for array in arrays)
-    # Read-only arrays would be another type to numba: a compilation in the middle of a run.
     given = np.zeros(2)
-    given.setflags(write=False)
-    made = QP(np.eye(2), given, lb=given)
-    assert made.data.flags.writeable
-    assert not np.shares_memory(made.data, given)
-    again = QP.from_data(qp.data.copy(), qp.sizes)
-    np.testing.assert_array_equal(again.A, qp.A)
+    assert not np.shares_memory(QP(np.eye(2), given, lb=given).data, given)
 
 
 REFUSED: list[tuple[str, dict[str, Any]]] = [
@@ -218,11 +212,3 @@ def test_multipliers_without_constraints_are_empty_as_those_of_qpsolvers() -> No
             one_size, other_size = getattr(ours, name).size, getattr(theirs, name).size
             assert one_size == other_size, (name, arguments)
         assert ours.is_optimal(1e-8)
-
-
-def test_a_replaced_field_leaves_the_certificate() -> None:
-    qp = QP(np.eye(2), np.zeros(2), A=[[1.0, 1.0], [1.0, 1.0]], b=[0.0, 1.0])
-    solution = DNNSolver().solve(qp)
-    again = solution._replace(status=Status.NOT_SETTLED)
-    assert again.certificate is not None
-    np.testing.assert_array_equal(again.certificate, solution.certificate)

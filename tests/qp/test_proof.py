@@ -10,12 +10,11 @@ import pytest
 import qpsolvers
 
 import exact
-import iiwa_dnn
 import programs
-from exact import whole_numbers
+from exact import small, whole_numbers
 from helpers_qp import known_qp
 from iiwa_dnn import QP, CrossCheck, DNNSolver, InvalidInputError, Solution, prove, solve_problem
-from iiwa_dnn.qp.proof import CROSSED, DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof
+from iiwa_dnn.qp.proof import CROSSED, DEPENDENT, FAR, NOT_CONVEX, WEAK, Proof, prove_point
 
 
 def answer(x: list[float], z_box: list[float] | None = None, **more: list[float]) -> object:
@@ -61,6 +60,26 @@ def test_no_bound_is_below_the_true_error(kind: str, count: int, share: float) -
     assert proven >= share * count
 
 
+def test_no_bound_is_below_the_error_of_another_programs_answer() -> None:
+    for k in range(600):
+        rng = np.random.default_rng([31, k])
+        qp = (small if k % 2 else whole_numbers)(rng)
+        asked = qp
+        if k % 3 == 1:  # without the rows, in wider bounds
+            asked = QP(qp.P, qp.q, None, None, qp.A, qp.b, qp.lb - 9.0, qp.ub + 9.0)
+        elif k % 3 == 2:  # with the first variable held at its upper bound
+            lower = np.where(np.arange(qp.q.size) == 0, qp.ub, qp.lb)
+            asked = QP(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, lower, qp.ub)
+        solution = DNNSolver().solve(asked)
+        z = solution.z if asked.h.size else np.zeros(qp.h.size)
+        point = np.concatenate([solution.x, solution.y, z, solution.z_box])
+        found = prove_point(qp, point)
+        if found.bound < np.inf:
+            x = exact.exact_solution(qp, exact.face_of(qp, found.active))
+            if x is not None:
+                assert exact.distance(point[: qp.q.size], x) <= Fraction(found.bound)
+
+
 def held(qp: QP, x: list[Fraction]) -> list[int]:
     """The rows and bounds that an exact point (n,) meets with equality, as in `Proof.active`."""
     found = []
@@ -86,20 +105,6 @@ def test_a_proven_active_set_has_all_rows_and_bounds_that_the_solution_meets() -
     assert proven > 50
     touching = prove(QP(np.eye(1), [0.0], ub=[0.0]), answer([0.0]))
     assert (touching.bound < 1e-12, touching.reason) == (True, WEAK)
-
-
-def test_the_answer_of_another_solver_is_proven_as_well() -> None:
-    qp, _ = known_qp(np.random.default_rng(0), 6, 2, 2, inequalities=4)
-    problem = qp.to_qpsolvers()
-    tight = {"solver": "proxqp", "eps_abs": 1e-10, "eps_rel": 0.0}
-    for solve in (iiwa_dnn.solve_problem, lambda each: qpsolvers.solve_problem(each, **tight)):
-        proof, ratio = judged(qp, solve(problem))
-        assert not proof.reason
-        assert proof.bound < 1e-8
-        assert ratio < 1e6
-    known = DNNSolver().solve(qp)
-    sides = np.sign(np.where(np.abs(known.z_box) > 1e-6, known.z_box, 0.0))
-    np.testing.assert_array_equal(proof.active, [*sides, *(known.z > 1e-6)])
 
 
 def test_nothing_about_the_answer_is_trusted() -> None:
@@ -237,12 +242,6 @@ def test_answers_that_are_none_are_refused() -> None:
         prove(np.eye(2), answer([1.0, 2.0]))
 
 
-def test_a_problem_of_qpsolvers_is_proven_as_its_program() -> None:
-    qp = QP(np.eye(2), [-1.0, 0.0], ub=[0.5, 1.0])
-    solution = answer([0.5, 0.0])
-    assert prove(qp.to_qpsolvers(), solution).bound == prove(qp, solution).bound < 1e-12
-
-
 def test_a_certificate_is_proven_or_is_not() -> None:
     rows = [[-1.0, -1.0]]
     for limit, reason in ((-3.0, "proven: no point satisfies the constraints"), (-1.0, "")):
@@ -293,11 +292,6 @@ def test_a_check_hands_the_proof_on() -> None:
     )
     # The other solver's answers are no farther than both bounds allow.
     assert (agreement.solution_gap[right, 0] < 1e-7).all()
-    for qp, point, bound in zip(known, points, bounds, strict=True):
-        solution = DNNSolver().solve(qp)._replace(point=point)
-        assert prove(qp, solution).bound == bound
-    alone = CrossCheck(("proof",)).check(known[0], points[0])
-    assert alone.solution_gap[0, 0] == bounds[0]
     # x alone will do where no multiplier has to be known.
     assert CrossCheck(("proof",)).check(known[0], points[0, :5]).solution_gap[0, 0] < 1e-7
 
