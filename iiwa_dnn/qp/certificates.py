@@ -150,12 +150,14 @@ def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
 def _clean_multipliers(qp: QP, multipliers: Vector) -> Vector:
     """Divide multipliers (p + m,) by the largest; remove those of rows without a limit."""
     limited = np.isfinite(np.concatenate([qp.b, qp.h]))
-    return np.where(limited, multipliers, 0.0) / max(_largest(multipliers), _EPS)
+    return np.where(limited, multipliers, 0.0) / max(
+        float(np.abs(multipliers).max(initial=0.0)), _EPS
+    )
 
 
 def _clean_direction(qp: QP, direction: Vector) -> Vector:
     """Divide a direction (n,) by its largest entry; remove what is towards a bound."""
-    direction = direction / max(_largest(direction), _EPS)
+    direction = direction / max(float(np.abs(direction).max(initial=0.0)), _EPS)
     return np.where(_towards_bound(qp, direction), 0.0, direction)
 
 
@@ -189,8 +191,3 @@ def _on_null_space(rows: Matrix, vector: Vector) -> Vector:
     for _ in range(2 if rows.size else 0):
         vector = vector - np.linalg.lstsq(rows, rows @ vector, rcond=1e-10)[0]
     return vector
-
-
-def _largest(vector: Vector) -> float:
-    """Return the largest absolute entry; 0 without any."""
-    return float(np.abs(vector).max(initial=0.0))

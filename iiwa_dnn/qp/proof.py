@@ -192,11 +192,14 @@ def _proved(qp: QP, rows: _Rows, point: Vector) -> Proof:
     multipliers = np.concatenate([point[n:], -point[n + p + m :]])
     active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
     active[p + m + n :] &= ~active[p + m : p + m + n]
+    bound = np.inf
+    reason = UNDECIDED
     for attempt in range(ROUNDS):
         kept = _independent(rows, active)
         enclosure = _enclose(rows.S, qp.q, rows.rows[kept], rows.limits[kept], rows.unit)
         if enclosure is None:
-            return Proof(np.inf, _signed(qp, active), DEPENDENT)
+            reason = DEPENDENT
+            break
         u, error = enclosure
         joins = rows.usable & ~active & ~_is_clear(rows, u[:n], error[:n])
         uncertain = np.where(rows.equal[kept], -np.inf, error[n:] - u[n:])
@@ -206,17 +209,11 @@ def _proved(qp: QP, rows: _Rows, point: Vector) -> Proof:
             missing = np.maximum(uncertain, 0.0) @ np.abs(rows.rows[kept]).sum(axis=1)
             weak = bool((uncertain >= 0.0).any())
             bound, reason = _bound(qp, rows, float(distance.max()), float(missing), weak)
-            return Proof(bound, _signed(qp, active), reason)
+            break
         active = active | joins
         active[leaving] = False
-    return Proof(np.inf, _signed(qp, active), UNDECIDED)
-
-
-def _signed(qp: QP, active: Mask) -> IntVector:
-    """Return an active set of all rows (k,) as in `Proof`, (n + m,)."""
-    _, m, p = qp.sizes
     upper, lower = np.split(active[p + m :].astype(np.int64), 2)
-    return np.concatenate([upper - lower, active[p : p + m].astype(np.int64)])
+    return Proof(bound, np.concatenate([upper - lower, active[p : p + m]]), reason)
 
 
 def _independent(rows: _Rows, active: Mask) -> IntVector:

@@ -7,7 +7,6 @@ for the bounds (positive at ``ub``, negative at ``lb``).
 from __future__ import annotations
 
 from enum import Enum
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,14 +15,6 @@ from iiwa_dnn.qp.layout import Sizes, Vector
 
 if TYPE_CHECKING:
     import qpsolvers
-
-
-@lru_cache
-def _qpsolvers_solution() -> type[qpsolvers.Solution]:
-    """Import qpsolvers' class; even to look a module up costs much of a small program's time."""
-    import qpsolvers
-
-    return qpsolvers.Solution
 
 
 class Status(str, Enum):
@@ -139,7 +130,8 @@ class Solution(NamedTuple):
         qpsolvers' own solvers. A solution that was not found carries no ``x``; the point that the
         network reached is in ``extras["last_x"]``, so that nobody takes it for an answer.
         """
-        make = _qpsolvers_solution()
+        import qpsolvers
+
         point, (n, m, p), status, iterations, time, primal, dual, gap, certificate = self
         extras: dict[str, Any] = {
             "status": status.value,
@@ -152,10 +144,10 @@ class Solution(NamedTuple):
         if status is not Status.SOLVED:
             if certificate is not None:
                 extras["certificate"] = certificate
-            return make(problem, {**extras, "last_x": self.x}, found=False)
+            return qpsolvers.Solution(problem, {**extras, "last_x": self.x}, found=False)
         x = point[:n]
         bounded = problem.lb is not None or problem.ub is not None
-        return make(
+        return qpsolvers.Solution(
             problem,
             extras,
             True,
