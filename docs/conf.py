@@ -11,7 +11,8 @@ version = release = installed_version("iiwa-dnn")
 
 # The notebooks lie beside the pages' folder; they are shown as they are kept.
 HERE = Path(__file__).parent
-shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks", dirs_exist_ok=True)
+shutil.rmtree(HERE / "notebooks", ignore_errors=True)
+shutil.copytree(HERE.parent / "notebooks", HERE / "notebooks")
 
 extensions = [
     "myst_nb",
