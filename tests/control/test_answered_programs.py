@@ -10,6 +10,7 @@ import pytest
 
 import iiwa_dnn
 from iiwa_dnn import AccelerationLimits, CollisionAvoidance, CrossCheck, JerkLimits, Limit
+from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Policy, ProgramKind
 from iiwa_dnn.qp.layout import Sizes
 
@@ -137,3 +138,17 @@ def test_a_record_says_of_each_step_what_was_checked(policy: Policy) -> None:
     spoilt = dataclasses.replace(record, excess=excess)
     broken = iiwa_dnn.compute_metrics(spoilt)["crosscheck"]
     assert broken["disagreements"] == 1
+
+
+def test_the_excess_of_an_answer_counts_its_rows_and_a_multiplier_needs_its_bound() -> None:
+    qp = iiwa_dnn.QP(np.eye(2), np.zeros(2), G=[[1.0, 1.0]], h=[0.5], lb=[-1.0] * 2, ub=[1.0] * 2)
+    layout = RowLayout(qp.sizes, 2, 0)
+    row = np.zeros((1, layout.width))
+    layout.view(row, "program")[:] = qp.data
+    layout.view(row, "bounds")[:] = [-1.0, -1.0, 1.0, 1.0]
+    layout.view(row, "point")[:] = [0.5, 1.0, 0.0, 2.0, 3.0]  # x, z and z_box
+    for kind in ProgramKind:
+        layout.view(row, "decision")[:, 3] = kind
+        counts = kind < ProgramKind.HELD
+        np.testing.assert_allclose(layout.excess(row), 1.0 if counts else 0.0)
+    np.testing.assert_array_equal(layout.bound_multipliers(row, 1e-9), [[0.0, 3.0]])

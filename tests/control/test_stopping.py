@@ -278,8 +278,13 @@ def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
     avoidance = CollisionAvoidance([ball], self_collision=False, distance=0.05)
     scene = avoidance.scene(ROBOT)
     controller = Controller(ROBOT, DoubleIndicator(extra_limits=(avoidance,)), dt=2e-2)
+    coming = CollisionAvoidance(
+        [Sphere(ball.center, 0.1, velocity=[0.0, -0.5, 0.0])], self_collision=False, distance=0.05
+    )
+    chased = Controller(ROBOT, DoubleIndicator(extra_limits=(coming,)), dt=2e-2)
     random = np.random.default_rng(0)
     shares = []
+    others = []
     for _ in range(400):
         q = ROBOT.start_posture() + random.uniform(-0.3, 0.3, 7)
         dq = ROBOT.dq_max * random.uniform(-1.0, 1.0, 7)
@@ -289,4 +294,7 @@ def test_a_velocity_that_others_chose_is_shortened_until_it_is_clear() -> None:
         )
         assert after >= min(before, 0.05) - 1e-12
         shares.append(share)
+        others.append(chased.clear_share(q, dq))
+    assert (np.array(others) <= shares).all()
+    assert (np.array(others) < shares).any()
     assert 0 < np.sum(np.array(shares) < 1.0) < 300

@@ -190,6 +190,7 @@ def test_a_stopped_arm_goes_on_where_the_task_has_a_solution_again(
         assert command.action is Action.STOP
         assert not command.dq.any()
         assert "against joint" in repr(command)
+        np.testing.assert_array_equal([command.qp.lb, command.qp.ub], command.bounds)
     near = Target(start.position + [1e-5, 0.0, 0.0], start.rotation)
     again = [controller.step(start.q, 3e-3, near), controller.step(start.q, 4e-3, near)]
     for command in again:
