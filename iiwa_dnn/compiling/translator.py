@@ -93,7 +93,11 @@ class Translator:
 
     def text(self) -> str:
         """Return structs, tables and functions as one text."""
-        functions = [own.text or _entry(own, self.parts) for own in self.made.values()]
+        own = self.parts
+        functions = [
+            each.text or (_entry(each) if own is None else _numbered(each, own))
+            for each in self.made.values()
+        ]
         heads = [f"{own.head()};" for own in self.made.values()]
         parts = (self.kinds.structs.values(), self._tables.values(), heads, functions)
         return "\n".join(text for part in parts for text in part) + "\n"
@@ -276,22 +280,27 @@ class Function(Expressions):
                 self.add(f"{place.text} = {value.text};")
 
 
-def _entry(made: Made, parts: list[Made] | None) -> str:
-    """Write the function that enters one of several functions of its types.
+def _numbered(made: Made, parts: list[Made]) -> str:
+    """Write the function that enters one of an exported text's parts by its number."""
+    address, *names = made.parameters
+    given = ", ".join(["arena", *names])
+    back = "return " * (made.result is not VOID)
+    own = [(n, part.name) for n, part in enumerate(parts, 1) if part.code == made.code[1:]]
+    lines = [f"    if ({address} == {n}) {{ {back}{name}({given}); }}" for n, name in own]
+    if back:
+        lines += [f"    const {made.result.tag} none = {{0}};", "    return none;"]
+    return made.written_out(made.about, lines)
 
-    Of an exported text's parts each has a number. In the library a kernel has its address, and a
-    function of a user's a negative one: it takes numbers as they are, an array as its pointer and
-    its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.
+
+def _entry(made: Made) -> str:
+    """Write the function that enters one of several functions of its types by its address.
+
+    A function of a user's has a negative one: it takes numbers as they are, an array as its pointer
+    and its sizes, and a named tuple as its members; a tuple's numbers go to a last pointer.
     """
     address, *names = made.parameters
     given = ", ".join(["arena", *names])
     back = "return " * (made.result is not VOID)
-    if parts is not None:
-        own = [(n, part.name) for n, part in enumerate(parts, 1) if part.code == made.code[1:]]
-        lines = [f"    if ({address} == {n}) {{ {back}{name}({given}); }}" for n, name in own]
-        if back:
-            lines += [f"    const {made.result.tag} none = {{0}};", "    return none;"]
-        return made.written_out(made.about, lines)
     kinds = list(made.parameters.values())[1:]
     types = [f"const {kind.tag} *" if kind.is_named else kind.tag for kind in kinds]
     kernel = f"({made.result.tag} (*)({', '.join(['struct arena *', *types])}))(intptr_t){address}"
@@ -306,9 +315,10 @@ def _entry(made: Made, parts: list[Made] | None) -> str:
     lines = [
         f"    if ({address} > 0) {{ {back}(({kernel})({given})); {'' if back else 'return;'} }}"
     ]
-    lines += [f"    double numbers[{len(members)}] = {{0.0}};"] if members else []
-    lines.append(f"    {'return ' * (answer == 'double')}{called}({values});")
+    call = f"    {'return ' * (answer == 'double')}{called}({values});"
+    lines.append(call)
     if members:
+        lines[-1:] = [f"    double numbers[{len(members)}] = {{0.0}};", call]
         numbers = [f"({kind.tag})numbers[{i}]" for i, (_, kind) in enumerate(members)]
         lines.append(f"    return {literal(made.result, *numbers)};")
     return made.written_out(made.about, lines)
