@@ -48,7 +48,7 @@ def times(reference: d.Reference, count: int = 200) -> NDArray[np.float64]:
     return np.random.default_rng(5).uniform(0.01, reference.duration - 0.01, count)
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
+@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=lambda path: type(path).__name__)
 def test_the_twist_is_the_derivative_of_the_pose(reference: d.Reference) -> None:
     anchored = reference.anchored(POSE)
     t = times(reference)
@@ -63,7 +63,7 @@ def test_the_twist_is_the_derivative_of_the_pose(reference: d.Reference) -> None
     np.testing.assert_allclose(square, np.tile(np.eye(3), (len(t), 1, 1)), atol=1e-13)
 
 
-@pytest.mark.parametrize("reference", CLOSED, ids=repr)
+@pytest.mark.parametrize("reference", CLOSED, ids=lambda path: type(path).__name__)
 def test_closed_paths_repeat_after_their_period_and_not_before(reference: d.Reference) -> None:
     assert reference.duration == reference.period
     t = times(reference)
@@ -75,7 +75,9 @@ def test_closed_paths_repeat_after_their_period_and_not_before(reference: d.Refe
         assert np.abs(reference.sample(t + reference.period / part).data - now).max() > 1e-3
 
 
-@pytest.mark.parametrize("reference", [*CLOSED, *OPEN, d.Still()], ids=repr)
+@pytest.mark.parametrize(
+    "reference", [*CLOSED, *OPEN, d.Still()], ids=lambda path: type(path).__name__
+)
 def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) -> None:
     anchored = reference.anchored(POSE)
     assert type(anchored) is type(reference)
@@ -91,7 +93,7 @@ def test_an_anchor_moves_the_start_and_keeps_the_axes(reference: d.Reference) ->
         np.testing.assert_allclose(moved.data[12:], free.data[12:], rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
+@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=lambda path: type(path).__name__)
 def test_a_sample_is_a_target_for_each_time_and_read_only(reference: d.Reference) -> None:
     t = times(reference, 20)
     targets = reference.sample(t)
@@ -103,7 +105,7 @@ def test_a_sample_is_a_target_for_each_time_and_read_only(reference: d.Reference
             getattr(targets[3], name)[0] = 0.0
 
 
-@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=repr)
+@pytest.mark.parametrize("reference", CLOSED + OPEN, ids=lambda path: type(path).__name__)
 def test_settings_say_how_to_make_it_again(reference: d.Reference) -> None:
     settings = reference.settings()
     assert json.loads(json.dumps(settings, allow_nan=False)) == settings
