@@ -110,6 +110,7 @@ def test_the_network_takes_the_velocity_nearest_to_the_last_one() -> None:
     assert np.linalg.norm(dq - shortest) > 0.05  # the velocity of least norm is another one
 
 
+@pytest.mark.filterwarnings("ignore:in continuous mode the rows")  # as the authors run it
 def test_tilt_and_distance_are_kept() -> None:
     record = study.run("AOA-3PF", 4e-3, 1.8)
     assert record.settings["status"] == "completed"
