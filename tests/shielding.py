@@ -123,9 +123,9 @@ def drive(
     return braking.Drive(np.array(path), np.array(ok), left)
 
 
-def drawn(seed: int) -> braking.Case:
+def drawn(seed: int, in_c: bool = False) -> braking.Case:
     """Draw a case, with its jerk limit as the robot's own and the arm's links watched too."""
-    case = braking.draw_case(seed)
+    case = braking.draw_case(seed, in_c)
     robot = case.robot
     if len(case.limits) > 1:
         robot = robot.with_limits(jerk=case.limits[1].limit)
@@ -162,7 +162,7 @@ def main(steps: int, first: int, in_c: bool) -> int:
     done = 0
     while done < steps:
         seed += 1
-        case = drawn(seed)
+        case = drawn(seed, in_c)
         robot = case.robot
         if (
             Judge(robot, case.avoidance).distance(robot.start_posture(), 0.0)
