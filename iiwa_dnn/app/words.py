@@ -139,7 +139,7 @@ class Run:
     disturb: Flag = False
     """apply errors of mass, friction, encoders and a delay, in MuJoCo"""
     out: Folder = None
-    """folder of the results (runs/PATH, or the folder of --config)"""
+    """folder of the results (runs/PATH, or that of --config; controller for export)"""
     overwrite: Flag = False
     """write over a folder that holds another run"""
     plots: Flag = True

@@ -54,6 +54,9 @@ from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
 DAMPING = 0.02
 """Lambda of a twist's program [m/rad]: near a singular pose the joints do not race."""
 
+FASTEST = 1e3
+"""Velocity [rad/s, m/s] to which a larger wish is cut before it is answered: no arm is so quick."""
+
 JOINTS = ""
 """Frame of wishes for all joints."""
 
@@ -110,7 +113,7 @@ def approach_positions(
         lower, upper = bounds_of(i, past, above, below, limits, dt)
         dq[i] = upper if left >= 0.0 else lower
         if not abs(dq[i]) < np.inf:
-            dq[i] = left / dt
+            dq[i] = min(max(left / dt, -FASTEST), FASTEST)
 
 
 @compiled
@@ -125,6 +128,7 @@ def approach_velocities(
     """
     n = q.size
     for i in range(n):
+        dq[i] = min(max(dq[i], -FASTEST), FASTEST)
         above = limits[n + i] - q[i]
         below = q[i] - limits[i]
         lower, upper = bounds_of(i, past, above, below, limits, dt)
@@ -414,7 +418,7 @@ class Shield:
         target = np.zeros(TARGET_SIZE)
         if self._kind == "twist":
             target[3:12:4] = 1.0
-            target[12:] = wish
+            target[12:] = np.clip(wish, -FASTEST, FASTEST)
             return {self._frame: Target.from_data(target)}
         aim = target[: wish.size]
         aim[:] = wish

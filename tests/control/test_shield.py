@@ -183,6 +183,24 @@ def test_without_a_wish_the_arm_brakes_and_goes_on_without_a_jump(
     np.testing.assert_allclose((resumed[-1] - resumed[-2]) / DT, speed, atol=1e-12)
 
 
+@pytest.mark.parametrize("size", [1e6, 1e100, 1e300])
+@pytest.mark.parametrize("obstacles", [None, [BALL]])
+def test_wishes_of_any_size_are_answered(size: float, obstacles: list[Sphere] | None) -> None:
+    """The arm goes where a wish of 900 rad/s leads, and limits are named."""
+    paths = []
+    for speed in (900.0, size):
+        shield = Shield(ROBOT, DT, obstacles)
+        path, commands = drive(shield, 30, dq=np.full(7, speed))
+        assert commands[-1].limits
+        paths.append(path)
+    np.testing.assert_allclose(paths[1], paths[0], atol=1e-6)
+    assert np.ptp(paths[1], axis=0).max() > 1e-3
+    for wish in ({"position": np.full(7, size)}, {"twist": np.full(6, size)}):
+        path, commands = drive(Shield(PLAIN, DT, obstacles), 30, **wish)
+        assert np.ptp(path, axis=0).max() > 1e-3
+        assert breaches(path, DT, PLAIN.q_lower, PLAIN.q_upper, PLAIN.dq_max) == []
+
+
 def test_a_halt_lasts_until_the_reset() -> None:
     shield = Shield(ROBOT, DT)
     path, _ = drive(shield, 100, dq=np.full(7, 0.2))
