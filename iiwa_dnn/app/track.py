@@ -134,7 +134,7 @@ def export(options: Any) -> int:
     exports.c99(controller, folder, arguments["q0"])
     write_text(folder / SETTINGS_FILE, tomli_w.dumps(tables))
     if controller.robot.name == "iiwa7" and "position" not in tables["limits"]:
-        line = "position limits of 2.5 rad are the paper's, wider than joint 4's"
+        line = "position limits of 2.5 rad are the paper's, wider than those of joints 2, 4 and 6"
         print(f"{line}; for a real arm take --joint-limit datasheet", file=sys.stderr)
     if not options.quiet:
         print(f"written to {folder}; to test it: make -C {folder}")
