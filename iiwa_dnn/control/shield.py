@@ -247,7 +247,7 @@ class ShieldCommand(NamedTuple):
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """What keeps the command from the given wish: reasons, bounds and rows, in words."""
+        """Name the reasons, bounds and rows that keep the command from the given wish."""
         return (*self.reasons, *self.command.against) if self.clipped else ()
 
     @property

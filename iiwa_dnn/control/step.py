@@ -62,7 +62,7 @@ INVALID = -1
 
 
 class StepPlan(NamedTuple):
-    """What a control step is laid out with.
+    """Layout of a control step.
 
     Attributes:
         arrays: Arrays with which the program is written.
