@@ -12,6 +12,7 @@ import pinocchio as pin
 from iiwa_dnn.checks import Array
 from iiwa_dnn.robot.robot import Robot
 
+_WORLD = pin.Convention.WORLD
 _PLACEMENT = 12  # numbers of a placement: the rotation column by column, then the translation
 
 
@@ -51,8 +52,9 @@ class Kinematics:
         """Compute the kinematics at joint positions `q` (n,) [rad], which are not checked."""
         model = self.robot.model
         if self._dynamics:
-            pin.crba(model, self.data, q)
-        pin.computeJointJacobians(model, self.data, q)
+            pin.crba(model, self.data, q, _WORLD)  # leaves the joint Jacobian too
+        else:
+            pin.computeJointJacobians(model, self.data, q)
         pin.updateFramePlacements(model, self.data)  # no slower than one of them
 
     def frame(self, name: str) -> tuple[Array, Array]:
