@@ -1,13 +1,11 @@
 """franka-sim by a clock that waits: a cycle lasts until the client's command has been applied.
 
 The server's own Python runs this file. By the wall clock a machine that stalls loses commands, and
-nothing shows whether the client's motion was good. Here commands are lost where the options say so,
-and as libfranka documents it: a late packet is dropped, and the robot goes on without it.
+nothing shows whether the client's motion was good. Here commands are lost at random, and as
+libfranka documents it: a late packet is dropped, and the robot goes on without it.
 """
 
-import argparse
 import random
-import sys
 import time
 
 import franka_sim
@@ -16,23 +14,15 @@ from franka_sim.comm_constraints import CommConstraintTracker
 from franka_sim.mujoco_franka_sim import MujocoFrankaSim
 from franka_sim.server import lifecycle
 
-PATIENCE = 1.0
-"""Time to wait for a client that has answered before [s]."""
-
-TURN = 2e-5
-"""Time between two looks for the answer [s]."""
+PATIENCE = 1.0  # for a client that has answered before [s]
+TURN = 2e-5  # between two looks for the answer [s]
+LOSSES = 0.01  # ratio of the cycles in which a loss begins
+LONGEST = 5  # cycles that are lost in a row
 
 
 class LossyTracker(CommConstraintTracker):
-    """Counts the cycles, and loses the commands of some.
+    """Counts the cycles, and loses the commands of some."""
 
-    Attributes:
-        rate: Ratio of the cycles in which a loss begins.
-        longest: Largest number of cycles that are lost in a row.
-    """
-
-    rate = 0.0
-    longest = 1
     random = random.Random(0)  # of all connections: each has other losses
 
     def __init__(self, **options):
@@ -43,8 +33,8 @@ class LossyTracker(CommConstraintTracker):
         self.heard = False
 
     def command_received(self, command_message_id):
-        if self.remaining == 0 and self.consecutive_lost == 0 and self.random.random() < self.rate:
-            self.remaining = self.random.randint(1, self.longest)
+        if self.remaining == 0 and self.consecutive_lost == 0 and self.random.random() < LOSSES:
+            self.remaining = self.random.randint(1, LONGEST)
         self.heard = True
         self.is_lost = self.remaining > 0
         self.remaining -= self.is_lost
@@ -87,12 +77,6 @@ def idle(simulation):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(add_help=False)
-    parser.add_argument("--lose", type=float, default=0.0)
-    parser.add_argument("--in-a-row", type=int, default=1)
-    options, sys.argv[1:] = parser.parse_known_args()
-    LossyTracker.rate = options.lose
-    LossyTracker.longest = options.in_a_row
     lifecycle.CommConstraintTracker = LossyTracker
     franka_sim.FrankaSimServer = LockstepServer
     MujocoFrankaSim.run_simulation = idle

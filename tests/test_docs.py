@@ -10,6 +10,7 @@ import ast
 import contextlib
 import importlib
 import io
+import json
 import operator
 import re
 import shlex
@@ -27,38 +28,11 @@ from iiwa_dnn.compiling.library import source_of
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
-_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_BLOCK = re.compile(r"^```python\n(.*?)^```$(?:\s*^```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
 _LINK = re.compile(r"(?<!`)!?\[[^]]*\]\(([^)#\s]+)(#[^)\s]*)?\)")
 _RAW_LINK = re.compile(r'<a href="([^"#:]+)"')
 _RUN = re.compile(r"^iiwa-dnn ((?:track|physics|export) (?!--help).*|track)$", re.MULTILINE)
 _TEST = re.compile(r"`(tests/[\w/]+\.py)(?:::(\w+))?`")
-
-
-def blocks(text: str) -> list[tuple[str, str, int, bool]]:
-    """Language, content, line of the content, and whether it comes right after the one before."""
-    found, end = [], 0
-    for match in _FENCE.finditer(text):
-        line = text.count("\n", 0, match.start()) + 2
-        found.append((match[1], match[2], line, not text[end : match.start()].strip()))
-        end = match.end()
-    return found
-
-
-def run_blocks(text: str, name: str) -> None:
-    """Run the Python of a document, `name` in tracebacks, and compare what it prints."""
-    # A module of its own, since dataclasses ask for that of their class.
-    module = types.ModuleType("__docs__")
-    sys.modules["__docs__"], namespace = module, vars(module)
-    printed: str | None = None
-    for language, content, line, follows in blocks(text):
-        if language == "python":
-            # Line numbers of the document, for the traceback.
-            code = compile("\n" * (line - 1) + content, name, "exec")
-            with contextlib.redirect_stdout(io.StringIO()) as output:
-                exec(code, namespace)
-            printed = output.getvalue()
-        elif language == "text" and follows and printed is not None:
-            assert printed == content, f"{name}:{line}: the block above prints otherwise"
 
 
 def defined(path: Path) -> set[str]:
@@ -73,7 +47,15 @@ def test_the_code_in_the_documents_runs(
 ) -> None:
     monkeypatch.chdir(tmp_path)  # whatever it writes, it does not write here
     compile_quickly(monkeypatch)
-    run_blocks(path.read_text(encoding="utf-8"), path.name)
+    text = path.read_text(encoding="utf-8")
+    module = types.ModuleType("__docs__")  # dataclasses ask for the one of their class
+    monkeypatch.setitem(sys.modules, "__docs__", module)
+    for block in _BLOCK.finditer(text):
+        line = text.count("\n", 0, block.start()) + 1  # in a traceback that of the document
+        code = compile("\n" * line + block[1], path.name, "exec")
+        with contextlib.redirect_stdout(io.StringIO()) as output:
+            exec(code, vars(module))
+        assert block[2] in (None, output.getvalue()), f"{path.name}:{line}"
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
@@ -101,15 +83,6 @@ def test_the_commands_of_a_page_are_understood_and_none_is_refused_its_folder(pa
             assert owner == words, f"{path.name}: iiwa-dnn {line}"
 
 
-def test_the_table_of_contents_is_complete() -> None:
-    pages = {path.stem for path in (ROOT / "docs").glob("*.md")} - {"index"}
-    pages |= {f"notebooks/{path.stem}" for path in (ROOT / "notebooks").glob("*.ipynb")}
-    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
-    trees = re.findall(r"^```{toctree}\n(.*?)^```$", index, re.MULTILINE | re.DOTALL)
-    named = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
-    assert named == pages
-
-
 def test_the_table_of_equations_names_what_exists() -> None:
     text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
     section = text.split("## Equations and files")[1].split("\n## ")[0]
@@ -121,18 +94,29 @@ def test_the_table_of_equations_names_what_exists() -> None:
         assert label == file
         module = importlib.import_module(f"iiwa_dnn.{file.removesuffix('.py').replace('/', '.')}")
         for name in re.findall(r"`([\w.]+)`", names):
-            found = operator.attrgetter(name)(module)
-            found = source_of(found)
+            found = source_of(operator.attrgetter(name)(module))
             assert found.__module__ == module.__name__, f"{name} comes from {found.__module__}"
 
 
 def test_every_erratum_has_its_tests_and_every_test_its_erratum() -> None:
     text = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
     entries = re.split(r"^## (?=\d+\. )", text, flags=re.MULTILINE)[1:]
-    numbers = [int(entry.split(".")[0]) for entry in entries]
-    assert numbers == list(range(1, len(entries) + 1))
-    assert len(entries) >= 8
+    assert [int(entry.split(".")[0]) for entry in entries] == list(range(1, len(entries) + 1))
     named = [_TEST.findall(entry) for entry in entries]
     assert all(named), "an entry without a test"
     tests = {name for name in defined(ROOT / "tests/test_errata.py") if name.startswith("test_")}
     assert {name for entry in named for file, name in entry if "errata" in file} == tests
+
+
+@pytest.mark.parametrize("name", ["quickstart", "solver_comparison"])
+def test_kept_outputs_of_a_notebook_are_those_of_one_run_in_order(name: str) -> None:
+    text = (ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf-8")
+    code = [cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code"]
+    assert [cell["execution_count"] for cell in code] == list(range(1, len(code) + 1))
+    outputs = [output for cell in code for output in cell["outputs"]]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    # A warning would be in stderr.
+    assert not [
+        out for out in outputs if out["output_type"] == "error" or out.get("name") == "stderr"
+    ]
+    assert "/home/" not in text
