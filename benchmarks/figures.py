@@ -14,10 +14,10 @@ STUDIES = {
 
 JUDGES = {
     "Random runs": ("tests/random_runs.py", "--runs", "{runs}"),
-    "Random motion among obstacles": ("tests/random_motion.py", "{steps}"),
-    "Hostile targets": ("tests/adversarial.py", "{steps}"),
-    "Hostile targets among obstacles": ("tests/braking.py", "{steps}"),
-    "The same by exported C, ten times as long": ("tests/braking.py", "{steps}", "--exported"),
+    "Hostile targets of controllers": ("tests/hostile.py", "controller", "{steps}"),
+    "Hostile wishes of shields": ("tests/hostile.py", "shield", "{steps}"),
+    "Controllers in C": ("tests/hostile.py", "controller", "{steps}", "--exported"),
+    "Shields in C": ("tests/hostile.py", "shield", "{steps}", "--exported"),
 }
 """Judges of hostile motion by their titles; their last lines sum up."""
 

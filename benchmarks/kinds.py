@@ -15,6 +15,7 @@ import numpy as np
 
 import iiwa_dnn
 from benchmarks.report import show
+from hostile import streams
 from iiwa_dnn import (
     AccelerationLimits,
     CollisionAvoidance,
@@ -32,7 +33,6 @@ from iiwa_dnn.schemes import PoseTask
 from iiwa_dnn.studies import paper
 from iiwa_dnn.studies.runs import paper_robot
 from tests.export_settings import BALLS, DISTANCE, RADII
-from tests.targets import STREAMS
 
 DT = 1e-3
 SLOW = 0.02  # velocity limit [rad/s]
@@ -62,14 +62,9 @@ class Case(NamedTuple):
 
 
 def stream(robot: Robot, kind: str) -> Targets:
-    """Return the targets of a kind of `tests.targets`, in turn."""
-    poses = STREAMS[kind](robot, np.random.default_rng(1), 10**9, DT)
-
-    def target(k: int) -> Target:
-        position, rotation = next(poses)
-        return Target(position, rotation)
-
-    return target
+    """Return the targets of a kind of `tests.hostile`, in turn."""
+    target = streams(robot, np.random.default_rng(1))[kind]
+    return lambda k: target(k * DT)
 
 
 def moved(reference: MovingTarget, heart: Reference) -> Targets:

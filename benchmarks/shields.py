@@ -1,43 +1,38 @@
-"""The shield beside a clamp and beside Ruckig, on the same hostile wishes (tests/shielding.py)."""
+"""The shield beside a clamp and beside Ruckig, on the same hostile wishes (tests/hostile.py)."""
 
-import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import ruckig
 
+import hostile
 import iiwa_dnn
 from benchmarks.report import show
 from iiwa_dnn.qp import Vector
-
-sys.path.append(str(Path(__file__).parent.parent / "tests"))
-import braking
-import shielding
+from judge_distances import Judge
 from judge_limits import breaches
-from random_motion import Judge
 
 RUNS = 40
 STEPS = 2000
 """Runs, each of so many steps at most, among obstacles that stand still."""
 
-Step = Callable[[Vector, Vector, shielding.Wish], Vector]
+Step = Callable[[Vector, Vector, dict[str, Any]], Vector]
 """Returns the command at joint positions q, for a velocity wished for, or the wish itself."""
 
 
-def shield(case: braking.Case) -> Step:
+def shield(case: hostile.Case) -> Step:
     """Return the step of a shield."""
-    made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, braking.DISTANCE)
+    made = iiwa_dnn.Shield(case.robot, case.dt, case.avoidance.obstacles, hostile.DISTANCE)
     return lambda q, dq, wish: made.step(q, **wish).dq
 
 
-def clamp(case: braking.Case) -> Step:
+def clamp(case: hostile.Case) -> Step:
     """Return a clamp of the velocities, and of the next positions, to their limits."""
     robot = case.robot
 
-    def step(q: Vector, dq: Vector, wish: shielding.Wish) -> Vector:
+    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
         goal = q + case.dt * np.clip(dq, -robot.dq_max, robot.dq_max)
         taken: Vector = (np.clip(goal, robot.q_lower, robot.q_upper) - q) / case.dt
         return taken
@@ -45,7 +40,7 @@ def clamp(case: braking.Case) -> Step:
     return step
 
 
-def with_ruckig(case: braking.Case) -> Step:
+def with_ruckig(case: hostile.Case) -> Step:
     """Return Ruckig's way to a velocity; its free edition knows no range of positions for it."""
     robot = case.robot
     otg = ruckig.Ruckig(robot.dof, case.dt)
@@ -58,7 +53,7 @@ def with_ruckig(case: braking.Case) -> Step:
         given.max_jerk = robot.dddq_max
     given.current_velocity = np.zeros(robot.dof)
 
-    def step(q: Vector, dq: Vector, wish: shielding.Wish) -> Vector:
+    def step(q: Vector, dq: Vector, wish: dict[str, Any]) -> Vector:
         given.current_position = q
         given.target_velocity = np.clip(dq, -robot.dq_max, robot.dq_max)
         otg.update(given, found)
@@ -69,7 +64,7 @@ def with_ruckig(case: braking.Case) -> Step:
     return step
 
 
-def velocity_of(wish: shielding.Wish, q: Vector, last: Vector, case: braking.Case) -> Vector:
+def velocity_of(wish: dict[str, Any], q: Vector, last: Vector, case: hostile.Case) -> Vector:
     """Return the joint velocity that a wish asks for; `last` where there is none."""
     dq = last
     if "dq" in wish:
@@ -82,7 +77,7 @@ def velocity_of(wish: shielding.Wish, q: Vector, last: Vector, case: braking.Cas
     return dq if np.isfinite(dq).all() else last
 
 
-def run(make: Callable[[braking.Case], Step], seeds: list[int]) -> dict[str, Any]:
+def run(make: Callable[[hostile.Case], Step], seeds: list[int]) -> dict[str, Any]:
     """Drive the cases of some seeds; return a row of the table."""
     broken: dict[str, int] = dict.fromkeys(("position", "velocity", "acceleration", "jerk"), 0)
     times = []
@@ -90,13 +85,13 @@ def run(make: Callable[[braking.Case], Step], seeds: list[int]) -> dict[str, Any
     near = 0
     least = np.inf
     for seed in seeds:
-        case = shielding.drawn(seed)
+        case = hostile.draw_case(seed)
         robot = case.robot
         step = make(case)
-        wishes = shielding.hostile_wishes(case, seed)
+        wishes = hostile.wishes(case, seed)
         path = [robot.start_posture()]
         dq = np.zeros(robot.dof)
-        for _ in range(min(case.hostile, STEPS)):
+        for _ in range(min(case.steps, STEPS)):
             wish = next(wishes)
             dq = velocity_of(wish, path[-1], dq, case)
             began = time.perf_counter()
@@ -104,11 +99,11 @@ def run(make: Callable[[braking.Case], Step], seeds: list[int]) -> dict[str, Any
             times.append(time.perf_counter() - began)
             misses.append(np.linalg.norm(taken - np.clip(dq, -robot.dq_max, robot.dq_max)))
             path.append(path[-1] + case.dt * taken)
-        driven = braking.Drive(np.array(path), np.ones(len(path) - 1, bool), 0.0)
+        driven = np.array(path)
         kinds = (robot.q_lower, robot.q_upper, robot.dq_max, robot.ddq_max, robot.dddq_max)
-        for breach in breaches(driven.path, case.dt, *kinds):
+        for breach in breaches(driven, case.dt, *kinds):
             broken[breach.quantity] += 1
-        found = braking.judge_distances(case, Judge(robot, case.avoidance), driven)
+        found = Judge(robot, case.avoidance).verdict(driven, case.dt)
         near += found.broken > 0
         least = min(least, found.least)
     about = {"near": near, "least": 1e3 * least, "miss": np.mean(misses)}
@@ -121,9 +116,8 @@ def report() -> None:
     seed = 0
     while len(seeds) < RUNS:
         seed += 1
-        case = shielding.drawn(seed)
-        clear = Judge(case.robot, case.avoidance).distance(case.robot.start_posture(), 0.0)
-        if not case.moving and clear > braking.DISTANCE + 1e-3:
+        case = hostile.draw_case(seed)
+        if case and not case.moving and np.isfinite(case.robot.ddq_max).all():
             seeds.append(seed)
     filters = {"shield": shield, "clamp": clamp, "Ruckig, velocities": with_ruckig}
     columns = {

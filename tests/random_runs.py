@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import argparse
 import sys
-import time
 import warnings
 from collections import Counter
-from functools import cache
 from typing import Any
 
 import numpy as np
 
-from helpers_kinematics import example_urdf
 from iiwa_dnn import (
     Circle,
     Configuration,
@@ -43,17 +40,6 @@ REFERENCES = ("heart", "circle", "lissajous", "line", "waypoints")
 STEPS = 60
 
 
-@cache
-def robot_named(name: str) -> Robot:
-    if name == "panda":
-        fingers = ("panda_finger_joint1", "panda_finger_joint2")
-        urdf = example_urdf("panda_description/urdf/panda.urdf")
-        return load_robot(urdf, tip="panda_hand", locked=fingers)
-    if name == "xarm7":
-        return load_robot(example_urdf("xarm_description/urdf/xarm7.urdf"), tip="link_eef")
-    return load_robot(name)
-
-
 def reference_named(name: str, size: float, rng: np.random.Generator) -> Reference:
     """A path of about that size [m], run through in 0.5 to 10 s."""
     period = float(10 ** rng.uniform(-0.3, 1.0))
@@ -72,7 +58,7 @@ def reference_named(name: str, size: float, rng: np.random.Generator) -> Referen
 def options(number: int) -> dict[str, Any]:
     """All that run `number` is made of."""
     rng = np.random.default_rng([number, 11])
-    robot = robot_named(ROBOTS[number % 3])
+    robot = load_robot(ROBOTS[number % 3])
     lower, upper = np.maximum(robot.q_lower, -3.0), np.minimum(robot.q_upper, 3.0)
     if rng.random() < 0.3:
         robot = robot.with_limits(velocity=float(10 ** rng.uniform(-2, 0)) * robot.dq_max)
@@ -153,40 +139,32 @@ def faults(number: int) -> tuple[Record, list[str]]:
     return record, found
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=1000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first run")
-    asked = parser.parse_args()
-    counts: Counter[str] = Counter()
-    broken, worst, began = 0, 0.0, time.monotonic()
-    for number in range(asked.first, asked.first + asked.runs):
+def main(runs: int, first: int) -> int:
+    """Do the runs, and print those with a fault and what the others did."""
+    counts: Counter[str] = Counter(runs=runs)
+    worst = 0.0
+    for number in range(first, first + runs):
         try:
             record, found = faults(number)
         except Exception as error:  # a crash is what is looked for
-            print(f"run {number}: {type(error).__name__}: {error}")
-            broken += 1
-            continue
+            found = [f"{type(error).__name__}: {error}"]
+        else:
+            worst = max(worst, beyond(record, options(number)["robot"]))
+            counts["steps"] += record.steps
+            counts[record.settings["status"].partition(" at ")[0]] += 1
+            incidents = compute_metrics(record).get("incidents", {})
+            for name in ("clipped", "slow", "relax", "stop"):
+                counts[name] += incidents.get(f"{name}_steps", 0)
+        counts["broken"] += bool(found)
         if found:
             print(f"run {number}: {'; '.join(found)}")
-            broken += 1
-        worst = max(worst, beyond(record, options(number)["robot"]))
-        counts[record.settings["status"].partition(" at ")[0]] += 1
-        incidents = compute_metrics(record).get("incidents", {})
-        for name in ("clipped", "slow", "relax", "stop"):
-            steps = incidents.get(f"{name}_steps", 0)
-            counts[f"steps: {name}"] += steps
-            counts[f"runs with a step: {name}"] += steps > 0
-        counts["steps"] += record.steps
-        counts["steps unsolved"] += int((record.kkt_residual > record.settings["tol"]).sum()) * (
-            record.settings["mode"] == "converged"
-        )
-    for name, count in sorted(counts.items()):
-        print(f"{name}: {count:,}")
+    print(dict(counts))
     print(f"largest breach of a limit: {worst:.3g}")
-    print(f"{asked.runs} runs, {broken} broken, {time.monotonic() - began:.0f} s")
-    return int(broken > 0)
+    return int(counts["broken"] > 0)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--runs", type=int, default=1000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    sys.exit(main(**vars(parser.parse_args())))

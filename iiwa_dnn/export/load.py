@@ -178,5 +178,5 @@ def find_compiler(name: str | None = None) -> str:
     raise MissingDependencyError(problem, "on Debian and Ubuntu: apt-get install gcc")
 
 
-def _pointer(array: Vector) -> ctypes._Pointer[ctypes.c_double]:
-    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+def _pointer(array: Vector) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import qpsolvers
 
-import shielding
 from iiwa_dnn import (
     Configuration,
     InvalidInputError,
@@ -89,15 +88,6 @@ def test_a_clipped_command_is_the_nearest_one_by_another_solver(robot: Robot) ->
             compared += command.clipped
         q = q + DT * command.dq
     assert compared > 300
-
-
-@pytest.mark.parametrize("seed", [5, 8, 15, 36, 37])
-def test_hostile_wishes_break_no_limit(seed: int) -> None:
-    case = shielding.drawn(seed)
-    case = case._replace(hostile=min(case.hostile, 1500))
-    _, limits, distances, _ = shielding.judged(case, seed)
-    assert limits == []
-    assert distances == 0
 
 
 def test_a_wish_that_is_held_is_reached_and_not_passed() -> None:

@@ -1,0 +1,152 @@
+"""A judge of distances: coal's shapes and nearest points, Pinocchio's placements."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+import iiwa_dnn
+from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.robot.collision import coal_geometry, collision_model
+
+SLACK = 1e-6
+"""Distance that coal's own tolerance may cost [m]."""
+
+AHEAD = (16, 2000)
+"""Samples for which it is looked whether a distance has to be computed again."""
+
+
+class Verdict(NamedTuple):
+    """Least distance of a path from still obstacles [m], and samples that broke the promise."""
+
+    least: float
+    broken: int
+
+
+class Judge:
+    """Distances of a robot's links from obstacles and from each other."""
+
+    def __init__(self, robot: iiwa_dnn.Robot, avoidance: iiwa_dnn.CollisionAvoidance) -> None:
+        """Build the scene."""
+        self._robot = robot
+        self._obstacles = avoidance.obstacles
+        self._promised = avoidance.distance
+        model = collision_model(robot)
+        self._geometry = geometry = coal_geometry(
+            robot, model, model.pairs(robot) if avoidance.self_collision else ()
+        )
+        self._reach = reach_of(robot, geometry)
+        self._first = geometry.ngeoms
+        self._rest = []
+        for number, obstacle in enumerate(self._obstacles):
+            shape, place = _coal(obstacle)
+            self._rest.append(place)
+            geometry.addGeometryObject(pin.GeometryObject(str(number), 0, place, shape))
+            for k in range(self._first):
+                if geometry.geometryObjects[k].parentJoint:
+                    geometry.addCollisionPair(pin.CollisionPair(self._first + number, k))
+        self._data = robot.model.createData()
+        self._found = pin.GeometryData(geometry)
+
+    def distance(self, q: Vector, t: float) -> float:
+        """Return the least distance [m] at joint positions q (n,) [rad] and a time [s]."""
+        for number, (obstacle, place) in enumerate(zip(self._obstacles, self._rest, strict=True)):
+            if obstacle.moves:
+                moved = pin.SE3(place.rotation, place.translation + obstacle.shift(t))
+                self._geometry.geometryObjects[self._first + number].placement = moved
+        scene = self._geometry, self._found
+        nearest = pin.computeDistances(self._robot.model, self._data, *scene, q)
+        return float(self._found.distanceResults[nearest].min_distance)
+
+    def verdict(self, path: Matrix, dt: float, ok: Any = ()) -> Verdict:
+        """Judge a path (k + 1, n) [rad], at its samples, dt [s] apart, and half-way between.
+
+        Between two distances that are computed, others are left out where none of the arm's points
+        has gone so far, nor an obstacle, that the distance can be below the promised one. Below it,
+        a moving obstacle has broken no promise if the step said so (`ok`, (k,)) and the arm itself
+        did not come nearer.
+        """
+        moving = any(obstacle.moves for obstacle in self._obstacles)
+        fastest = max((obstacle.speed for obstacle in self._obstacles), default=0.0)
+        doubled = np.empty((2 * len(path) - 1, path.shape[1]))
+        doubled[::2] = path
+        doubled[1::2] = 0.5 * (path[1:] + path[:-1])
+        clock = 0.5 * dt * np.arange(len(doubled))
+        allowed = self._promised - SLACK
+        least = np.inf
+        broken = 0
+        i = 0
+        while i < len(doubled):
+            distance = self.distance(doubled[i], clock[i])
+            least = distance if not moving and distance < least else least
+            if distance < allowed:
+                excused = moving and i > 0 and not ok[(i - 1) // 2]
+                if excused:
+                    excused = distance >= self.distance(doubled[i - 1], clock[i]) - SLACK
+                broken += not excused
+            for count in AHEAD:
+                ahead = slice(i + 1, i + 1 + count)
+                gone = np.abs(doubled[ahead] - doubled[i]) @ self._reach
+                gone += fastest * (clock[ahead] - clock[i])
+                near = np.flatnonzero(gone > max(distance - allowed, 0.0))
+                if near.size:
+                    break
+            i += 1 + (int(near[0]) if near.size else len(gone))
+        return Verdict(least, broken)
+
+
+def reach_of(robot: iiwa_dnn.Robot, geometry: pin.GeometryModel) -> Vector:
+    """Bound the distance of a robot's points from the axes of the joints that move them, (n,)."""
+    reach = np.zeros(robot.model.njoints)
+    for body in geometry.geometryObjects:
+        joint = body.parentJoint
+        body.geometry.computeLocalAABB()
+        far = float(np.linalg.norm(body.placement.translation)) + body.geometry.aabb_radius
+        while joint:
+            reach[joint] = max(reach[joint], far)
+            far += float(np.linalg.norm(robot.model.jointPlacements[joint].translation))
+            joint = robot.model.parents[joint]
+    return reach[1:]
+
+
+def swinging(kind: type[Any], rate: float = 1.0, until: float = np.inf) -> type[Any]:
+    """Return a shape that swings at a rate [1/s] up to a time [s], no faster than its velocity."""
+
+    def shift(obstacle: Any, t: float) -> Vector:
+        shifted: Vector = np.sin(rate * min(t, until)) / rate * np.array(obstacle.velocity)
+        return shifted
+
+    return type(kind.__name__, (kind,), {"shift": shift})
+
+
+def obstacles_for(moving: bool) -> list[Any]:
+    """Return one obstacle of each kind, around an arm of 0.9 m at the origin."""
+    path = {"velocity": (0.0, 0.1, 0.0)} if moving else {}
+    turn = pin.exp3(np.array([0.4, -0.3, 0.5])).tolist()
+    return [
+        swinging(iiwa_dnn.Sphere)([0.45, 0.35, 0.5], 0.1, **path),
+        swinging(iiwa_dnn.Capsule)([-0.5, 0.2, 0.2], [-0.4, 0.4, 0.9], 0.05, **path),
+        iiwa_dnn.Box([0.5, -0.45, 0.3], [0.1, 0.1, 0.3]),
+        swinging(iiwa_dnn.Box)([-0.4, -0.5, 0.4], [0.1, 0.05, 0.15], turn, **path),
+        iiwa_dnn.HalfSpace([0.0, 0.0, 1.0], -0.15),
+    ]
+
+
+def _coal(obstacle: Any) -> tuple[coal.CollisionGeometry, pin.SE3]:
+    if isinstance(obstacle, iiwa_dnn.Sphere):
+        return coal.Sphere(obstacle.radius), pin.SE3(np.eye(3), np.array(obstacle.center))
+    if isinstance(obstacle, iiwa_dnn.Capsule):
+        a = np.array(obstacle.a)
+        b = np.array(obstacle.b)
+        turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), b - a).matrix()
+        length = float(np.linalg.norm(b - a))
+        return coal.Capsule(obstacle.radius, length), pin.SE3(turn, 0.5 * (a + b))
+    if isinstance(obstacle, iiwa_dnn.Box):
+        turn = np.eye(3) if obstacle.rotation is None else np.array(obstacle.rotation)
+        size = 2.0 * np.array(obstacle.half_extents)
+        return coal.Box(*size), pin.SE3(turn, np.array(obstacle.center))
+    normal = np.array(obstacle.normal)
+    return coal.Halfspace(normal, obstacle.offset), pin.SE3.Identity()
