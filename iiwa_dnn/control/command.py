@@ -141,14 +141,6 @@ class RowLayout:
         """Return the targets of a row, (k, 18)."""
         return row[self.columns["targets"]].reshape(-1, TARGET_SIZE)
 
-    def fill(self, row: Vector, solution: Solution) -> None:
-        """Write the answer to the program of a row (width,) into it, without an action."""
-        figures = (solution.iterations, solution.network_time, *solution.residuals)
-        self.view(row, "point")[:] = solution.point
-        self.view(row, "figures")[:] = figures
-        status = STATUSES.index(solution.status)
-        self.view(row, "decision")[:] = (Action.NONE, 1.0, status, ProgramKind.OWN)
-
     def bound_multipliers(self, rows: Matrix, tol: float) -> Matrix:
         """Return the multipliers of the joints' active bounds, (..., dof), as `Solution.z_box`.
 

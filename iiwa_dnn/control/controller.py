@@ -28,17 +28,15 @@ from iiwa_dnn.control.state import (
     HALTED,
     LAST,
     REST,
-    YIELDS,
     ControllerState,
     KeptStates,
     Q,
 )
-from iiwa_dnn.control.step import INVALID, ControlStep, begin_step, finish_step, take_step
+from iiwa_dnn.control.step import INVALID, ControlStep, take_step
 from iiwa_dnn.control.yielding import BRAKE, TOWARDS, guard_step
 from iiwa_dnn.errors import InvalidInputError
-from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import QP, Matrix, Status, Vector
+from iiwa_dnn.qp import QP, Matrix, Vector
 from iiwa_dnn.references import Reference, Target
 from iiwa_dnn.robot import Configuration, Robot
 from iiwa_dnn.schemes import Scheme
@@ -240,71 +238,20 @@ class Controller:
             program.refresh(joints, state.past[LAST], layout.targets(row), t, dt)
         past = state.past
         past[Q] = joints
-        following = past.copy()
+        following = np.empty_like(past)
         relaxed = state.relaxed
         if relaxed.size != step.relaxed_size:
             relaxed = np.zeros(step.relaxed_size)
-        action = self._take(step, row, following, relaxed, t, samples)
+        network = self.solver.state_for(layout.sizes) if step.has_network else _NOTHING
+        action = take_step(row, step.plan, past, following, network, relaxed, t, samples)
         if action == INVALID:
             checks.finite_array("q", past[Q], (layout.dof,))
             checks.finite_array("target", layout.targets(row), (-1, TARGET_SIZE))
-        return self._command(Command(row, layout, _ACTIONS[action]), following, relaxed)
-
-    def _command(self, command: Command, following: Matrix, relaxed: Vector) -> Command:
-        """Note the state after a command that is handed out."""
-        blocking = self._kept.now.blocking
-        if command.action and blocking is not None:
-            command.sides[:] = blocking[: command.sides.size]
-            command.rows[:] = blocking[command.sides.size :]
-        self._kept.next = ControllerState(following, True, blocking, relaxed)
+        command = Command(row, layout, _ACTIONS[action])
+        if action and state.blocking is not None:
+            layout.view(row, "blocking")[:] = state.blocking
+        self._kept.next = ControllerState(following, True, state.blocking, relaxed)
         return command
-
-    def _take(
-        self,
-        step: ControlStep,
-        row: Vector,
-        following: Matrix,
-        relaxed: Vector,
-        t: float,
-        samples: bool,
-    ) -> int:
-        """Take a step (`take_step`); a network that is not compiled is asked between its halves."""
-        plan = step.plan
-        past = self._kept.now.past
-        network = self._warm_state(step)
-        if network is not None:
-            return take_step(row, plan, past, following, network, relaxed, t, samples)
-        solved = begin_step(row, plan, past, following, _NOTHING, t, samples, False)
-        if past[YIELDS, 0] == past[HALTED, 0] == 0.0:
-            solved = self._ask(step, row, following)
-        return finish_step(row, plan, past, following, _NOTHING, relaxed, solved)
-
-    def _ask(self, step: ControlStep, row: Vector, following: Matrix) -> bool:
-        """Ask a network that is not compiled, or has no state yet, for the answer to a program."""
-        layout = step.layout
-        qp = QP.from_data(layout.view(row, "program"), layout.sizes)
-        if self.mode == "converged":
-            solution = self.solver.solve(qp)
-        else:
-            solution = self.solver.advance(qp, step.dt)
-        layout.fill(row, solution)
-        dq = layout.view(row, "dq")
-        dq[:] = layout.view(row, "point")[: layout.dof]
-        following[BEFORE] = following[LAST]
-        following[LAST] = dq
-        following[REST] = 0.0
-        return solution.status in (Status.SOLVED, Status.ADVANCED)
-
-    def _warm_state(self, step: ControlStep) -> Vector | None:
-        """Return the state from which a compiled network starts, (size,); None if it has none."""
-        if not step.has_network:
-            return None
-        solver = self.solver
-        sizes = step.layout.sizes
-        warm = solver.warm_state(sizes)
-        if warm is None and is_projection(solver.network):
-            warm = solver.cold_state(sizes)
-        return warm
 
     def clear_share(self, q: Vector, dq: Vector) -> float:
         """Return the share of a velocity that brings no pair nearer than promised, or too near.

@@ -29,10 +29,12 @@ from iiwa_dnn import checks
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.control.command import Command
 from iiwa_dnn.control.controller import Controller
-from iiwa_dnn.control.state import BEFORE, LAST, REST, YIELDS, ControllerState, KeptStates
+from iiwa_dnn.control.relaxed import copied
+from iiwa_dnn.control.state import BEFORE, LAST, YIELDS, ControllerState, KeptStates
 from iiwa_dnn.control.stopping import least_periods
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp import Matrix, Vector
+from iiwa_dnn.qp.dense import all_finite
 from iiwa_dnn.references import Target
 from iiwa_dnn.robot import Robot
 from iiwa_dnn.schemes import (
@@ -48,7 +50,7 @@ from iiwa_dnn.schemes import (
     Task,
 )
 from iiwa_dnn.schemes.collisions import avoidance_of
-from iiwa_dnn.schemes.limits import MotionLimits, braking, joint_bounds
+from iiwa_dnn.schemes.limits import MotionLimits, braking, joint_bounds, positive_rates
 from iiwa_dnn.schemes.step import TARGET_SIZE, StepViews
 
 DAMPING = 0.02
@@ -57,12 +59,17 @@ DAMPING = 0.02
 FASTEST = 1e3
 """Velocity [rad/s, m/s] to which a larger wish is cut before it is answered: no arm is so quick."""
 
+TWIST = 6
+"""Numbers of a twist."""
+
 JOINTS = ""
 """Frame of wishes for all joints."""
 
 REASONS = ("", "no wish", "wish too old", "wish not finite", "halted")
-"""Reasons why a wish to rest counts."""
+"""Reasons why a wish to rest counts; the first is none."""
 NO_WISH, TOO_OLD, NOT_FINITE, HALTED = range(1, 5)
+
+TAKEN_OVER = "measured positions taken over"
 
 AGE, REASON, BEGUN, TAKEN = range(4)
 """Numbers of `ShieldState.flags`."""
@@ -90,65 +97,6 @@ class JointVelocityTask(Task):
         if robot.dof > TARGET_SIZE:
             raise InvalidInputError("robot", f"has more than {TARGET_SIZE} joints", robot.dof)
         return robot.dof
-
-
-@compiled
-def approach_positions(
-    q: Vector, past: Matrix, goal: Vector, limits: Vector, dt: float, dq: Vector
-) -> None:
-    """Write the quickest velocities dq (n,) from which all joints can still rest at a goal (n,).
-
-    Args:
-        q: Joint positions [rad], (n,).
-        past: `ControllerState.past`, (8, n).
-        goal: Joint positions to reach [rad], (n,).
-        limits: `MotionLimits.constants`, (6 n,).
-        dt: Control period [s].
-        dq: The velocities [rad/s], (n,), overwritten.
-    """
-    for i in range(q.size):
-        left = goal[i] - q[i]
-        above = left if left >= 0.0 else np.inf
-        below = -left if left < 0.0 else np.inf
-        lower, upper = bounds_of(i, past, above, below, limits, dt)
-        dq[i] = upper if left >= 0.0 else lower
-        if not abs(dq[i]) < np.inf:
-            dq[i] = min(max(left / dt, -FASTEST), FASTEST)
-
-
-@compiled
-def approach_velocities(
-    q: Vector, past: Matrix, held: bool, limits: Vector, dt: float, dq: Vector
-) -> None:
-    """Replace wished velocities dq (n,) [rad/s] by the next ones on the quickest way to them.
-
-    A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
-    as in the last step (`held`), does not pass it on that way. The other arguments are those of
-    `approach_positions`.
-    """
-    n = q.size
-    for i in range(n):
-        dq[i] = min(max(dq[i], -FASTEST), FASTEST)
-        above = limits[n + i] - q[i]
-        below = q[i] - limits[i]
-        lower, upper = bounds_of(i, past, above, below, limits, dt)
-        if held or dq[i] < lower or dq[i] > upper:
-            behind = past[LAST, i] - dq[i]
-            dq[i] += braking(behind, -np.inf, np.inf, limits[4 * n + i], dt)
-
-
-@compiled
-def bounds_of(
-    i: int, past: Matrix, above: float, below: float, limits: Vector, dt: float
-) -> tuple[float, float]:
-    """Compute the bounds of joint i by `joint_bounds`, for its distances [rad] from two positions.
-
-    The other arguments are those of `approach_positions`.
-    """
-    n = past.shape[1]
-    rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
-    lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
-    return lower, upper
 
 
 class ShieldState(NamedTuple):
@@ -179,13 +127,14 @@ def take_positions(q: Vector, state: ShieldState, settings: Vector) -> None:
     if far > 0 or state.flags[BEGUN] == 0.0:
         state.flags[TAKEN] = state.flags[BEGUN]
         state.flags[BEGUN] = 1.0
-        for i in range(q.size):
-            state.positions[i] = q[i]
+        copied(state.positions, q)
 
 
 @compiled
 def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -> bool:
-    """Take a wish (k,) over if there is one, or one to rest; settings as `take_positions`.
+    """Take a wish (k,) over if one is given, else the last one, or one to rest for a reason.
+
+    The settings are those of `take_positions`.
 
     Returns:
         Whether the wish that counts is that of the last step.
@@ -194,20 +143,60 @@ def take_wish(wish: Vector, given: bool, state: ShieldState, settings: Vector) -
     flags[AGE] += settings[0]
     if given and flags[REASON] != HALTED:
         flags[AGE] = 0.0
-        flags[REASON] = 0.0
-        for i in range(wish.size):
-            if not abs(wish[i]) < np.inf:
-                flags[REASON] = NOT_FINITE
+        flags[REASON] = 0.0 if all_finite(wish, 0, wish.size) else NOT_FINITE
     if flags[REASON] == 0.0 and flags[AGE] > settings[1] + 0.5 * settings[0]:
         flags[REASON] = TOO_OLD
     other = 0
     for i in range(wish.size):
-        now = wish[i] if given else state.wish[i]
-        if flags[REASON] != 0.0:
-            now = 0.0
+        now = wish[i] if flags[REASON] == 0.0 else 0.0
         other += now != state.wish[i]
         state.wish[i] = now
     return other == 0
+
+
+@compiled
+def approach(
+    state: ShieldState,
+    past: Matrix,
+    limits: Vector,
+    dt: float,
+    reaches: bool,
+    held: bool,
+    dq: Vector,
+) -> None:
+    """Write the next velocities dq (n,) [rad/s] on the quickest way to the wish that counts.
+
+    Those on the way to positions are the quickest ones from which all joints can still rest there.
+    A joint that jerk limits keep from its velocity in this step, or that is asked for the same one
+    as in the last step, does not pass it.
+
+    Args:
+        state: The wish, and where the joints are.
+        past: `ControllerState.past`, (8, n).
+        limits: `MotionLimits.constants`, (6 n,).
+        dt: Control period [s].
+        reaches: Whether the wish is one for positions.
+        held: Whether it is that of the last step.
+        dq: The velocities, overwritten.
+    """
+    n = dq.size
+    for i in range(n):
+        wish = state.wish[i]
+        above = limits[n + i] - state.positions[i]
+        below = state.positions[i] - limits[i]
+        if reaches:
+            left = wish - state.positions[i]
+            above = left if left >= 0.0 else np.inf
+            below = -left if left < 0.0 else np.inf
+            wish = left / dt
+        wish = min(max(wish, -FASTEST), FASTEST)
+        rates = (limits[2 * n + i], limits[3 * n + i], limits[4 * n + i], limits[5 * n + i])
+        lower, upper = joint_bounds(past[LAST, i], past[BEFORE, i], above, below, rates, dt)
+        if reaches:
+            wish = min(max(wish, lower), upper)
+        elif held or wish < lower or wish > upper:
+            wish += braking(past[LAST, i] - wish, -np.inf, np.inf, limits[4 * n + i], dt)
+        dq[i] = wish
 
 
 class Margin(NamedTuple):
@@ -228,22 +217,29 @@ class ShieldCommand(NamedTuple):
 
     Attributes:
         dq: Joint velocity [rad/s], (n,), within the limits.
-        clipped: Whether it is another one than the given wish, or than the quickest approach to
-            positions that the joints' own limits allow.
-        reasons: Reasons for that beside the limits.
-        stopping_time: Time of the motion to rest from it [s].
+        wish: Joint velocity that was wished for [rad/s], (n,); None: positions, or a twist.
+        reasons: Reasons for another wish than the given one.
         command: The controller's command, with the program that was answered.
         shield: The shield.
         t: Time of the shield's clock [s].
     """
 
     dq: Vector
-    clipped: bool
+    wish: Vector | None
     reasons: tuple[str, ...]
-    stopping_time: float
     command: Command
     shield: Shield
     t: float
+
+    @property
+    def clipped(self) -> bool:
+        """Test whether it is another one than the given wish.
+
+        For positions, than the quickest approach to them that the joints' own limits allow.
+        """
+        if self.wish is None or self.reasons:
+            return bool(self.reasons or self.command.against)
+        return bool((self.dq != self.wish).any())
 
     @property
     def limits(self) -> tuple[str, ...]:
@@ -251,16 +247,23 @@ class ShieldCommand(NamedTuple):
         return (*self.reasons, *self.command.against) if self.clipped else ()
 
     @property
+    def stopping_time(self) -> float:
+        """Time of the motion to rest from the command [s]."""
+        shield = self.shield
+        cubic = bool(np.isfinite(shield.robot.dddq_max).any())
+        periods = least_periods(self.dq, self.command.past[1], shield.motion, shield.dt, cubic)
+        return shield.dt * max(periods, float(self.dq.any()))
+
+    @property
     def margin(self) -> Margin:
-        """Distances at the joint positions that the command starts from, computed when asked."""
+        """Distances at the joint positions that the command starts from."""
         q = self.command.past[0]
-        robot = self.shield.robot
-        joint = float(np.minimum(q - robot.q_lower, robot.q_upper - q).min())
+        lower, upper = self.shield.robot.limits[:2]
         distance = math.inf
         if (avoidance := avoidance_of(self.shield)) is not None:
-            nearest, _ = avoidance.scene(robot).nearest(q[np.newaxis], np.array([self.t]))
-            distance = float(nearest[0]) - avoidance.distance
-        return Margin(joint, distance)
+            scene = avoidance.scene(self.shield.robot)
+            distance = scene.nearest(q[np.newaxis], np.array([self.t]))[0][0] - avoidance.distance
+        return Margin(np.minimum(q - lower, upper - q).min(), distance)
 
 
 class Shield:
@@ -303,19 +306,15 @@ class Shield:
         """
         self.robot = checks.instance("robot", robot, Robot)
         self.dt = checks.positive("dt", dt)
-        if timeout != math.inf:
-            checks.positive("timeout", timeout)
-        checks.not_negative("tracking_error", tracking_error)
-        self.settings = np.array([self.dt, timeout, tracking_error])
-        rates: list[AccelerationLimits | JerkLimits] = []
-        if np.isfinite(robot.ddq_max).any():
-            rates.append(AccelerationLimits())
-        if np.isfinite(robot.dddq_max).any():
-            rates.append(JerkLimits())
+        longest = positive_rates("timeout", timeout)
+        error = checks.not_negative("tracking_error", tracking_error)
+        self.settings = np.array([self.dt, longest, error])
+        given = ((AccelerationLimits(), robot.ddq_max), (JerkLimits(), robot.dddq_max))
+        rates = tuple(limit for limit, most in given if np.isfinite(most).any())
+        self.motion = MotionLimits(rates).constants(robot)
         self.limits: list[Limit] = [JointLimits(), *rates]
         if obstacles is not None:
             self.limits.append(CollisionAvoidance(obstacles, distance=distance))
-        self.motion = MotionLimits(tuple(rates)).constants(robot)
         self._controllers: dict[str, Controller] = {}
         self._kept = KeptStates(ControllerState.at_rest(robot.dof))
         self.reset()
@@ -324,10 +323,9 @@ class Shield:
         """Forget wishes, a halt and the last commands: the arm stands where it is measured next."""
         n = self.robot.dof
         self._kept.now = ControllerState.at_rest(n, self._kept.now.begun)
-        self._state = ShieldState(np.zeros(n), np.zeros(n), np.zeros(4))
+        self._state = ShieldState(np.zeros(n), np.zeros(max(n, TWIST)), np.zeros(4))
         self._state.flags[REASON] = NO_WISH
-        self._kind = "dq"
-        self._frame = JOINTS
+        self._asked = ("dq", JOINTS)
         self._t = 0.0
 
     def halt(self) -> None:
@@ -360,88 +358,59 @@ class Shield:
                 several wishes.
             NotFoundError: The robot has no frame of that name.
         """
-        measured = checks.finite_array("q", q, (self.robot.dof,))
+        measured = checks.finite_array("q", q, (self.robot.dof,)).copy()
         given = {"dq": dq, "twist": twist, "position": position}
         held = self._take(measured, {k: x for k, x in given.items() if x is not None}, frame)
         positions, wish, flags = self._state
-        controller = self.controller(self._frame)
-        command = controller.step(positions, self._t, self._target(controller, held))
+        said = (REASONS[int(flags[REASON])], TAKEN_OVER if flags[TAKEN] else "")
+        kind, seen = ("dq", JOINTS) if said[0] else self._asked
+        controller = self.controller(seen)
+        target = {seen or self.robot.tip: self._target(controller, kind, held)}
+        command = controller.step(positions, self._t, target)
         # A wish that can be had again is had at once.
         self._kept.now.past[YIELDS] = 0.0
-        other = (command.dq != wish).any() if self._kind == "dq" else command.against
-        reasons = [REASONS[int(flags[REASON])]] if flags[REASON] else []
-        if flags[TAKEN]:
-            reasons.append("measured positions taken over")
-        clipped = bool(reasons or other)
-        rest = self._stopping_time(command)
-        decision = ShieldCommand(command.dq, clipped, tuple(reasons), rest, command, self, self._t)
+        velocity = wish[: positions.size].copy() if kind == "dq" else None
+        reasons = tuple(filter(None, said))
+        decision = ShieldCommand(command.dq, velocity, reasons, command, self, self._t)
         positions += self.dt * command.dq
         self._t += self.dt
         return decision
 
     def _take(self, q: Vector, given: dict[str, ArrayLike], frame: str | None) -> bool:
-        """Take a wish over; return whether it is that of the last step."""
+        """Take positions and a wish over; return whether it is that of the last step."""
         if len(given) > 1:
             raise InvalidInputError(" and ".join(given), "are several wishes")
-        wish = self._state.wish
-        for name, value in given.items():
-            wish = checks.array(name, value, (6 if name == "twist" else q.size,)).copy()
-            seen = JOINTS if name != "twist" else frame or self.robot.tip
-            if (name, seen) != (self._kind, self._frame):
-                self._state = self._state._replace(wish=np.full(wish.size, np.nan))
-            self._kind = name
-            self._frame = seen
-        take_positions(q.copy(), self._state, self.settings)
+        wish = self._state.wish.copy()
+        for kind, value in given.items():
+            size = TWIST if kind == "twist" else q.size
+            wish[:size] = checks.array(kind, value, (size,))
+            self._asked = (kind, frame or self.robot.tip if kind == "twist" else JOINTS)
+        take_positions(q, self._state, self.settings)
         held: bool = take_wish(wish, bool(given), self._state, self.settings)
-        if self._state.flags[REASON] and self._kind != "dq":
-            self._kind = "dq"
-            self._frame = JOINTS
-            self._state = self._state._replace(wish=np.zeros(q.size))
         return held
 
     def controller(self, frame: str = JOINTS) -> Controller:
         """Return the controller for wishes of a frame, or of all joints; they share one state."""
-        found = self._controllers.get(frame)
-        if found is None:
+        if frame not in self._controllers:
             scheme = Scheme([], [JointVelocityTask()], self.limits)
             if frame != JOINTS:
                 task = PoseTask(frame=frame, gain=0.0, weight=1.0)
                 scheme = Scheme([KineticEnergy(weight=DAMPING * DAMPING)], [task], self.limits)
-            found = Controller(self.robot, scheme, dt=self.dt, policy="relax")
-            found._kept = self._kept
-            self._controllers[frame] = found
-        return found
+            self._controllers[frame] = Controller(self.robot, scheme, dt=self.dt, policy="relax")
+            self._controllers[frame]._kept = self._kept
+        return self._controllers[frame]
 
-    def _target(self, controller: Controller, held: bool) -> dict[str, Target]:
+    def _target(self, controller: Controller, kind: str, held: bool) -> Target:
         """Return what a step is to answer, in the form of its target."""
-        positions, wish, _ = self._state
-        target = np.zeros(TARGET_SIZE)
-        if self._kind == "twist":
-            target[3:12:4] = 1.0
-            target[12:] = np.clip(wish, -FASTEST, FASTEST)
-            return {self._frame: Target.from_data(target)}
-        aim = target[: wish.size]
-        aim[:] = wish
-        past = self._kept.now.past
-        if self._kind == "position":
-            approach_positions(positions, past, wish, self.motion, self.dt, aim)
-        else:
-            approach_velocities(positions, past, held, self.motion, self.dt, aim)
+        if kind == "twist":
+            v = np.clip(self._state.wish[:TWIST], -FASTEST, FASTEST)
+            return Target(np.zeros(3), linear_velocity=v[:3], angular_velocity=v[3:])
         # From here a network that has nothing to do hands the aim out as it is.
-        sizes = controller.layout.sizes
-        state = controller.solver.warm_state(sizes)
-        if state is None:
-            state = controller.solver.cold_state(sizes)
+        state = controller.solver.state_for(controller.layout.sizes)
         state[:] = 0.0
-        state[: wish.size] = aim
-        return {self.robot.tip: Target.from_data(target)}
-
-    def _stopping_time(self, command: Command) -> float:
-        """Compute the time of the motion to rest from a command [s]."""
-        rest = self._kept.now.past[REST, 0]
-        if rest == 0.0:
-            moves = float(command.dq.any())
-            cubic = bool(np.isfinite(self.robot.dddq_max).any())
-            last = command.past[1]
-            rest = max(moves, least_periods(command.dq, last, self.motion, self.dt, cubic))
-        return float(self.dt * rest)
+        past = self._kept.now.past
+        aim = state[: self.robot.dof]
+        approach(self._state, past, self.motion, self.dt, kind == "position", held, aim)
+        target = np.zeros(TARGET_SIZE)
+        target[: aim.size] = aim
+        return Target.from_data(target)

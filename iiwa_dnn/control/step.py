@@ -4,8 +4,8 @@ For seven joints the way into compiled code is a large part of the cost of a cal
 enters it once a step.
 """
 
-import math
 from collections.abc import Mapping
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -16,37 +16,41 @@ from iiwa_dnn.control.command import (
     NOT_FINITE,
     NOT_SETTLED,
     PAST,
-    PLACEMENT,
     SOLVED,
     RowLayout,
     RowViews,
     row_views,
 )
-from iiwa_dnn.control.relaxed import Yielding, relaxed_size
+from iiwa_dnn.control.relaxed import Yielding, copied, relaxed_size
 from iiwa_dnn.control.state import (
     BEFORE,
     DELAY,
     HALTED,
     LAST,
     REST,
-    WANTED,
     YIELDS,
     Q,
 )
 from iiwa_dnn.control.yielding import (
     BRAKE,
     NONE,
-    OWN,
-    STOPPED,
     guard_step,
     make_yielding,
     yield_step,
 )
-from iiwa_dnn.networks.integrators.base import BUDGET, DURATION, TOLERANCE, enter_answer
+from iiwa_dnn.networks.integrators.base import (
+    BUDGET,
+    DURATION,
+    TOLERANCE,
+    CompiledAnswer,
+    Settled,
+    enter_answer,
+)
 from iiwa_dnn.networks.projection import is_projection
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp import Matrix, Vector
-from iiwa_dnn.qp.layout import qp_views
+from iiwa_dnn.qp import QP, Matrix, Status, Vector
+from iiwa_dnn.qp.dense import all_finite
+from iiwa_dnn.qp.layout import QPViews, Sizes, qp_views
 from iiwa_dnn.qp.residuals import within
 from iiwa_dnn.references import Reference
 from iiwa_dnn.references.base import Ahead, enter_path
@@ -110,18 +114,17 @@ class ControlStep:
             policy: Action of a step without a solution; `BRAKE`: in continuous mode.
         """
         self.program = program
-        self.dt = dt
-        frames = program.target_frames
         self.names = LimitNames(program, dt)
-        self.layout = RowLayout(program.sizes, program.robot.dof, len(frames), self.names)
-        self.has_network = self._add_network(solver, dt if policy == BRAKE else 0.0)
-        self.samples = self._add_paths(references) and not program.reads_targets
-        arrays = program.arrays(dt)
-        if program.rate_limits is not None:
-            check_ranges(program.rate_limits.constants(program.robot), arrays.rate)
-        yielding = make_yielding(program, solver.tol, dt)
-        self.plan = StepPlan(arrays, yielding, policy, is_projection(solver.network))
+        frames = len(program.target_frames)
+        self.layout = RowLayout(program.sizes, program.robot.dof, frames, self.names)
         self.relaxed_size = relaxed_size(program.sizes)
+        self.has_network = self._add_network(solver, dt, policy == BRAKE)
+        self.samples = self._add_paths(references, dt) and not program.reads_targets
+        arrays = program.arrays(dt)
+        shares_state = self.has_network and is_projection(solver.network)
+        yielding = make_yielding(program, solver.tol, dt)
+        self.plan = StepPlan(arrays, yielding, policy, shares_state)
+        self.set_period(dt)
 
     def set_period(self, dt: float) -> None:
         """Take another control period [s], without laying anything out anew.
@@ -137,40 +140,40 @@ class ControlStep:
         arrays = self.plan.arrays._replace(rate=1.0 / dt)
         yielding = self.plan.yielding._replace(dt=dt)
         self.plan = self.plan._replace(arrays=arrays, yielding=yielding)
-        if self.has_network:  # 0 where the network settles
-            program.constants[self._duration_at] = dt * self._duration_rate
+        program.constants[self._duration_at] = dt * self._duration_rate
 
     @property
     def yields(self) -> bool:
         """Test whether the task yields to acceleration or jerk limits."""
         return self.plan.yielding.limits.size > 0
 
-    def _add_network(self, solver: DNNSolver, duration: float) -> bool:
+    def _add_network(self, solver: DNNSolver, dt: float, lags: bool) -> bool:
         """Add the network's entry to the table; return whether the network is compiled."""
         program = self.program
         answer = None
         # A subclass that solves in a way of its own is asked, not bypassed.
         if type(solver) is DNNSolver:
-            answer = solver.compiled_answer(program.sizes, duration)
+            answer = solver.compiled_answer(program.sizes, lags * dt)
+        compiled = answer is not None
         if answer is None:
-            program.append(0, np.zeros(0))
-            return False
+            address = enter_answer.address(partial(ask, solver, program.sizes))
+            answer = CompiledAnswer(address, 0, np.array([solver.tol, np.inf, lags * dt]))
         if program.rate_limits is not None:
             # A program that a few systems do not solve most likely has no solution.
             answer.constants[BUDGET] = min(answer.constants[BUDGET], FEASIBLE_BUDGET)
         self._duration_at = program.constants.size + DURATION
-        self._duration_rate = answer.constants[DURATION] / self.dt
+        self._duration_rate = answer.constants[DURATION] / dt  # 0 where the network settles
         program.append(answer.address, answer.constants, answer.rates)
-        return True
+        return compiled
 
-    def _add_paths(self, references: Mapping[str, Reference]) -> bool:
+    def _add_paths(self, references: Mapping[str, Reference], dt: float) -> bool:
         """Add an entry for each reference; return whether all of them are compiled."""
         frames = self.program.target_frames
         seen = [references[name] for name in frames if name in references]
         paths = [path.along if isinstance(path, Ahead) else path for path in seen]
         if len(paths) < len(frames) or not all(path.compiled for path in paths):
             return False
-        if any(isinstance(path, Ahead) and path.dt != self.dt for path in seen):
+        if any(isinstance(path, Ahead) and path.dt != dt for path in seen):
             return False
         for path, other in zip(paths, seen, strict=True):
             constants = np.concatenate([path.base, path.constants])
@@ -178,6 +181,30 @@ class ControlStep:
                 enter_path.address(path.compiled), constants, int(path is not other)
             )
         return True
+
+
+def ask(
+    solver: DNNSolver,
+    sizes: Sizes,
+    qp: QPViews,
+    rates: int,
+    constants: Vector,
+    state: Vector,
+    point: Vector,
+) -> Settled:
+    """Answer a program of some sizes by a solver that is not compiled (`enter_answer`).
+
+    It keeps its state itself, and its duration is in seconds.
+    """
+    program = QP.from_data(np.concatenate([part.ravel() for part in qp]), sizes)
+    if constants[DURATION] > 0.0:
+        solution = solver.advance(program, float(constants[DURATION]))
+    else:
+        solution = solver.solve(program)
+    point[:] = solution.point
+    finite = solution.status is not Status.NOT_FINITE
+    residuals = solution.residuals if finite else (np.inf, np.inf, np.inf)
+    return solution.iterations, solution.network_time, *residuals
 
 
 @compiled
@@ -193,6 +220,8 @@ def take_step(
 ) -> int:
     """Take a control step: its own program, or what the policy asks for.
 
+    The network is not asked if the task yielded at the last step, or the arm brakes.
+
     Args:
         row: The row, (width,), with the targets unless they are sampled.
         plan: What the step is laid out with.
@@ -206,58 +235,62 @@ def take_step(
     Returns:
         The action that was taken, or `INVALID`.
     """
-    solved = begin_step(row, plan, past, following, state, t, samples, True)
-    return finish_step(row, plan, past, following, state, relaxed, solved)
-
-
-@compiled
-def begin_step(
-    row: Vector,
-    plan: StepPlan,
-    past: Matrix,
-    following: Matrix,
-    state: Vector,
-    t: float,
-    samples: bool,
-    asks: bool,
-) -> bool:
-    """Write targets, program and answer of one control step into a row.
-
-    Arguments are those of `take_step`; `asks` says that the network is asked, unless the task
-    yielded at the last step, or the arm brakes.
-
-    Returns:
-        False if the network was not asked, did not settle or diverged; `state` is then as it was.
-    """
     arrays = plan.arrays
     table = arrays.table
-    constants = arrays.constants
-    n = table[0, 0]
-    m = table[0, 1]
-    p = table[0, 2]
-    dof = table[0, 3]
-    network = 1 + table[0, 4]
-    views = row_views(row, n, m, p, dof)
-    qp = qp_views(views.program, n, m, p)
-    for i in range(dof):
-        for k in range(PAST):
-            views.past[k, i] = past[k, i]
+    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], table[0, 3])
+    copied(following.reshape(following.size), past.reshape(past.size))
+    copied(following[BEFORE], past[LAST])
+    following[REST, 0] = 0.0
+    following[YIELDS, 0] = 0.0
     if samples:
         sample_targets(arrays, t - past[DELAY, 0], views.targets)
     assemble(views.program, arrays, past, views.targets, t)
-    for i in range(dof):
-        views.bounds[0, i] = qp.lb[i]
-        views.bounds[1, i] = qp.ub[i]
-    for i in range(PLACEMENT):
-        views.placement[i] = arrays.placements[table[0, 5], i]
-    clear_answer(views)
-    if not asks or past[YIELDS, 0] != 0.0 or past[HALTED, 0] != 0.0:
-        return False
-    own = constants[table[network, 4] : table[network, 5]]
-    address = table[network, 1]
-    rates = table[network, 2]
+    _note_instant(views, arrays, past)
+    halted = past[HALTED, 0] != 0.0
+    if past[YIELDS, 0] == 0.0 and not halted and _answer(views, arrays, state):
+        copied(following[LAST], views.dq)
+        if guard_step(arrays, past, following, plan.yielding):
+            return NONE
+    first = row.size - views.targets.size
+    if not all_finite(past[Q], 0, table[0, 3]) or not all_finite(row, first, row.size):
+        return INVALID
+    own = np.zeros(3 * table[0, 0] + table[0, 1] + table[0, 2])
+    if plan.shares_state:
+        own = state
+    policy = BRAKE if halted else plan.policy
+    return yield_step(views, arrays, past, following, own, plan.yielding, relaxed, policy)
+
+
+@compiled
+def _note_instant(views: RowViews, arrays: ProgramArrays, past: Matrix) -> None:
+    """Note what the program in a row was built at, and that it is not answered yet."""
+    table = arrays.table
+    dof = table[0, 3]
+    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
+    copied(views.past.reshape(PAST * dof), past[:PAST].reshape(PAST * dof))
+    copied(views.bounds[0], qp.lb[:dof])
+    copied(views.bounds[1], qp.ub[:dof])
+    copied(views.placement, arrays.placements[table[0, 5]])
+    views.figures[:] = 0.0
+    views.decision[:] = 0.0
+    views.blocking[:] = 0.0
+
+
+@compiled
+def _answer(views: RowViews, arrays: ProgramArrays, state: Vector) -> bool:
+    """Ask the network for the answer to the program in a row, and note it.
+
+    Returns:
+        False if it did not settle or diverged; its state (size,) is then as it was.
+    """
+    table = arrays.table
+    entry = table[1 + table[0, 4]]
+    own = arrays.constants[entry[4] : entry[5]]
+    qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
     before = state.copy()
-    iterations, time, primal, dual, gap = enter_answer(address, qp, rates, own, state, views.point)
+    iterations, time, primal, dual, gap = enter_answer(
+        entry[1], qp, entry[2], own, state, views.point
+    )
     views.figures[0] = iterations
     views.figures[1] = time
     views.figures[2] = primal
@@ -266,71 +299,10 @@ def begin_step(
     views.decision[1] = 1.0
     views.decision[2] = status_of(primal, dual, gap, own, state)
     if views.decision[2] >= NOT_SETTLED:
-        for i in range(state.size):
-            state[i] = before[i]
+        copied(state, before)
         return False
-    for i in range(dof):
-        views.dq[i] = views.point[i]
-        following[BEFORE, i] = past[LAST, i]
-        following[LAST, i] = views.point[i]
-        following[WANTED, i] = past[WANTED, i]
-    following[REST, 0] = 0.0
+    copied(views.dq, views.point[: views.dq.size])
     return True
-
-
-@compiled
-def finish_step(
-    row: Vector,
-    plan: StepPlan,
-    past: Matrix,
-    following: Matrix,
-    state: Vector,
-    relaxed: Vector,
-    solved: bool,
-) -> int:
-    """Answer a step that is not solved, or whose command cannot be stopped; advance the clock.
-
-    Arguments and result are those of `take_step`; `solved` is the result of `begin_step`.
-    """
-    table = plan.arrays.table
-    yielding = plan.yielding
-    following[DELAY, 0] = past[DELAY, 0]
-    following[YIELDS, 0] = 0.0
-    following[HALTED, 0] = past[HALTED, 0]
-    if solved and guard_step(plan.arrays, past, following, yielding):
-        return NONE
-    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], table[0, 3])
-    if not _all_finite(past[Q]) or not _all_finite(row[row.size - views.targets.size :]):
-        return INVALID
-    policy = plan.policy if past[HALTED, 0] == 0.0 else BRAKE
-    cold = np.zeros(3 * table[0, 0] + table[0, 1] + table[0, 2])
-    if plan.shares_state and state.size == cold.size:
-        cold = state
-    action = yield_step(row, plan.arrays, past, following, cold, yielding, relaxed, policy)
-    kind = views.decision[3]
-    following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
-    following[YIELDS, 0] = 1.0 if OWN < kind < STOPPED else 0.0
-    return action
-
-
-@compiled
-def _all_finite(values: Vector) -> bool:
-    """Test whether all of some numbers (k,) are finite."""
-    others = 0
-    for i in range(values.size):
-        others += not math.isfinite(values[i])
-    return others == 0
-
-
-@compiled
-def clear_answer(views: RowViews) -> None:
-    """Note that no answer was asked for: no figures, no decision, and nothing in the way."""
-    for k in range(views.figures.size):
-        views.figures[k] = 0.0
-    for k in range(views.decision.size):
-        views.decision[k] = 0.0
-    for k in range(views.blocking.size):
-        views.blocking[k] = 0.0
 
 
 @compiled

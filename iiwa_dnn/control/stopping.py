@@ -317,7 +317,7 @@ def stopping_time(arrays: ProgramArrays, past: Matrix, yielding: Yielding, dq: V
 
     Args:
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (5, dof).
+        past: `ControllerState.past`, (8, dof).
         yielding: Limits and scenes.
         dq: The command [rad/s], (dof,).
 

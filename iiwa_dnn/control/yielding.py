@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from iiwa_dnn.compiling.library import compiled
-from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews, row_views
+from iiwa_dnn.control.command import NOT_SETTLED, SOLVED, RowViews
 from iiwa_dnn.control.policies import Action, ProgramKind
 from iiwa_dnn.control.relaxed import (
     BUDGET as MOST,
@@ -32,7 +32,7 @@ from iiwa_dnn.control.relaxed import (
     settled,
     soften_task,
 )
-from iiwa_dnn.control.state import BEFORE, LAST, REST, WANTED, Q
+from iiwa_dnn.control.state import BEFORE, DELAY, LAST, REST, WANTED, YIELDS, Q
 from iiwa_dnn.control.stopping import (
     enter_stopping_time,
     least_periods,
@@ -105,7 +105,7 @@ def make_yielding(program: StepProgram, tol: float, dt: float) -> Yielding:
 
 @compiled
 def yield_step(
-    row: Vector,
+    views: RowViews,
     arrays: ProgramArrays,
     past: Matrix,
     following: Matrix,
@@ -117,10 +117,10 @@ def yield_step(
     """Answer a step for which the network has no answer, or whose task yielded at the last step.
 
     Args:
-        row: The row, (width,), as `control_step` has left it.
+        views: The row, with the step's own program and what it was built at.
         arrays: Arrays of the loop; the kinematics are at the joint positions of `past`.
-        past: `ControllerState.past`, (5, dof).
-        following: `ControllerState.following`, (5, dof), overwritten.
+        past: `ControllerState.past`, (8, dof).
+        following: The same for the next step, with the last commands; the rest is overwritten.
         state: The network's state, (size,), advanced.
         yielding: Weights, limits and settings of the relaxed programs.
         relaxed: States of the networks of relaxed programs, (`relaxed_size`,), advanced.
@@ -132,11 +132,9 @@ def yield_step(
     """
     table = arrays.table
     dof = table[0, 3]
-    views = row_views(row, table[0, 0], table[0, 1], table[0, 2], dof)
     qp = qp_views(views.program, table[0, 0], table[0, 1], table[0, 2])
     data = views.program.copy()
     own = qp_views(data, table[0, 0], table[0, 1], table[0, 2])
-    copied(following[WANTED], past[WANTED])
     kind = STOPPED
     factor = 0.0
     rest = 0.0
@@ -164,8 +162,9 @@ def yield_step(
     _note_decision(views, own, yielding.weights, x, kind, factor, action)
     views.figures[2], views.figures[3], views.figures[4] = point_residuals(qp, views.point)
     following[REST, 0] = rest
+    following[DELAY, 0] += yielding.dt * (1.0 - views.decision[1])
+    following[YIELDS, 0] = OWN < kind < STOPPED
     copied(views.dq, x[:dof])
-    copied(following[BEFORE], past[LAST])
     copied(following[LAST], x[:dof])
     return int(views.decision[0])
 
@@ -310,8 +309,8 @@ def _step(
 
     Args:
         limits: The program that was answered, with the bounds of the step.
-        past: `ControllerState.past`, (5, dof).
-        following: `ControllerState.following`, (5, dof): the wanted velocity is noted.
+        past: `ControllerState.past`, (8, dof).
+        following: `ControllerState.following`, (8, dof): the wanted velocity is noted.
         yielding: Weights, limits and settings.
         figures: Figures of the answer, (5,), as of `settled`.
         x: The velocity, overwritten.
@@ -459,8 +458,8 @@ def guard_step(arrays: ProgramArrays, past: Matrix, following: Matrix, yielding:
 
     Args:
         arrays: Arrays of the loop.
-        past: `ControllerState.past`, (5, dof).
-        following: `ControllerState.following`, (5, dof).
+        past: `ControllerState.past`, (8, dof).
+        following: `ControllerState.following`, (8, dof).
         yielding: Limits and scenes.
     """
     rest = _periods_to_rest(arrays, past, yielding, following[LAST])

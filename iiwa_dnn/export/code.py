@@ -26,7 +26,7 @@ from iiwa_dnn.control.shield import (
     NO_WISH,
     REASON,
     Shield,
-    approach_velocities,
+    approach,
     take_positions,
     take_wish,
 )
@@ -127,7 +127,7 @@ def _shield_function(code: _Code, shield: Shield) -> str:
         "limits": code.value("motion", shield.motion),
         "take_positions": code.kernel(take_positions),
         "take_wish": code.kernel(take_wish),
-        "approach": code.kernel(approach_velocities),
+        "approach": code.kernel(approach),
         "rows": ROWS,
         "yields": YIELDS,
         "reason": REASON,

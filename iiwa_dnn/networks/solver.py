@@ -83,13 +83,12 @@ class DNNSolver:
         """Return the state itself, (size,), if the last program had these sizes; otherwise None."""
         return self._warm.get(sizes)
 
-    def cold_state(self, sizes: Sizes) -> Vector:
-        """Return a new state of the projection network, (size,), from which the next call starts.
-
-        The programs have sizes ``(n, m, p)``.
-        """
-        n, m, p = sizes
-        self._keep(sizes, np.zeros(3 * n + m + p))
+    def state_for(self, sizes: Sizes) -> Vector:
+        """Return the state itself, (size,), from which a program of sizes (n, m, p) starts."""
+        if sizes not in self._warm:
+            n, m, p = sizes
+            some = QP.from_data(np.zeros((n + m + p) * (n + 1) + 2 * n), sizes)
+            self._keep(sizes, np.array(self.network.initial_state(some)))
         return self._warm[sizes]
 
     def compiled_answer(self, sizes: Sizes, duration: float = 0.0) -> CompiledAnswer | None:

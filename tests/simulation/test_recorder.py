@@ -9,7 +9,7 @@ from helpers_kinematics import PAPER_Q0
 from helpers_simulation import heart, paper_robot, run
 from iiwa_dnn.control.command import RowLayout
 from iiwa_dnn.control.policies import Action
-from iiwa_dnn.qp import QP, Solution, Status
+from iiwa_dnn.qp import QP
 from iiwa_dnn.results.metrics import compute_metrics
 from iiwa_dnn.results.record import OPTIONAL
 from iiwa_dnn.schemes import DoubleIndicator
@@ -56,10 +56,9 @@ def test_an_active_limit_has_a_multiplier_and_no_slack() -> None:
         ([0.9, 1.5 - 1e-7], [0.2, 9.0, 0.0], [5.0, 5e-3], [0.0, 0.0, 0.0], [0.0, 5e-3]),
     ):
         point = np.concatenate([x, z, z_box])
-        answer = Solution(point, qp.sizes, Status.SOLVED, 0, 0.0, 0.0, 0.0, 0.0)
         row = np.zeros(layout.width)
         layout.view(row, "program")[:] = qp.data
-        layout.fill(row, answer)
+        layout.view(row, "point")[:] = point
         assert_array_equal(layout.row_multipliers(row, 1e-9), active_rows)
         assert_array_equal(layout.bound_multipliers(row[np.newaxis], 1e-9), [active_bounds])
 
