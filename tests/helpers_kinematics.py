@@ -33,16 +33,9 @@ PAPER_Q0 = (-2.357, -0.547, 0.023, 1.721, 0.005, -0.681, 0.0)
 
 
 def dh_pose(q: ArrayLike, alpha: tuple[int, ...] = IIWA7_ALPHA) -> tuple[Array, Array]:
-    """Flange pose of the iiwa 7 by the standard DH formula.
+    """Position [m] and rotation of the iiwa 7's flange at q (..., 7), by the standard DH formula.
 
     Each joint adds Rot_z(q) Trans_z(d) Rot_x(alpha).
-
-    Args:
-        q: Joint positions [rad], shape (..., 7).
-        alpha: Twists, in quarter turns.
-
-    Returns:
-        Position [m], shape (..., 3), and rotation, shape (..., 3, 3).
     """
     q = np.asarray(q, dtype=np.float64)
     position = np.zeros((*q.shape[:-1], 3))
@@ -60,10 +53,7 @@ def dh_pose(q: ArrayLike, alpha: tuple[int, ...] = IIWA7_ALPHA) -> tuple[Array, 
 
 
 def rotation_angle(a: ArrayLike, b: ArrayLike) -> Array:
-    """Angle between orientations [rad], shape (...), exact near zero where arccos is not.
-
-    ||A - B||_F = 2 sqrt(2) sin(angle / 2).
-    """
+    """Angle between orientations [rad]: ||A - B||_F = 2 sqrt(2) sin(angle / 2)."""
     distance = np.linalg.norm(np.subtract(a, b), axis=(-2, -1))
     return 2.0 * np.arcsin(np.minimum(distance / np.sqrt(8.0), 1.0))
 
@@ -71,16 +61,7 @@ def rotation_angle(a: ArrayLike, b: ArrayLike) -> Array:
 def finite_difference(
     function: Callable[[Array], ArrayLike], x: ArrayLike, step: float = 1e-6
 ) -> Array:
-    """Derivative of an array-valued function by central differences.
-
-    Args:
-        function: From an array of shape (n,) to one of shape (...).
-        x: Where, shape (n,).
-        step: Half the distance between the two evaluations.
-
-    Returns:
-        The derivative, shape (..., n).
-    """
+    """Derivative (..., n) of an array-valued function at x (n,) by central differences."""
     x = np.asarray(x, dtype=np.float64)
     columns = [
         (np.asarray(function(x + e)) - np.asarray(function(x - e))) / (2.0 * step)
@@ -92,16 +73,7 @@ def finite_difference(
 def pose_jacobian(
     pose: Callable[[Array], tuple[Array, Array]], q: ArrayLike, step: float = 1e-6
 ) -> Array:
-    """Jacobian of a pose by central differences: linear rows first, along the world's axes.
-
-    Args:
-        pose: From joint positions of shape (n,) to position (3,) and rotation (3, 3).
-        q: Joint positions [rad], shape (n,).
-        step: Half the distance between the two evaluations [rad].
-
-    Returns:
-        The Jacobian, shape (6, n).
-    """
+    """Jacobian (6, n) of position and rotation by central differences: linear rows first."""
     rotation = pose(np.asarray(q, dtype=np.float64))[1]
     linear = finite_difference(lambda x: pose(x)[0], q, step)
     # dR/dq_i R' is the cross-product matrix of the angular velocity that joint i gives.
@@ -113,11 +85,7 @@ def pose_jacobian(
 
 
 def example_urdf(name: str) -> Path:
-    """Path of a URDF out of the package example-robot-data; skips the test if it is not installed.
-
-    Args:
-        name: The file, from the data's robots folder on.
-    """
+    """Path of a URDF in the package example-robot-data; skips the test if it is not installed."""
     path = Path(pin.__file__).parents[4] / "share" / "example-robot-data" / "robots" / name
     if not path.is_file():
         pytest.skip(f"needs the package example-robot-data, which has no {name} here")

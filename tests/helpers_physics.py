@@ -11,39 +11,32 @@ import numpy as np
 import pytest
 
 import iiwa_dnn
-from iiwa_dnn import Configuration, CrossCheck, DoubleIndicator, Heart, Record, Robot, load_robot
-from iiwa_dnn.robot.arms import STARTS
+from helpers_kinematics import PAPER_Q0
+from helpers_simulation import paper_robot, run
+from iiwa_dnn import Record, Robot
 from iiwa_dnn.simulation import Disturbances
 from iiwa_dnn.simulation.plants.torque_control import TorqueGains
 
 ROOT = Path(__file__).parents[1]
-START = np.array(STARTS["iiwa7"])
-
-
-def papers_robot() -> Robot:
-    """The iiwa 7 with the limits of the paper's experiment."""
-    return load_robot("iiwa7").with_limits(lower=-2.5, upper=2.5)
+START = np.array(PAPER_Q0)
+papers_robot = paper_robot
 
 
 def heart_in_physics(
     robot: Robot,
-    check: tuple[str, ...] = (),
     timestep: float = 2.5e-4,
     disturbances: Disturbances | None = None,
     gains: TorqueGains | None = None,
     **options: object,
 ) -> Record:
-    """The paper's heart in physics."""
-    heart = Heart().anchored(Configuration(robot, START))
+    """The paper's heart in physics, by default without a cross-check."""
     plant = iiwa_dnn.MujocoPlant(disturbances, gains, timestep=timestep)
-    options = {"dt": 1e-3, "check": CrossCheck(check)} | options
-    return iiwa_dnn.simulate(robot, DoubleIndicator(), heart, START, plant=plant, **options)
+    return run(robot=robot, plant=plant, **{"duration": None} | options)
 
 
 def heart_without_physics(robot: Robot, steps: int = 500) -> Record:
     """The paper's heart, quickly: for tests of what is drawn."""
-    heart = Heart().anchored(Configuration(robot, START))
-    return iiwa_dnn.simulate(robot, DoubleIndicator(), heart, START, dt=10.0 / steps)
+    return run(robot=robot, dt=10.0 / steps, duration=10.0)
 
 
 def distance(record: Record) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from iiwa_dnn.references import Heart, Target
 from iiwa_dnn.results import plots
 from iiwa_dnn.results.record import Record
 
@@ -18,17 +19,18 @@ def draw_only(monkeypatch: pytest.MonkeyPatch, *names: str) -> None:
     monkeypatch.setattr(plots, "FIGURES", {name: plots.FIGURES[name] for name in names})
 
 
-def make_settings(
-    dof: int = DOF, solvers: tuple[str, ...] = ("proxqp",), **changes: Any
-) -> dict[str, Any]:
-    """Settings as simulate() writes them."""
+def make_record(
+    steps: int = 10, dof: int = DOF, solvers: tuple[str, ...] = ("proxqp",), **changes: Any
+) -> Record:
+    """A run at rest with no error at all; `changes` replaces fields, `settings` only its keys."""
+    references = len(solvers)
     settings: dict[str, Any] = {
         "robot": "iiwa7",
         "q_lower": [-2.5] * dof,
         "q_upper": [2.5] * dof,
         "dq_max": [1.5] * dof,
         "dt": 0.1,
-        "duration": 1.0,
+        "duration": max(steps, 1) * 0.1,
         "mode": "converged",
         "check": {
             "solvers": list(solvers),
@@ -46,15 +48,6 @@ def make_settings(
         "versions": {"iiwa_dnn": "0.1.0", "numpy": np.__version__},
         "status": "completed",
     }
-    return settings | changes
-
-
-def make_record(
-    steps: int = 10, dof: int = DOF, solvers: tuple[str, ...] = ("proxqp",), **changes: Any
-) -> Record:
-    """A run at rest with no error at all; `changes` replaces fields, `settings` only its keys."""
-    references = len(solvers)
-    settings = make_settings(dof, solvers) | {"duration": max(steps, 1) * 0.1}
     fields: dict[str, Any] = {
         "t": 0.1 * np.arange(steps + 1),
         "q": np.zeros((steps + 1, dof)),
@@ -88,30 +81,15 @@ def heart_record(
     rng = np.random.default_rng(seed)
     t = np.linspace(0.0, 10.0, steps + 1)
     phase = 2.0 * np.pi * t / 10.0
-    x, y = (
-        3.45e-3 * 16.0 * np.sin(phase) ** 3,
-        3.45e-3
-        * (
-            13.0 * np.cos(phase)
-            - 5.0 * np.cos(2 * phase)
-            - 2.0 * np.cos(3 * phase)
-            - np.cos(4 * phase)
-        ),
-    )
-    desired = np.column_stack([0.45 + y - y[0], x, np.full_like(t, 0.6)])
+    heart = Heart().anchored(Target([0.0, 0.45, 0.6], np.eye(3)))
+    desired = np.array([target.position[[1, 0, 2]] for target in heart.sample(t)])
     direction = np.column_stack([np.sin(phase), np.sin(2 * phase + 1.0), np.cos(3 * phase)])
-    wander = rng.normal(0.0, 0.02, (steps + 1, 3))
-    actual = desired + error * 0.7 * (direction + wander)
-    start = np.array([0.3, 0.8, -0.4, -1.4, 0.2, 0.9, 2.3])
+    actual = desired + error * 0.7 * (direction + rng.normal(0.0, 0.02, (steps + 1, 3)))
     swing = np.array([0.2, 0.14, 0.25, -0.3, 0.1, 0.22, 0.3])
-    q = start + swing * np.column_stack(
-        [np.sin(phase + joint) - np.sin(joint) for joint in range(DOF)]
-    )
-    dq = np.diff(q, axis=0) / np.diff(t)[:, None] + noise * rng.normal(size=(steps, DOF))
-    kkt = 10.0 ** rng.uniform(-13.0, -9.1, steps)
-    gap = 10.0 ** rng.uniform(-10.0, -8.0, (steps, len(solvers))) * (
-        1 + np.arange(len(solvers)) * 10
-    )
+    q = swing * (np.sin(phase[:, np.newaxis] + np.arange(DOF)) - np.sin(np.arange(DOF)))
+    q += [0.3, 0.8, -0.4, -1.4, 0.2, 0.9, 2.3]
+    dq = np.diff(q, axis=0) / np.diff(t)[:, np.newaxis] + noise * rng.normal(size=(steps, DOF))
+    gap = 10.0 ** rng.uniform(-10.0, -8.0, (steps, len(solvers)))
     return make_record(
         steps=steps,
         solvers=solvers,
@@ -122,7 +100,7 @@ def heart_record(
         position=actual,
         position_desired=desired,
         kinetic_index=np.sum(dq**2, axis=1),
-        kkt_residual=kkt,
-        solution_gap=gap,
+        kkt_residual=10.0 ** rng.uniform(-13.0, -9.1, steps),
+        solution_gap=gap * (1 + 10 * np.arange(len(solvers))),
         settings={"dt": 10.0 / steps, "duration": 10.0} | settings,
     )

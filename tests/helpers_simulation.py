@@ -76,17 +76,11 @@ def run(
 def solve_by(solver: str, qp: QP) -> NDArray[np.float64]:
     """The program's solution by an established solver, straight through qpsolvers."""
     problem = qp.to_qpsolvers()
+    options: dict[str, Any] = {"backend": "dense"}
     if solver == "osqp":
         problem.P, problem.A = spa.csc_matrix(problem.P), spa.csc_matrix(problem.A)
-        options: dict[str, Any] = {
-            "eps_abs": 1e-10,
-            "eps_rel": 0.0,
-            "polishing": True,
-            "raise_error": False,
-        }
-    else:
-        options = {"eps_abs": 1e-11, "eps_rel": 0.0, "backend": "dense"}
-    solution = qpsolvers.solve_problem(problem, solver=solver, **options)
+        options = {"polishing": True, "raise_error": False}
+    solution = qpsolvers.solve_problem(problem, solver, eps_abs=1e-11, eps_rel=0.0, **options)
     assert solution.is_optimal(1e-8)
     return solution.x
 

@@ -12,7 +12,7 @@ from iiwa_dnn.errors import FileError
 from iiwa_dnn.files import plain, prepare_folder, write_atomically, write_json
 
 
-@pytest.mark.parametrize("error", [ValueError("no"), KeyboardInterrupt(), OSError(28, "full")])
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), OSError(28, "full")])
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error):
     path = tmp_path / "file"
     path.write_bytes(b"old")
@@ -21,8 +21,7 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error):
         file.write(b"half of the ne")
         raise error
 
-    expected = FileError if isinstance(error, OSError) else type(error)
-    with pytest.raises(expected):
+    with pytest.raises(FileError if isinstance(error, OSError) else type(error)):
         write_atomically(path, write)
     assert path.read_bytes() == b"old"
     assert [found.name for found in tmp_path.iterdir()] == ["file"]
@@ -31,12 +30,10 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path, error):
 def test_the_new_name_appears_only_with_the_whole_content(tmp_path, monkeypatch):
     path = tmp_path / "file"
     synced = []
-    real = os.fsync
 
     def fsync(descriptor):
         synced.append(os.fstat(descriptor).st_size)
         assert not path.exists()
-        real(descriptor)
 
     monkeypatch.setattr(os, "fsync", fsync)
     write_atomically(path, lambda file: file.write(b"all of it"))
@@ -56,17 +53,14 @@ def test_an_unwritable_place_is_a_file_error_in_one_line(tmp_path):
     assert not list(tmp_path.parent.glob(".*.tmp"))
 
 
-def test_prepare_folder(tmp_path):
+def test_a_folder_is_made_and_found_unwritable_before_a_run(tmp_path, monkeypatch):
     folder = tmp_path / "a" / "b"
-    assert prepare_folder(folder) == folder
-    assert prepare_folder(folder) == folder
+    assert prepare_folder(folder) == prepare_folder(folder) == folder
     assert not list(folder.iterdir())
     (tmp_path / "file").touch()
     with pytest.raises(FileError, match="cannot be written to"):
         prepare_folder(tmp_path / "file" / "below")
 
-
-def test_prepare_folder_notices_a_read_only_one(tmp_path, monkeypatch):
     # By hand, since permissions do not bind every user that may run the tests.
     def refuse(self, **options):
         raise PermissionError(13, "Permission denied", str(self))
@@ -76,16 +70,13 @@ def test_prepare_folder_notices_a_read_only_one(tmp_path, monkeypatch):
         prepare_folder(tmp_path)
 
 
-def test_plain_types():
+def test_json_holds_plain_types_and_nothing_that_json_has_not(tmp_path):
     value = {"a": np.array([[1.0, np.inf]]), "b": (np.int64(3), np.float64(0.5), np.bool_(True))}
     assert plain(value) == {"a": [[1.0, None]], "b": [3, 0.5, True]}
     assert type(plain(np.float64(0.5))) is float
     assert plain({1: float("nan"), "x": None}) == {"1": None, "x": None}
     with pytest.raises(TypeError, match="set"):
         plain({"a": {1, 2}})
-
-
-def test_json_refuses_what_json_has_not(tmp_path):
     with pytest.raises(ValueError, match="JSON"):
         write_json(tmp_path / "x.json", float("nan"))
     assert not list(tmp_path.iterdir())
