@@ -20,10 +20,11 @@ from iiwa_dnn.schemes import (
     Cost,
     DoubleIndicator,
     JointLimits,
+    KineticEnergy,
     Limit,
     OrientationTask,
+    PositionTask,
     Scheme,
-    Step,
     Task,
 )
 from iiwa_dnn.simulation import simulate
@@ -92,36 +93,25 @@ def rows_of(part: Any, conf: Configuration, target: Target | None = None, **opti
     return Scheme(**{kind: [part]}).build_qp(conf, target, **options)
 
 
-class _Fixed:
-    """Rows of one program, whatever the instant is."""
-
-    def __init__(self, qp: QP, rows: int = 0) -> None:
-        self.qp = qp
-        self.rows = rows
+def own(kind: type[Any], rows: int = 0, **answers: Any) -> Any:
+    """A part of one's own, an `Own`, each of whose methods has one answer."""
+    methods = {name: lambda self, step, it=answer: it for name, answer in answers.items()}
+    return type("Own", (kind,), {"rows": rows, "tracks": False, **methods})()
 
 
-class FixedCost(_Fixed, Cost):
-    def quadratic(self, step: Step) -> Any:
-        return self.qp.P, self.qp.q
-
-
-class FixedTask(_Fixed, Task):
-    def equations(self, step: Step) -> Any:
-        return self.qp.A, self.qp.b
-
-
-class FixedLimit(_Fixed, Limit):
-    def inequalities(self, step: Step) -> Any:
-        return self.qp.G, self.qp.h
-
-    def bounds(self, step: Step) -> Any:
-        return self.qp.lb, self.qp.ub
+def beside(part: Any) -> Scheme:
+    """A scheme of the tip's position with one more part."""
+    tasks = [PositionTask(), *[part] * isinstance(part, Task)]
+    limits = [JointLimits(), *[part] * isinstance(part, Limit)]
+    return Scheme([KineticEnergy(), *[part] * isinstance(part, Cost)], tasks, limits)
 
 
 def fixed(qp: QP) -> Scheme:
-    """A scheme with one program."""
+    """A scheme with one program, whatever the instant is."""
     _, m, p = qp.sizes
-    return Scheme([FixedCost(qp)], [FixedTask(qp, p)], [FixedLimit(qp, m)])
+    cost = own(Cost, quadratic=(qp.P, qp.q))
+    task = own(Task, p, equations=(qp.A, qp.b))
+    return Scheme([cost], [task], [own(Limit, m, inequalities=(qp.G, qp.h), bounds=(qp.lb, qp.ub))])
 
 
 def velocity_bounds(conf: Configuration, gain: float) -> tuple[NDArray[np.float64], ...]:

@@ -77,6 +77,10 @@ SHARE = 8.0
 HALVINGS = 20
 """Halvings of the range of a command that is to end at a position limit."""
 
+Rates = tuple[float, float, float, float]
+"""Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3] of a joint, inf for none; and
+the deceleration for which there is room before its position limits [rad/s^2]."""
+
 
 @compiled
 def joint_limits(
@@ -325,12 +329,7 @@ def merged(limits: Sequence[Limit]) -> list[Limit]:
 
 @compiled
 def joint_bounds(
-    last: float,
-    before: float,
-    above: float,
-    below: float,
-    rates: tuple[float, float, float, float],
-    dt: float,
+    last: float, before: float, above: float, below: float, rates: Rates, dt: float
 ) -> tuple[float, float]:
     """Compute lower and upper bound of one joint's next command [rad/s], never the wrong way round.
 
@@ -341,8 +340,7 @@ def joint_bounds(
         before: Command before it [rad/s].
         above: Distance to the upper position limit [rad].
         below: Distance to the lower position limit [rad].
-        rates: Largest velocity [rad/s], acceleration [rad/s^2] and jerk [rad/s^3], inf for none;
-            and the deceleration for which there is room before the position limits [rad/s^2].
+        rates: Its limits.
         dt: Control period [s].
     """
     _, accel, jerk, _ = rates
@@ -366,7 +364,7 @@ def joint_bounds(
 
 @compiled
 def _acceleration_bounds(
-    last: float, above: float, below: float, rates: tuple[float, float, float, float], dt: float
+    last: float, above: float, below: float, rates: Rates, dt: float
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where no jerk is limited."""
     fastest, accel, _, deceleration = rates
@@ -383,12 +381,7 @@ def _acceleration_bounds(
 
 @compiled
 def _jerk_bounds(
-    last: float,
-    before: float,
-    above: float,
-    below: float,
-    rates: tuple[float, float, float, float],
-    dt: float,
+    last: float, before: float, above: float, below: float, rates: Rates, dt: float
 ) -> tuple[float, float]:
     """Compute `joint_bounds` where the jerk is limited."""
     fastest, accel, jerk, deceleration = rates
@@ -493,15 +486,13 @@ def _ceiling(
     J, A = braking_limits
     if highest(ub, last, dt, J, A) <= distance:
         return ub
-    bottom = lb
-    top = ub
     for _ in range(HALVINGS):
-        middle = 0.5 * (bottom + top)
+        middle = 0.5 * (lb + ub)
         if highest(middle, last, dt, J, A) <= distance:
-            bottom = middle
+            lb = middle
         else:
-            top = middle
-    return bottom
+            ub = middle
+    return lb
 
 
 @compiled

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import example, given, settings, strategies as st
-from scipy.optimize import linprog
 
+from helpers_kinematics import Array
 from helpers_simulation import paper_robot
 from iiwa_dnn import (
     AccelerationLimits,
@@ -23,15 +23,17 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.schemes.limits import (
-    approach,
     braking,
     check_ranges,
     joint_bounds,
     largest_gain,
 )
-from judge_limits import breaches
+from judge_limits import Breach, breaches
 
 INF = math.inf
+
+
+Limits = tuple[float, float, float]
 
 
 @compiled
@@ -60,6 +62,19 @@ def adversary(q: float, upper: float, limits: Any, dt: float, draws: Any, out: A
     return room
 
 
+def broken(q: Array, dt: float, upper: float, limits: Limits) -> list[Breach]:
+    """The limits that are broken by more than the rounding of a thousand periods of jerk."""
+    return breaches(q, dt, -upper, upper, *[limit * (1.0 + 1e-10) for limit in limits])
+
+
+def driven(start: float, upper: float, limits: Limits, dt: float, seed: int) -> Array:
+    """The positions of a joint that begins somewhere at rest, (3001, 1)."""
+    out = np.empty(3000)
+    draws = np.random.default_rng(seed).random((3000, 4))
+    assert adversary(start, upper, limits, dt, draws, out) >= -1e-12
+    return np.concatenate([[start], out])[:, np.newaxis]
+
+
 @settings(max_examples=60)
 @given(
     speed=st.floats(0.1, 10.0),
@@ -73,31 +88,27 @@ def test_hostile_choices_break_no_limit(
     speed: float, acceleration: float, jerk: float, dt: float, seed: int
 ) -> None:
     upper = 0.2 + 2.0 * acceleration**3 / min(jerk, 1e9) ** 2
-    out = np.empty(3000)
     limits = (speed, acceleration, jerk)
-    draws = np.random.default_rng(seed).random((3000, 4))
-    assert adversary(0.0, upper, limits, dt, draws, out) >= 0.0
-    q = np.concatenate([[0.0], out])[:, np.newaxis]
-    assert breaches(q, dt, -upper, upper, *limits) == []
+    assert broken(driven(0.0, upper, limits, dt, seed), dt, upper, limits) == []
 
 
 @pytest.mark.parametrize(
-    ("speed", "acceleration", "jerk", "dt"),
-    [(1.71, 8.65, INF, 1e-3), (2.175, 15.0, INF, 1e-2), (2.0, 300.0, INF, 2e-2),
-     (2.0, 15.0, 500.0, 1e-2)],
-)  # fmt: skip
+    ("limits", "dt"),
+    [
+        ((1.71, 8.65, INF), 1e-3),
+        ((2.175, 15.0, INF), 1e-2),
+        ((2.0, 300.0, INF), 2e-2),
+        ((2.0, 15.0, 500.0), 1e-2),
+    ],
+)
 @pytest.mark.parametrize("start", [-1.6, 1.6])
 def test_outside_a_position_limit_the_velocity_limit_holds(
-    speed: float, acceleration: float, jerk: float, dt: float, start: float
+    limits: Limits, dt: float, start: float
 ) -> None:
     # Crossed bounds were averaged: 4.4 times the velocity limit at 300 rad/s^2 and 20 ms.
-    out = np.empty(2000)
-    limits = (speed, acceleration, jerk)
     for seed in range(5):
-        draws = np.random.default_rng(seed).random((2000, 4))
-        assert adversary(start, 1.0, limits, dt, draws, out) >= 0.0
-        q = np.concatenate([[start], out])[:, np.newaxis]
-        assert breaches(q, dt, -1.6, 1.6, *limits) == []
+        q = driven(start, 1.0, limits, dt, seed)
+        assert broken(q, dt, 1.6, limits) == []
         inside = np.flatnonzero(np.abs(q[:, 0]) <= 1.0)
         assert breaches(q[inside[0] :], dt, -1.0, 1.0) == []  # once back, it stays
 
@@ -129,20 +140,14 @@ def test_a_range_that_is_not_refused_is_long_enough(
     speed: float, acceleration: float, jerk: float, dt: float, upper: float, seed: int
 ) -> None:
     # 1.1e-4 rad were accepted at 20 rad/s^2, 1e5 rad/s^3 and 10 ms, and left by 1.5e-4 rad.
+    limits = (speed, acceleration, jerk)
     while True:
         try:
-            check_ranges(
-                np.array([-upper, upper, speed, acceleration, jerk, acceleration]), 1.0 / dt
-            )
+            check_ranges(np.array([-upper, upper, *limits, acceleration]), 1.0 / dt)
             break
         except InvalidInputError:
             upper *= 1.02
-    out = np.empty(3000)
-    draws = np.random.default_rng(seed).random((3000, 4))
-    limits = (speed, acceleration, jerk)
-    assert adversary(0.0, upper, limits, dt, draws, out) >= -1e-12
-    q = np.concatenate([[0.0], out])[:, np.newaxis]
-    assert breaches(q, dt, -upper, upper, *limits) == []
+    assert broken(driven(0.0, upper, limits, dt, seed), dt, upper, limits) == []
 
 
 def stopping_room(v: float, step: float) -> float:
@@ -151,13 +156,6 @@ def stopping_room(v: float, step: float) -> float:
     while v > 0.0:
         way, v = way + v, v - step
     return way
-
-
-@given(room=st.floats(1e-6, 1e4))
-def test_approach_is_the_inverse_of_braking_step_by_step(room: float) -> None:
-    assert stopping_room(approach(room), 1.0) == pytest.approx(room, rel=1e-12)
-    assert approach(-room) == -room
-    assert approach(INF) == INF
 
 
 @given(above=st.floats(0.0, 1.0), last=st.floats(-1.0, 1.0))
@@ -172,48 +170,6 @@ def test_acceleration_bounds_are_the_exact_kernel(above: float, last: float) -> 
     assert stopping_room(ub, A * dt) * dt <= above + 1e-12
     if ub < at_most - 1e-12:
         assert stopping_room(ub + 1e-9, A * dt) * dt > above
-
-
-def plan_to_rest(q: float, last: float, before: float, dt: float, limits: Any) -> bool:
-    """Whether some commands bring a joint to rest below 0 within its limits: a linear program."""
-    V, A, J = limits
-    steps = 120
-    first, second = np.eye(steps) - np.eye(steps, k=-1), np.zeros(steps)
-    second[0] = last
-    third = first @ first
-    jerk0 = np.zeros(steps)
-    jerk0[0], jerk0[1] = 2.0 * last - before, -last
-    rows = np.vstack([first, -first, third, -third, np.tril(np.ones((steps, steps))) * dt])
-    slack = 1e-9
-    rhs = np.concatenate(
-        [
-            A * dt + second + slack, A * dt - second + slack,
-            J * dt**2 + jerk0 + slack * dt, J * dt**2 - jerk0 + slack * dt,
-            np.full(steps, -q + slack),
-        ]
-    )  # fmt: skip
-    rest = np.zeros((3, steps))
-    rest[[0, 1, 2], [-1, -2, -3]] = 1.0
-    found = linprog(np.zeros(steps), rows, rhs, rest, np.zeros(3), bounds=(-V, V), method="highs")
-    return found.status == 0
-
-
-def test_after_every_bound_some_commands_lead_to_rest() -> None:
-    dt, limits = 2e-2, (1.5, 5.0, 40.0)
-    rng = np.random.default_rng(3)
-    binding = 0
-    for _ in range(25):
-        q, last, before = -rng.uniform(0.3, 1.2), 0.0, 0.0
-        for _ in range(int(rng.integers(10, 80))):
-            lb, ub = joint_bounds(last, before, -q, INF, (*limits, limits[1]), dt)
-            v = ub if rng.random() < 0.9 else lb
-            q, last, before = q + dt * v, v, last
-        lb, ub = joint_bounds(last, before, -q, INF, (*limits, limits[1]), dt)
-        assert plan_to_rest(q + dt * ub, ub, last, dt, limits)
-        reach = limits[2] * dt**2
-        if lb < ub < min(2.0 * last - before + reach, last + limits[1] * dt) - 1e-9:
-            binding += 1
-    assert binding >= 5
 
 
 @pytest.mark.parametrize("speed", [1e-5, 1e-2, 1.0])
@@ -276,7 +232,7 @@ def swing(gain: float, q: float, limits: Any, dt: float, noise: Any) -> float:
 def test_a_loop_is_stable_up_to_the_largest_gain(limits: Any, dt: float) -> None:
     speed, acceleration, jerk = limits
     gain = largest_gain(np.array([-1.0, 1.0, speed, acceleration, jerk, acceleration]), 1.0 / dt)
-    calm = np.zeros(int(60.0 / dt))
+    calm = np.zeros(int(30.0 / dt))
     noise = 1e-4 * np.random.default_rng(0).standard_normal(calm.size)
     for start in (1e-3, 0.1, 2.0):
         assert swing(0.8 * gain, start, limits, dt, calm) < 1e-9
@@ -295,19 +251,6 @@ def test_a_gain_that_is_too_high_is_warned_of_once() -> None:
         controller.step(conf.q, 0.0, target)
     controller.step(conf.q, 1e-3, target)  # a second warning would be an error
     Controller(robot, DoubleIndicator(extra_limits=limits)).step(conf.q, 0.0, target)
-
-
-def test_the_judge_finds_each_kind_of_breach() -> None:
-    dt, t = 1e-3, 1e-3 * np.arange(2000)
-    q = (0.5 * (1.0 - np.cos(2.0 * t)))[:, np.newaxis]
-    true = {"upper": 1.0, "velocity": 1.0, "acceleration": 2.0}
-    generous = {"lower": -1.0, "upper": 1.1, "velocity": 1.1, "acceleration": 2.1, "jerk": 4.2}
-    assert breaches(q, dt, **generous, at_rest=False) == []
-    for name, value in true.items():
-        (found,) = breaches(q, dt, **{**generous, name: 0.99 * value}, at_rest=False)
-        assert found.excess == pytest.approx(0.01 * value, rel=1e-2)
-    # From rest the acceleration of 2 rad/s^2 begins at once.
-    assert [b.quantity for b in breaches(q, dt, **generous)] == ["jerk"]
 
 
 def test_limits_of_robots_and_of_ones_own() -> None:

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from helpers_kinematics import PAPER_Q0, Array, finite_difference
-from helpers_simulation import heart, near_target, paper_robot, paper_start, run
+from helpers_simulation import beside, heart, near_target, own, paper_robot, paper_start, run
 from iiwa_dnn import (
     Configuration,
     Cost,
@@ -29,14 +29,22 @@ from iiwa_dnn import (
     Step,
     Target,
     Task,
+    compute_metrics,
     failures,
     load_robot,
 )
 
 ELBOW = "iiwa7_link_4"
+NEAR = near_target(PAPER_Q0, 1)
+START = Configuration(paper_robot(), [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
+HERE = Target(START.position, START.rotation)
 
 
-def composed(**gains: Any) -> Scheme:
+ZEROS, ROW = np.zeros(7), np.ones((1, 7))
+CROSSED = own(Limit, bounds=(ZEROS + 5.0, ZEROS + np.inf))
+
+
+def composed() -> Scheme:
     return Scheme(
         costs=[KineticEnergy(weight=0.2), CyclicMotion(weight=0.8, gain=10.2, home=PAPER_Q0)],
         tasks=[PositionTask(), OrientationTask()],
@@ -58,18 +66,6 @@ class NumpyPosition(Task):
         return tip.jacobian[:3], target.linear_velocity + self.gain * error
 
 
-class NumpyEnergy(Cost):
-    def quadratic(self, step: Step) -> tuple[Array, Array]:
-        return 0.7 * step.inertia, np.zeros(step.q.size)
-
-
-class NumpyBounds(Limit):
-    """Bounds alone: no joint is faster than 0.1 rad/s."""
-
-    def bounds(self, step: Step) -> tuple[Array, Array]:
-        return np.full(step.q.size, -0.1), np.full(step.q.size, 0.1)
-
-
 class Clearance(Limit):
     """Keep the elbow away from a point, as a velocity damper: -n' J dq <= gain (d - distance)."""
 
@@ -86,65 +82,106 @@ class Clearance(Limit):
         return row[np.newaxis], np.array([self.gain * (distance - self.distance)])
 
 
-def elbow_distance(q: Array, point: Array) -> Array:
-    robot = paper_robot()
-    places = [Configuration(robot, posture).frame(ELBOW).position for posture in q]
-    return np.linalg.norm(np.array(places) - point, axis=1)
-
-
 def test_the_papers_scheme_is_its_parts() -> None:
-    conf, target = paper_start(), near_target(PAPER_Q0, 1)
-    whole = DoubleIndicator(home=PAPER_Q0).build_qp(conf, target)
-    parts = composed().build_qp(conf, target)
+    whole = DoubleIndicator(home=PAPER_Q0).build_qp(paper_start(), NEAR)
+    parts = composed().build_qp(paper_start(), NEAR)
     assert_array_equal(parts.data, whole.data)
     assert parts.sizes == whole.sizes == (7, 0, 6)
-    pinv = Scheme([KineticEnergy()], [PositionTask(), OrientationTask()]).build_qp(conf, target)
-    assert_array_equal(pinv.data, PseudoInverse().build_qp(conf, target).data)
+    pinv = Scheme([KineticEnergy()], [PositionTask(), OrientationTask()])
+    assert_array_equal(
+        pinv.build_qp(paper_start(), NEAR).data, PseudoInverse().build_qp(paper_start(), NEAR).data
+    )
 
 
 @pytest.mark.parametrize("task", [PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
 def test_a_soft_task_is_a_term_of_the_cost(task: Task) -> None:
-    conf, target = paper_start(), near_target(PAPER_Q0, 1)
-    qp = Scheme([KineticEnergy(weight=0.5)], [task]).build_qp(conf, target)
-    hard = Scheme([KineticEnergy(weight=0.5)], [PositionTask()]).build_qp(conf, target)
+    qp = Scheme([KineticEnergy(weight=0.5)], [task]).build_qp(paper_start(), NEAR)
+    hard = Scheme([KineticEnergy(weight=0.5)], [PositionTask()]).build_qp(paper_start(), NEAR)
     assert qp.sizes == (7, 0, 0)
     assert_allclose(qp.P, 0.5 * np.eye(7) + 3.0 * hard.A.T @ hard.A, rtol=0, atol=1e-14)
     assert_allclose(qp.q, -3.0 * hard.A.T @ hard.b, rtol=0, atol=1e-14)
 
 
 def test_costs_and_bounds_of_ones_own_join_the_others() -> None:
-    conf, target = paper_start(), near_target(PAPER_Q0, 1)
-    scheme = Scheme(
-        [CyclicMotion(weight=0.3, home=PAPER_Q0), NumpyEnergy()],
-        [PositionTask()],
-        [JointLimits(), NumpyBounds()],
-    )
-    qp = scheme.build_qp(conf, target)
-    assert_allclose(qp.P, 0.3 * np.eye(7) + 0.7 * conf.inertia, rtol=0, atol=1e-13)
+    energy = own(Cost, quadratic=(0.7 * paper_start().inertia, ZEROS))
+    slow = own(Limit, bounds=(ZEROS - 0.2, ZEROS + 0.1))
+    costs = [CyclicMotion(weight=0.3, home=PAPER_Q0), energy]
+    scheme = Scheme(costs, [PositionTask()], [JointLimits(), slow])
+    qp = scheme.build_qp(paper_start(), NEAR)
+    assert_allclose(qp.P, 0.3 * np.eye(7) + 0.7 * paper_start().inertia, rtol=0, atol=1e-13)
     assert_array_equal(qp.ub, np.full(7, 0.1))
-    assert_array_equal(qp.lb, np.full(7, -0.1))
+    assert_array_equal(qp.lb, np.full(7, -0.2))
 
 
 def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> None:
-    point = paper_start().frame(ELBOW).position + [0.08, 0.06, 0.0]
-    nearest = float(np.linalg.norm(paper_start().frame(ELBOW).position - point))
-    limit = Clearance(point, nearest - 0.004)
+    start = paper_start().frame(ELBOW).position
+    point = start + [0.08, 0.06, 0.0]
+    least = 0.1 - 0.004
     base = composed()
-    scheme = Scheme(base.costs, base.tasks, [*base.limits, limit])
+    limited = Scheme(base.costs, base.tasks, [*base.limits, Clearance(point, least)])
     free = run(base, reference=heart(period=4.0), duration=4.0, dt=1e-2)
-    assert elbow_distance(free.q, point).min() < limit.distance - 1e-3
-    record = run(scheme, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=CrossCheck())
+    record = run(limited, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=CrossCheck())
+    nearest = []
+    for run_ in (free, record):
+        elbows = [Configuration(paper_robot(), q).frame(ELBOW).position for q in run_.q]
+        nearest.append(np.linalg.norm(elbows - point, axis=1).min())
+    assert nearest[0] < least - 1e-3
+    assert nearest[1] > least - 1e-6
     assert failures(record) == []
-    assert elbow_distance(record.q, point).min() > limit.distance - 1e-6
-    active = record.row_multiplier[:, 0] > 0.0
-    assert 50 < active.sum() < 2000
+    assert 50 < (record.row_multiplier[:, 0] > 0.0).sum() < 2000
     assert record.settings["rows"] == [{"part": "Clearance", "row": 1}]
+
+
+@pytest.mark.parametrize("policy", ["slow", "relax", "stop"])
+@pytest.mark.parametrize(
+    ("part", "blamed"),
+    [
+        (
+            own(Limit, 1, inequalities=(ROW, [-20.0])),
+            "row 1 of Own, iiwa7_joint_2 lower velocity limit",
+        ),
+        (own(Limit, 1, inequalities=(0.0 * ROW, [-1.0])), "row 1 of Own"),
+        (CROSSED, "iiwa7_joint_1 lower position limit or bound"),
+        (
+            own(Task, 1, equations=(0.0 * ROW, [1.0])),
+            "no bound, a singular pose or tasks against each other",
+        ),
+    ],
+)
+def test_a_part_that_nothing_fulfils_is_named(
+    part: Any, blamed: str, policy: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    record = run(beside(part), duration=0.01, check=CrossCheck(("osqp",)), policy=policy)
+    assert any(f"in the way: {blamed}" in reason for reason in failures(record))
+    assert capfd.readouterr().out == ""  # OSQP has its own words for such programs
+    # A row that asks for motion is followed as far as the joints can; bounds that contradict each
+    # other stop the arm.
+    if part is CROSSED or policy == "stop":
+        assert record.dq.shape == (1, 7)
+        assert not record.dq.any()
+    else:
+        assert record.steps == 10
+
+
+def test_an_active_bound_of_ones_own_is_no_position_limit() -> None:
+    quick = own(Limit, bounds=(ZEROS + 0.1, ZEROS + 0.2))
+    record = run(Scheme([KineticEnergy()], [], [JointLimits(), quick]), duration=0.01)
+    assert_allclose(record.dq, 0.1, rtol=1e-9)
+    active = compute_metrics(record)["incidents"]["active"]
+    assert {bound["limit"] for bound in active} == {"position limit or bound of Own"}
+
+
+@pytest.mark.parametrize("weight", [None, 1.0])
+def test_without_a_cost_answers_agree_in_what_is_weighed(weight: float | None) -> None:
+    # Four directions of seven are free: references choose other points of the same cost.
+    scheme = Scheme([], [PositionTask(weight=weight)], [JointLimits()])
+    record = run(scheme, duration=0.02, check=CrossCheck(("proxqp", "osqp")))
+    assert failures(record) == []
 
 
 def test_parts_serve_another_robot() -> None:
     robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    q0 = np.delete(PAPER_Q0, 2)
-    conf = Configuration(robot, q0)
+    conf = Configuration(robot, np.delete(PAPER_Q0, 2))
     scheme = Scheme([KineticEnergy()], [PositionTask(), NumpyPosition(weight=0.1)], [JointLimits()])
     qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
     assert qp.sizes == (6, 0, 3)
@@ -156,39 +193,24 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
     anchored = scheme.anchored(paper_start())
     assert anchored.costs[1].home == PAPER_Q0
     assert scheme.costs[1].home is None
-    assert anchored.anchored(paper_start()) is anchored
+    assert anchored.anchored(START) is anchored
     assert anchored.settings()["costs"][1] == {
         "name": "CyclicMotion", "weight": 1.0, "gain": 10.2, "home": PAPER_Q0
     }  # fmt: skip
 
 
-ROBOT = paper_robot()
-START = Configuration(ROBOT, [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
-
-
-def measure(q: np.ndarray) -> float:
-    J = Configuration(ROBOT, q).jacobian
-    return float(np.sqrt(np.linalg.det(J @ J.T)))
-
-
 def test_manipulability_gradient_is_that_of_finite_differences() -> None:
-    qp = Scheme([Manipulability(weight=2.0)]).build_qp(START, Target(START.position))
-    expected = finite_difference(lambda q: np.array([measure(q)]), START.q)[0]
-    np.testing.assert_allclose(qp.q, -2.0 * expected, atol=1e-7)
+    def measure(q: Array) -> float:
+        J = Configuration(paper_robot(), q).jacobian
+        return float(np.sqrt(np.linalg.det(J @ J.T)))
+
+    qp = Scheme([Manipulability(weight=2.0)]).build_qp(START, HERE)
+    assert_allclose(qp.q, -2.0 * finite_difference(measure, START.q), atol=1e-7)
     assert not qp.P.any()
 
 
 def test_parts_leave_slack_variables_out() -> None:
     scheme = Scheme([CyclicMotion(), Manipulability()], [PoseTask()], [JointLimits()], slack=2)
-    qp = scheme.build_qp(START, Target(START.position, START.rotation))
-    np.testing.assert_array_equal(qp.A[:, 7:], 0.0)
-    np.testing.assert_allclose(qp.A[:, :7], START.jacobian, rtol=0, atol=1e-15)
-
-
-@pytest.mark.parametrize("weight", [0.5, 2.0])
-def test_the_pull_home_is_the_gradient_of_a_square(weight: float) -> None:
-    home = tuple(START.q - 0.1)
-    cost = CyclicMotion(weight=weight, gain=3.0, home=home)
-    qp = Scheme([cost]).build_qp(START, Target(START.position))
-    np.testing.assert_array_equal(qp.P, weight * np.eye(7))
-    np.testing.assert_allclose(qp.q, weight * 3.0 * 0.1, rtol=1e-12)
+    qp = scheme.build_qp(START, HERE)
+    assert_array_equal(qp.A[:, 7:], 0.0)
+    assert_allclose(qp.A[:, :7], START.jacobian, rtol=0, atol=1e-15)
