@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from helpers_kinematics import PAPER_Q0
-from helpers_simulation import paper_robot, paper_start
+from helpers_simulation import paper_robot, paper_start, run
 from iiwa_dnn import (
     AccelerationLimits,
     CollisionAvoidance,
@@ -14,28 +16,23 @@ from iiwa_dnn import (
     DoubleIndicator,
     HalfSpace,
     JerkLimits,
+    Still,
     Target,
-    simulate,
+    Waypoints,
+    compute_metrics,
+    failures,
 )
 from iiwa_dnn.naming import KINDS
-from iiwa_dnn.references import Still, Waypoints
-from iiwa_dnn.results.failures import failures
-from iiwa_dnn.results.metrics import compute_metrics
 
 A = 4.0
 J = 200.0
 DT = 1e-3
 SIDEWAYS = np.array([0.0, 0.5, 0.0])
+FAR = Target(paper_start().position + SIDEWAYS, paper_start().rotation)
 
 
-def controller(*limits: object, **options: object) -> Controller:
-    scheme = DoubleIndicator(orientation="none", extra_limits=limits)  # type: ignore[arg-type]
-    return Controller(paper_robot(), scheme, dt=DT, **options)  # type: ignore[arg-type]
-
-
-def far() -> Target:
-    start = paper_start()
-    return Target(start.position + SIDEWAYS, start.rotation)
+def scheme(*limits: Any) -> DoubleIndicator:
+    return DoubleIndicator(orientation="none", extra_limits=limits)
 
 
 @pytest.mark.filterwarnings("ignore:a gain of 10.2")  # nothing is closed in a loop here
@@ -44,17 +41,18 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
     limits: tuple[float | None, float | None],
 ) -> None:
     """Each bound in the way, beside the rates of the command that lies at it."""
-    parts = [kind(limit) for kind, limit in zip(PARTS, limits, strict=True) if limit]
-    controlled = controller(*parts)
+    kinds = zip((AccelerationLimits, JerkLimits), limits, strict=True)
+    robot = paper_robot()
+    controlled = Controller(robot, scheme(*(kind(limit) for kind, limit in kinds if limit)), dt=DT)
     q = np.array(PAPER_Q0)
     commands = [np.zeros(7), np.zeros(7)]
     seen = set()
     for k in range(400):
-        command = controlled.step(q, k * DT, far())
+        command = controlled.step(q, k * DT, FAR)
         commands.append(command.dq.copy())
         rates = np.abs(
             [
-                command.dq / controlled.robot.dq_max,
+                command.dq / robot.dq_max,
                 (commands[-1] - commands[-2]) / (DT * (limits[0] or np.inf)),
                 np.diff(commands[-3:], 2, axis=0)[0] / (DT**2 * (limits[1] or np.inf)),
             ]
@@ -74,38 +72,26 @@ def test_a_bound_has_the_kind_of_the_limit_that_its_command_reaches(
     assert seen >= {kind for kind, limit in zip(KINDS[2:], limits, strict=True) if limit}
 
 
-PARTS = (AccelerationLimits, JerkLimits)
-
-
 def test_at_a_position_limit_it_is_that_ones() -> None:
-    q = np.array(PAPER_Q0)
-    upper = q.copy()
-    upper += 3e-5
-    robot = paper_robot().with_limits(upper=upper)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(AccelerationLimits(A),))
-    command = Controller(robot, scheme, dt=DT).step(q, 0.0, far())
+    robot = paper_robot().with_limits(upper=np.array(PAPER_Q0) + 3e-5)
+    command = Controller(robot, scheme(AccelerationLimits(A)), dt=DT).step(PAPER_Q0, 0.0, FAR)
     assert "upper position limit" in repr(command)
 
 
 def test_command_and_report_say_the_same_row() -> None:
-    start = paper_start()
-    wall = HalfSpace([0.0, -1.0, 0.0], float(-start.position[1] - 0.12))
-    avoidance = CollisionAvoidance([wall], distance=0.02, self_collision=False)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(avoidance,))
+    wall = HalfSpace([0.0, -1.0, 0.0], float(-paper_start().position[1] - 0.12))
+    avoiding = scheme(CollisionAvoidance([wall], distance=0.02, self_collision=False))
     row = "of CollisionAvoidance (iiwa7_link_7 and HalfSpace 1)"
-    command = Controller(paper_robot(), scheme, dt=DT).step(PAPER_Q0, 0.0, far())
-    held = Still().anchored(far())
+    command = Controller(paper_robot(), avoiding, dt=DT).step(PAPER_Q0, 0.0, FAR)
     with pytest.warns(UserWarning, match="0.5 m"):
-        record = simulate(paper_robot(), scheme, held, PAPER_Q0, dt=DT, duration=DT)
+        record = run(avoiding, Still().anchored(FAR), duration=DT)
     assert row in repr(command)
     assert row in " ".join(failures(record))
 
 
 def test_a_record_tells_the_kinds_of_active_bounds_too() -> None:
-    start = paper_start()
-    path = Waypoints([0.0, 0.4], [[0.0, 0.0, 0.0], 0.3 * SIDEWAYS]).anchored(start)
-    scheme = DoubleIndicator(orientation="none", extra_limits=(AccelerationLimits(A),))
-    record = simulate(paper_robot(), scheme, path, PAPER_Q0, dt=DT, duration=0.2)
+    path = Waypoints([0.0, 0.4], [[0.0, 0.0, 0.0], 0.3 * SIDEWAYS]).anchored(paper_start())
+    record = run(scheme(AccelerationLimits(A)), path, duration=0.2)
     incidents = compute_metrics(record)["incidents"]
     said = {limit["limit"] for limit in incidents["blocking"] + incidents["active"]}
     assert said == {"acceleration"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -46,51 +45,49 @@ CROSSED = own(Limit, bounds=(ZEROS + 5.0, ZEROS + np.inf))
 
 def composed() -> Scheme:
     return Scheme(
-        costs=[KineticEnergy(weight=0.2), CyclicMotion(weight=0.8, gain=10.2, home=PAPER_Q0)],
-        tasks=[PositionTask(), OrientationTask()],
-        limits=[JointLimits(gain=20.0)],
+        costs=[KineticEnergy(weight=0.2), CyclicMotion(weight=0.8, home=PAPER_Q0)],
+        tasks=[PositionTask(gain=4.0), OrientationTask(gain=5.0)],
+        limits=[JointLimits(gain=6.0)],
     )
 
 
-@dataclass(frozen=True)
 class NumpyPosition(Task):
     """The position task once more, with numpy."""
 
-    rows: int = 3
-    gain: float = 10.2
-    weight: float | None = None
+    rows = 3
+
+    def __init__(self, weight: float) -> None:
+        self.weight = weight
 
     def equations(self, step: Step) -> tuple[Array, Array]:
         tip, target = step.frame(), step.target()
-        error = target.position - tip.position
-        return tip.jacobian[:3], target.linear_velocity + self.gain * error
+        return tip.jacobian[:3], target.linear_velocity + 10.2 * (target.position - tip.position)
 
 
 class Clearance(Limit):
-    """Keep the elbow away from a point, as a velocity damper: -n' J dq <= gain (d - distance)."""
+    """Keep the elbow away from a point, as a velocity damper: -n' J dq <= gain (d - least)."""
 
     rows = 1
 
-    def __init__(self, point: Array, distance: float, gain: float = 20.0) -> None:
-        self.point, self.distance, self.gain = point, distance, gain
+    def __init__(self, point: Array, least: float) -> None:
+        self.point, self.least = point, least
 
     def inequalities(self, step: Step) -> tuple[Array, Array]:
         elbow = step.frame(ELBOW)
         away = elbow.position - self.point
         distance = np.linalg.norm(away)
         row = -(away / distance) @ elbow.jacobian[:3]
-        return row[np.newaxis], np.array([self.gain * (distance - self.distance)])
+        return row[np.newaxis], np.array([20.0 * (distance - self.least)])
 
 
 def test_the_papers_scheme_is_its_parts() -> None:
-    whole = DoubleIndicator(home=PAPER_Q0).build_qp(paper_start(), NEAR)
+    gains = {"position_gain": 4.0, "orientation_gain": 5.0}
+    whole = DoubleIndicator(home=PAPER_Q0, limit_gain=6.0, **gains).build_qp(paper_start(), NEAR)
     parts = composed().build_qp(paper_start(), NEAR)
     assert_array_equal(parts.data, whole.data)
     assert parts.sizes == whole.sizes == (7, 0, 6)
-    pinv = Scheme([KineticEnergy()], [PositionTask(), OrientationTask()])
-    assert_array_equal(
-        pinv.build_qp(paper_start(), NEAR).data, PseudoInverse().build_qp(paper_start(), NEAR).data
-    )
+    pinv = Scheme([KineticEnergy()], composed().tasks).build_qp(paper_start(), NEAR)
+    assert_array_equal(pinv.data, PseudoInverse(**gains).build_qp(paper_start(), NEAR).data)
 
 
 @pytest.mark.parametrize("task", [PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
