@@ -11,12 +11,13 @@ import pytest
 
 import iiwa_dnn
 from helpers_kinematics import PAPER_Q0, Array, finite_difference
-from helpers_simulation import rows_of
+from helpers_simulation import rows_of, run
 from iiwa_dnn import Configuration, HalfSpace, Sphere
-from random_motion import SLACK, Judge, obstacles_for, wander
+from judge_distances import Judge, obstacles_for
 
 ROBOT = iiwa_dnn.load_robot("iiwa7")
 START = np.array(PAPER_Q0)
+HERE = Configuration(ROBOT, START)
 BALL = Sphere([0.36, 0.16, 0.64], 0.05)
 LEAST = 0.02
 
@@ -38,13 +39,13 @@ def postures(count: int, robot: Any = ROBOT) -> Array:
     return np.random.default_rng(0).uniform(*half, (count, robot.dof))
 
 
-@pytest.mark.parametrize("obstacle", [*obstacles_for(False), None])
+@pytest.mark.parametrize("obstacle", [*obstacles_for(True), None])
 def test_distances_are_coals(obstacle: Any) -> None:
     avoidance = avoiding([obstacle] if obstacle else [], self_collision=not obstacle)
     judge = Judge(ROBOT, avoidance)
-    places = postures(60)
-    own = avoidance.scene(ROBOT).nearest(places, np.zeros(60))[0]
-    coals = np.array([judge.distance(q, 0.0) for q in places])
+    places, times = postures(60), np.linspace(0.0, 6.0, 60)
+    own = avoidance.scene(ROBOT).nearest(places, times)[0]
+    coals = np.array([judge.distance(q, t) for q, t in zip(places, times, strict=True)])
     apart = np.maximum(own, coals) > 0.0
     assert apart.sum() > 10
     np.testing.assert_allclose(own[apart], coals[apart], rtol=0, atol=2e-6)
@@ -120,22 +121,12 @@ def test_more_pairs_than_rows_keep_the_nearest_to_being_active() -> None:
     assert few.row_names(ROBOT) == []
 
 
-@pytest.mark.parametrize(("name", "seed", "moving"), [("iiwa7", 2, True), ("panda", 1, False)])
-def test_random_motion_never_comes_too_near(name: str, seed: int, moving: bool) -> None:
-    found = wander(name, 1000, seed, moving, sampled=3)
-    assert found["least_m"] >= LEAST - SLACK
-    assert found["least_between_m"] >= LEAST - SLACK
-    assert found["difference_m"] < 2e-6  # coal's own tolerance is 1e-6
-    assert found["active"] > 50
-    assert found["policy"] <= 15  # rows that ask for more than the joints can give
-
-
 def test_the_elbow_gives_way_and_the_heart_stays() -> None:
     paper = iiwa_dnn.DoubleIndicator()
     near = iiwa_dnn.CollisionAvoidance([BALL], distance=0.03)
-    path = iiwa_dnn.Heart().anchored(Configuration(ROBOT, START))
+    path = iiwa_dnn.Heart().anchored(HERE)
     free, record = [
-        iiwa_dnn.simulate(ROBOT, scheme, path, START, dt=5e-3)
+        run(scheme, path, ROBOT, dt=5e-3, duration=10.0)
         for scheme in (paper, replace(paper, extra_limits=(near,)))
     ]
     assert near.scene(ROBOT).nearest(free.q, free.t)[0].min() < 0.01
@@ -146,6 +137,15 @@ def test_the_elbow_gives_way_and_the_heart_stays() -> None:
     assert metrics["collisions"]["missing_m"] == 0.0
     without = iiwa_dnn.compute_metrics(free)["max_position_error_m"]
     assert metrics["max_position_error_m"] < 1.1 * without
+
+
+def test_an_obstacle_that_comes_is_kept_away_from() -> None:
+    coming = Sphere([0.33, 0.16, 0.84], 0.05, velocity=[0.0, 0.0, -0.04])
+    near = iiwa_dnn.CollisionAvoidance([coming], distance=0.03)
+    scheme = iiwa_dnn.DoubleIndicator(extra_limits=(near,))
+    record = run(scheme, iiwa_dnn.Heart().anchored(HERE), ROBOT, dt=5e-3, duration=5.0)
+    assert record.distance.min() >= 0.03
+    assert near.scene(ROBOT).nearest(np.tile(START, (2, 1)), np.array([0.0, 5.0]))[0][1] < 0.03
 
 
 def test_a_file_is_what_python_says(tmp_path: Path) -> None:
