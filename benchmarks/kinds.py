@@ -16,18 +16,7 @@ import numpy as np
 import iiwa_dnn
 from benchmarks.report import show
 from hostile import streams
-from iiwa_dnn import (
-    AccelerationLimits,
-    CollisionAvoidance,
-    DoubleIndicator,
-    JerkLimits,
-    MovingTarget,
-    Reference,
-    Robot,
-    Scheme,
-    Sphere,
-    Target,
-)
+from iiwa_dnn import AccelerationLimits, MovingTarget, Reference, Robot, Scheme, Sphere, Target
 from iiwa_dnn.control.policies import Action, Policy
 from iiwa_dnn.schemes import PoseTask
 from iiwa_dnn.studies import paper
@@ -42,16 +31,7 @@ Targets = Callable[[int], Target | None]
 
 
 class Case(NamedTuple):
-    """A controller and what it is asked.
-
-    Attributes:
-        robot: The robot.
-        scheme: The scheme.
-        reference: The reference; None where every step gets a target.
-        targets: Target of each step; None: the reference's.
-        policy: The policy.
-        start: Joint positions at the start [rad], (n,).
-    """
+    """A controller and what it is asked: targets of its reference, or others by the step."""
 
     robot: Robot
     scheme: Scheme
@@ -80,7 +60,7 @@ def moved(reference: MovingTarget, heart: Reference) -> Targets:
 
 def scheme(*limits: object) -> Scheme:
     """Return the paper's scheme with further limits."""
-    return DoubleIndicator(extra_limits=limits)
+    return iiwa_dnn.DoubleIndicator(extra_limits=limits)
 
 
 def cases() -> dict[str, Case]:
@@ -90,9 +70,9 @@ def cases() -> dict[str, Case]:
     start = iiwa_dnn.Configuration(robot, paper.START)
     heart = iiwa_dnn.Heart().anchored(start)
     acceleration = AccelerationLimits(5.0)
-    both = (acceleration, JerkLimits(50.0))
+    both = (acceleration, iiwa_dnn.JerkLimits(50.0))
     balls = [Sphere(at, radius) for at, radius in zip(BALLS, RADII, strict=True)]
-    avoidance = CollisionAvoidance(balls, distance=DISTANCE)
+    avoidance = iiwa_dnn.CollisionAvoidance(balls, distance=DISTANCE)
     own = MovingTarget(start)
     far = Target(start.position + [1e9, 0.0, 0.0], start.rotation)
     above = np.array(paper.START)

@@ -11,7 +11,6 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -33,16 +32,12 @@ DT = 1e-3
 """Control period [s]."""
 
 
-class Loop(NamedTuple):
-    """A loop that is measured.
+Taken = dict[str, list[Any]]
+"""Times ``us`` [us] and joint positions ``q`` [rad] of a loop's steps."""
 
-    Attributes:
-        name: Its name in the report.
-        module: The module that its Python has to have.
-        driver: File in ``loops``, without its ending.
-        variant: Argument of the driver.
-        among_balls: Whether it also takes the heart among balls.
-    """
+
+class Loop(NamedTuple):
+    """A loop that is measured: a module that its Python has, a file in ``loops``, its argument."""
 
     name: str
     module: str
@@ -70,14 +65,6 @@ _COLUMNS = {
 }
 
 
-@dataclass
-class Taken:
-    """Times [us] and joint positions [rad] of a loop's steps."""
-
-    us: list[float] = field(default_factory=list)
-    q: list[list[float]] = field(default_factory=list)
-
-
 class Driver:
     """A process that takes the steps of a loop, in the Python that has its library."""
 
@@ -93,8 +80,8 @@ class Driver:
             text=True,
         )
 
-    def take(self, first: int, last: int) -> dict[str, Any]:
-        """Take steps; returns the time ``us`` [us] and the joint positions ``q`` of each.
+    def take(self, first: int, last: int) -> Taken:
+        """Take steps.
 
         Raises:
             IiwaDnnError: The driver ended; the message has its last line on standard error.
@@ -109,7 +96,7 @@ class Driver:
             self._errors.seek(0)
             reason = self._errors.read().strip().rpartition("\n")[2]
             raise IiwaDnnError(f"{self._name}: {reason or 'the driver ended'}")
-        taken: dict[str, Any] = json.loads(answer)
+        taken: Taken = json.loads(answer)
         return taken
 
     def close(self) -> None:
@@ -120,7 +107,7 @@ class Driver:
 
 def take_turns(loops: Mapping[Loop, Path], task: Path, steps: int) -> dict[Loop, Taken]:
     """Let loops take their steps in turns, each in a process of its Python interpreter."""
-    taken = {loop: Taken() for loop in loops}
+    taken: dict[Loop, Taken] = {loop: {"us": [], "q": []} for loop in loops}
     with ExitStack() as stack:
         drivers: dict[Loop, Driver] = {}
         for loop, python in loops.items():
@@ -128,9 +115,8 @@ def take_turns(loops: Mapping[Loop, Path], task: Path, steps: int) -> dict[Loop,
             stack.callback(driver.close)
         for first in range(0, steps, CHUNK):
             for loop, driver in drivers.items():
-                answer = driver.take(first, min(first + CHUNK, steps))
-                taken[loop].us += answer["us"]
-                taken[loop].q += answer["q"]
+                for name, values in driver.take(first, min(first + CHUNK, steps)).items():
+                    taken[loop][name] += values
     return taken
 
 
@@ -181,12 +167,12 @@ def measure(task: Mapping[str, Any], taken: Mapping[Loop, Taken]) -> list[dict[s
     robot = paper_robot()
     rows = []
     for loop, own in taken.items():
-        tips = [iiwa_dnn.Configuration(robot, q).position for q in own.q]
+        tips = [iiwa_dnn.Configuration(robot, q).position for q in own["q"]]
         wanted = np.array([pose[:3, 3] for pose in task["poses"][1 : len(tips) + 1]])
-        median, p99, p999 = np.percentile(own.us, [50.0, 99.0, 99.9])
+        median, p99, p999 = np.percentile(own["us"], [50.0, 99.0, 99.9])
         error = np.linalg.norm(np.array(tips) - wanted, axis=1).max()
         row = {"name": loop.name, "median": median, "p99": p99, "p999": p999, "error": error}
-        rows.append({**row, "q": np.array(own.q)})
+        rows.append({**row, "q": np.array(own["q"])})
     return rows
 
 

@@ -141,19 +141,9 @@ class Piqp(Peer):
     name = "PIQP"
 
     def convert(self, qp: QP) -> Any:
-        order = np.asfortranarray
         rows = np.full(qp.h.size, -np.inf)
-        return (
-            order(qp.P),
-            qp.q.copy(),
-            order(qp.A),
-            qp.b.copy(),
-            order(qp.G),
-            rows,
-            qp.h.copy(),
-            qp.lb.copy(),
-            qp.ub.copy(),
-        )
+        parts = (qp.P, qp.q, qp.A, qp.b, qp.G, rows, qp.h, qp.lb, qp.ub)
+        return [part.copy(order="F") for part in parts]
 
     def solve(self, given: Any) -> Any:
         if self.warm and self.ready:
@@ -178,21 +168,9 @@ class Proxqp(Peer):
     name = "ProxQP"
 
     def convert(self, qp: QP) -> Any:
-        lower = np.full(qp.h.size, -1e20)
-        return qp.sizes, tuple(
-            np.ascontiguousarray(part)
-            for part in (
-                qp.P,
-                qp.q,
-                qp.A,
-                qp.b,
-                qp.G,
-                lower,
-                np.minimum(qp.h, 1e20),
-                np.maximum(qp.lb, -1e20),
-                np.minimum(qp.ub, 1e20),
-            )
-        )
+        limits = (np.full(qp.h.size, -np.inf), qp.h, qp.lb, qp.ub)
+        parts = (qp.P, qp.q, qp.A, qp.b, qp.G, *(np.clip(each, -1e20, 1e20) for each in limits))
+        return qp.sizes, [np.ascontiguousarray(part) for part in parts]
 
     def solve(self, given: Any) -> Any:
         (n, m, p), arrays = given
@@ -233,9 +211,9 @@ class Osqp(Peer):
         cost = spa.csc_matrix(np.where(pattern, 1.0, 0.0))
         cost.data = qp.P.T[pattern.T].copy()
         full = np.vstack([qp.A, qp.G])
-        rows = spa.csc_matrix(np.vstack([np.ones_like(full), np.eye(n)]))
-        stacked = np.vstack([full, np.eye(n)])
-        rows.data = stacked.T[np.vstack([np.ones_like(full), np.eye(n)]).T.astype(bool)]
+        filled = np.vstack([np.ones_like(full), np.eye(n)])
+        rows = spa.csc_matrix(filled)
+        rows.data = np.vstack([full, np.eye(n)]).T[filled.T.astype(bool)]
         lower = np.concatenate([qp.b, np.full(qp.h.size, -np.inf), qp.lb])
         return cost, qp.q.copy(), rows, lower, np.concatenate([qp.b, qp.h, qp.ub])
 
@@ -245,18 +223,8 @@ class Osqp(Peer):
             self.model.update(q=q, l=lower, u=upper, Px=cost.data, Ax=rows.data)
         else:
             self.model = osqp.OSQP()
-            self.model.setup(
-                cost,
-                q,
-                rows,
-                lower,
-                upper,
-                verbose=False,
-                eps_abs=TOL,
-                eps_rel=0.0,
-                polishing=True,
-                max_iter=20_000,
-            )
+            options = {"eps_abs": TOL, "eps_rel": 0.0, "polishing": True, "max_iter": 20_000}
+            self.model.setup(cost, q, rows, lower, upper, verbose=False, **options)
             self.ready = True
         return self.model.solve(raise_error=False)
 

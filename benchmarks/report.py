@@ -33,13 +33,7 @@ def _version(name: str) -> str:
 
 
 def show(title: str, columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]]) -> None:
-    """Print a table under a title, each row when it is there.
-
-    Args:
-        title: The title; begins with a capital.
-        columns: Formats of the cells by the heads of the columns.
-        rows: Values of the cells by name.
-    """
+    """Print a table, each row when it is there: columns are formats of the rows' values."""
     print(f"\n## {title}\n")
     print(tabulate([], [*columns], "pipe"), flush=True)
     for row in rows:

@@ -35,13 +35,7 @@ _COLUMNS = {
 
 
 class Stream(NamedTuple):
-    """Programs to be solved one after the other.
-
-    Attributes:
-        name: Title in the report.
-        programs: The programs, all of one shape if `warm`.
-        warm: Whether a solver may start from its last answer.
-    """
+    """Programs of one shape, under a title; ``warm`` solvers start from their last answer."""
 
     name: str
     programs: list[QP]
@@ -53,15 +47,8 @@ def heart(count: int, dt: float, scale: float) -> list[QP]:
     robot = paper_robot()
     reference = iiwa_dnn.Heart(scale).anchored(iiwa_dnn.Configuration(robot, paper.START))
     scheme = iiwa_dnn.DoubleIndicator(orientation="so3", home=paper.START)
-    record = iiwa_dnn.simulate(
-        robot,
-        scheme,
-        reference,
-        paper.START,
-        dt=dt,
-        duration=count * dt,
-        check=iiwa_dnn.CrossCheck(()),
-    )
+    options = {"dt": dt, "duration": count * dt, "check": iiwa_dnn.CrossCheck(())}
+    record = iiwa_dnn.simulate(robot, scheme, reference, paper.START, **options)
     return [
         scheme.build_qp(iiwa_dnn.Configuration(robot, q), reference.at(float(t)))
         for q, t in zip(record.q[:count], record.t[:count], strict=True)
@@ -123,17 +110,10 @@ def measure(stream: Stream) -> list[dict[str, Any]]:
             gc.enable()
     rows = []
     for peer, taken, found in zip(peers, 1e6 * times[:, 1:], residuals, strict=True):
-        good = found <= FAILED
-        rows.append(
-            {
-                "name": peer.name,
-                "median": np.median(taken),
-                "p99": np.quantile(taken, 0.99),
-                "worst": found[good].max(initial=0.0),
-                "failed": int((~good).sum()),
-                "programs": found.size,
-            }
-        )
+        median, p99 = np.quantile(taken, [0.5, 0.99])
+        worst = found[found <= FAILED].max(initial=0.0)
+        row = {"name": peer.name, "median": median, "p99": p99, "worst": worst}
+        rows.append(row | {"failed": int((found > FAILED).sum()), "programs": found.size})
     return rows
 
 
