@@ -8,50 +8,29 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+import iiwa_dnn as d
 from helpers_kinematics import PAPER_Q0, Array, finite_difference
 from helpers_simulation import beside, heart, near_target, own, paper_robot, paper_start, run
-from iiwa_dnn import (
-    Configuration,
-    Cost,
-    CrossCheck,
-    CyclicMotion,
-    DoubleIndicator,
-    JointLimits,
-    KineticEnergy,
-    Limit,
-    Manipulability,
-    OrientationTask,
-    PoseTask,
-    PositionTask,
-    PseudoInverse,
-    Scheme,
-    Step,
-    Target,
-    Task,
-    compute_metrics,
-    failures,
-    load_robot,
-)
 
 ELBOW = "iiwa7_link_4"
 NEAR = near_target(PAPER_Q0, 1)
-START = Configuration(paper_robot(), [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
-HERE = Target(START.position, START.rotation)
+START = d.Configuration(paper_robot(), [-1.2, -0.6, 0.3, 1.4, 0.2, -0.9, 0.4])
+HERE = d.Target(START.position, START.rotation)
 
 
 ZEROS, ROW = np.zeros(7), np.ones((1, 7))
-CROSSED = own(Limit, bounds=(ZEROS + 5.0, ZEROS + np.inf))
+CROSSED = own(d.Limit, bounds=(ZEROS + 5.0, ZEROS + np.inf))
 
 
-def composed() -> Scheme:
-    return Scheme(
-        costs=[KineticEnergy(weight=0.2), CyclicMotion(weight=0.8, home=PAPER_Q0)],
-        tasks=[PositionTask(gain=4.0), OrientationTask(gain=5.0)],
-        limits=[JointLimits(gain=6.0)],
+def composed() -> d.Scheme:
+    return d.Scheme(
+        costs=[d.KineticEnergy(weight=0.2), d.CyclicMotion(weight=0.8, home=PAPER_Q0)],
+        tasks=[d.PositionTask(gain=4.0), d.OrientationTask(gain=5.0)],
+        limits=[d.JointLimits(gain=6.0)],
     )
 
 
-class NumpyPosition(Task):
+class NumpyPosition(d.Task):
     """The position task once more, with numpy."""
 
     rows = 3
@@ -59,12 +38,12 @@ class NumpyPosition(Task):
     def __init__(self, weight: float) -> None:
         self.weight = weight
 
-    def equations(self, step: Step) -> tuple[Array, Array]:
+    def equations(self, step: d.Step) -> tuple[Array, Array]:
         tip, target = step.frame(), step.target()
         return tip.jacobian[:3], target.linear_velocity + 10.2 * (target.position - tip.position)
 
 
-class Clearance(Limit):
+class Clearance(d.Limit):
     """Keep the elbow away from a point, as a velocity damper: -n' J dq <= gain (d - least)."""
 
     rows = 1
@@ -72,7 +51,7 @@ class Clearance(Limit):
     def __init__(self, point: Array, least: float) -> None:
         self.point, self.least = point, least
 
-    def inequalities(self, step: Step) -> tuple[Array, Array]:
+    def inequalities(self, step: d.Step) -> tuple[Array, Array]:
         elbow = step.frame(ELBOW)
         away = elbow.position - self.point
         distance = np.linalg.norm(away)
@@ -82,28 +61,28 @@ class Clearance(Limit):
 
 def test_the_papers_scheme_is_its_parts() -> None:
     gains = {"position_gain": 4.0, "orientation_gain": 5.0}
-    whole = DoubleIndicator(home=PAPER_Q0, limit_gain=6.0, **gains).build_qp(paper_start(), NEAR)
+    whole = d.DoubleIndicator(home=PAPER_Q0, limit_gain=6.0, **gains).build_qp(paper_start(), NEAR)
     parts = composed().build_qp(paper_start(), NEAR)
     assert_array_equal(parts.data, whole.data)
     assert parts.sizes == whole.sizes == (7, 0, 6)
-    pinv = Scheme([KineticEnergy()], composed().tasks).build_qp(paper_start(), NEAR)
-    assert_array_equal(pinv.data, PseudoInverse(**gains).build_qp(paper_start(), NEAR).data)
+    pinv = d.Scheme([d.KineticEnergy()], composed().tasks).build_qp(paper_start(), NEAR)
+    assert_array_equal(pinv.data, d.PseudoInverse(**gains).build_qp(paper_start(), NEAR).data)
 
 
-@pytest.mark.parametrize("task", [PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
-def test_a_soft_task_is_a_term_of_the_cost(task: Task) -> None:
-    qp = Scheme([KineticEnergy(weight=0.5)], [task]).build_qp(paper_start(), NEAR)
-    hard = Scheme([KineticEnergy(weight=0.5)], [PositionTask()]).build_qp(paper_start(), NEAR)
+@pytest.mark.parametrize("task", [d.PositionTask(weight=3.0), NumpyPosition(weight=3.0)])
+def test_a_soft_task_is_a_term_of_the_cost(task: d.Task) -> None:
+    qp = d.Scheme([d.KineticEnergy(weight=0.5)], [task]).build_qp(paper_start(), NEAR)
+    hard = d.Scheme([d.KineticEnergy(weight=0.5)], [d.PositionTask()]).build_qp(paper_start(), NEAR)
     assert qp.sizes == (7, 0, 0)
     assert_allclose(qp.P, 0.5 * np.eye(7) + 3.0 * hard.A.T @ hard.A, rtol=0, atol=1e-14)
     assert_allclose(qp.q, -3.0 * hard.A.T @ hard.b, rtol=0, atol=1e-14)
 
 
 def test_costs_and_bounds_of_ones_own_join_the_others() -> None:
-    energy = own(Cost, quadratic=(0.7 * paper_start().inertia, ZEROS))
-    slow = own(Limit, bounds=(ZEROS - 0.2, ZEROS + 0.1))
-    costs = [CyclicMotion(weight=0.3, home=PAPER_Q0), energy]
-    scheme = Scheme(costs, [PositionTask()], [JointLimits(), slow])
+    energy = own(d.Cost, quadratic=(0.7 * paper_start().inertia, ZEROS))
+    slow = own(d.Limit, bounds=(ZEROS - 0.2, ZEROS + 0.1))
+    costs = [d.CyclicMotion(weight=0.3, home=PAPER_Q0), energy]
+    scheme = d.Scheme(costs, [d.PositionTask()], [d.JointLimits(), slow])
     qp = scheme.build_qp(paper_start(), NEAR)
     assert_allclose(qp.P, 0.3 * np.eye(7) + 0.7 * paper_start().inertia, rtol=0, atol=1e-13)
     assert_array_equal(qp.ub, np.full(7, 0.1))
@@ -115,16 +94,16 @@ def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> 
     point = start + [0.08, 0.06, 0.0]
     least = 0.1 - 0.004
     base = composed()
-    limited = Scheme(base.costs, base.tasks, [*base.limits, Clearance(point, least)])
+    limited = d.Scheme(base.costs, base.tasks, [*base.limits, Clearance(point, least)])
     free = run(base, reference=heart(period=4.0), duration=4.0, dt=1e-2)
-    record = run(limited, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=CrossCheck())
+    record = run(limited, reference=heart(period=4.0), duration=4.0, dt=2e-3, check=d.CrossCheck())
     nearest = []
     for run_ in (free, record):
-        elbows = [Configuration(paper_robot(), q).frame(ELBOW).position for q in run_.q]
+        elbows = [d.Configuration(paper_robot(), q).frame(ELBOW).position for q in run_.q]
         nearest.append(np.linalg.norm(elbows - point, axis=1).min())
     assert nearest[0] < least - 1e-3
     assert nearest[1] > least - 1e-6
-    assert failures(record) == []
+    assert d.failures(record) == []
     assert 50 < (record.row_multiplier[:, 0] > 0.0).sum() < 2000
     assert record.settings["rows"] == [{"part": "Clearance", "row": 1}]
 
@@ -134,13 +113,13 @@ def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> 
     ("part", "blamed"),
     [
         (
-            own(Limit, 1, inequalities=(ROW, [-20.0])),
+            own(d.Limit, 1, inequalities=(ROW, [-20.0])),
             "row 1 of Own, iiwa7_joint_2 lower velocity limit",
         ),
-        (own(Limit, 1, inequalities=(0.0 * ROW, [-1.0])), "row 1 of Own"),
+        (own(d.Limit, 1, inequalities=(0.0 * ROW, [-1.0])), "row 1 of Own"),
         (CROSSED, "iiwa7_joint_1 lower position limit or bound"),
         (
-            own(Task, 1, equations=(0.0 * ROW, [1.0])),
+            own(d.Task, 1, equations=(0.0 * ROW, [1.0])),
             "no bound, a singular pose or tasks against each other",
         ),
     ],
@@ -148,8 +127,8 @@ def test_an_inequality_row_is_kept_over_a_whole_run_and_every_step_checked() -> 
 def test_a_part_that_nothing_fulfils_is_named(
     part: Any, blamed: str, policy: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    record = run(beside(part), duration=0.01, check=CrossCheck(("osqp",)), policy=policy)
-    assert any(f"in the way: {blamed}" in reason for reason in failures(record))
+    record = run(beside(part), duration=0.01, check=d.CrossCheck(("osqp",)), policy=policy)
+    assert any(f"in the way: {blamed}" in reason for reason in d.failures(record))
     assert capfd.readouterr().out == ""  # OSQP has its own words for such programs
     # A row that asks for motion is followed as far as the joints can; bounds that contradict each
     # other stop the arm.
@@ -161,32 +140,23 @@ def test_a_part_that_nothing_fulfils_is_named(
 
 
 def test_an_active_bound_of_ones_own_is_no_position_limit() -> None:
-    quick = own(Limit, bounds=(ZEROS + 0.1, ZEROS + 0.2))
-    record = run(Scheme([KineticEnergy()], [], [JointLimits(), quick]), duration=0.01)
+    quick = own(d.Limit, bounds=(ZEROS + 0.1, ZEROS + 0.2))
+    record = run(d.Scheme([d.KineticEnergy()], [], [d.JointLimits(), quick]), duration=0.01)
     assert_allclose(record.dq, 0.1, rtol=1e-9)
-    active = compute_metrics(record)["incidents"]["active"]
+    active = d.compute_metrics(record)["incidents"]["active"]
     assert {bound["limit"] for bound in active} == {"position limit or bound of Own"}
 
 
 @pytest.mark.parametrize("weight", [None, 1.0])
 def test_without_a_cost_answers_agree_in_what_is_weighed(weight: float | None) -> None:
     # Four directions of seven are free: references choose other points of the same cost.
-    scheme = Scheme([], [PositionTask(weight=weight)], [JointLimits()])
-    record = run(scheme, duration=0.02, check=CrossCheck(("proxqp", "osqp")))
-    assert failures(record) == []
-
-
-def test_parts_serve_another_robot() -> None:
-    robot = load_robot("iiwa7", locked=("iiwa7_joint_3",))
-    conf = Configuration(robot, np.delete(PAPER_Q0, 2))
-    scheme = Scheme([KineticEnergy()], [PositionTask(), NumpyPosition(weight=0.1)], [JointLimits()])
-    qp = scheme.build_qp(conf, Target(conf.position, conf.rotation))
-    assert qp.sizes == (6, 0, 3)
-    assert_allclose(qp.A, conf.jacobian[:3], rtol=0, atol=1e-15)
+    scheme = d.Scheme([], [d.PositionTask(weight=weight)], [d.JointLimits()])
+    record = run(scheme, duration=0.02, check=d.CrossCheck(("proxqp", "osqp")))
+    assert d.failures(record) == []
 
 
 def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> None:
-    scheme = Scheme([KineticEnergy(), CyclicMotion()], [PositionTask()])
+    scheme = d.Scheme([d.KineticEnergy(), d.CyclicMotion()], [d.PositionTask()])
     anchored = scheme.anchored(paper_start())
     assert anchored.costs[1].home == PAPER_Q0
     assert scheme.costs[1].home is None
@@ -198,16 +168,18 @@ def test_anchoring_gives_every_part_its_home_and_leaves_the_scheme_alone() -> No
 
 def test_manipulability_gradient_is_that_of_finite_differences() -> None:
     def measure(q: Array) -> float:
-        J = Configuration(paper_robot(), q).jacobian
+        J = d.Configuration(paper_robot(), q).jacobian
         return float(np.sqrt(np.linalg.det(J @ J.T)))
 
-    qp = Scheme([Manipulability(weight=2.0)]).build_qp(START, HERE)
+    qp = d.Scheme([d.Manipulability(weight=2.0)]).build_qp(START, HERE)
     assert_allclose(qp.q, -2.0 * finite_difference(measure, START.q), atol=1e-7)
     assert not qp.P.any()
 
 
 def test_parts_leave_slack_variables_out() -> None:
-    scheme = Scheme([CyclicMotion(), Manipulability()], [PoseTask()], [JointLimits()], slack=2)
+    scheme = d.Scheme(
+        [d.CyclicMotion(), d.Manipulability()], [d.PoseTask()], [d.JointLimits()], slack=2
+    )
     qp = scheme.build_qp(START, HERE)
     assert_array_equal(qp.A[:, 7:], 0.0)
     assert_allclose(qp.A[:, :7], START.jacobian, rtol=0, atol=1e-15)

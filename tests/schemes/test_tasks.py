@@ -121,17 +121,6 @@ def test_block_right_hand_side_is_projected_so_that_all_rows_can_be_fulfilled() 
         assert_allclose(b, basis @ (basis.T @ (rate + 3.0 * error)), rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("axis", [(0, 0, 1), (1, 0, 0), (3, -2, 1), (-1, 3, 2), (1, 2, -3)])
-@pytest.mark.parametrize("angle", [1e-9, 1e-3, 1.0, 2.2, -2.9, np.pi - 1e-4])
-def test_so3_right_hand_side_is_the_rotation_vector(axis: tuple[int, ...], angle: float) -> None:
-    # Beyond 2 pi / 3 the quaternion's largest component may be any of four.
-    conf = Configuration(ROBOT, POSTURES[1])
-    vector = angle * np.array(axis) / np.linalg.norm(axis)
-    turn = Rotation.from_rotvec(vector).as_matrix()
-    _, b = orientation_rows("so3", conf, Target(conf.position, turn @ conf.rotation), 1.0)
-    assert_allclose(b, vector, rtol=0, atol=1e-11)
-
-
 @pytest.mark.parametrize("angle", [1e-9, 0.5, 2.0, 3.1])
 def test_the_axis_is_to_turn_by_the_angle_that_it_is_off(angle: float) -> None:
     here = START.rotation @ AXIS / np.linalg.norm(AXIS)
