@@ -36,6 +36,7 @@ from iiwa_dnn import (
     Waypoints,
     simulate,
 )
+from iiwa_dnn.networks.primal_dual import SHARE
 from iiwa_dnn.results.metrics import orientation_error, position_error
 from iiwa_dnn.studies.paper import MAX_ERROR
 
@@ -107,7 +108,7 @@ def test_with_the_primal_projection_there_is_a_lyapunov_function(
         H, constant = (array[..., :size] for array in variational(qp))
         H = H[:size]
         if isinstance(network, OneLayerNetwork):
-            alpha = network.share / np.linalg.norm(H, 2)
+            alpha = SHARE / np.linalg.norm(H, 2)
             H, constant = alpha * H, alpha * constant
         rest = equilibrium(qp)[:size]
         lower = np.concatenate([qp.lb, np.full(3, -np.inf), np.zeros(size - 8)])

@@ -31,13 +31,11 @@ class Flow(NamedTuple):
         jacobian: Its derivative where it has one, and one of its limits at a kink,
             (state_size, state_size); None: it is computed by differences.
         unknowns: ``[x | y | z]`` of a state, (n + p + m,); None: the state begins with them.
-        limit: `linear_limit` at a state (size,), if it is not that of the derivative.
     """
 
     rates: Callable[[Vector], Vector]
     jacobian: Callable[[Vector], Matrix] | None = None
     unknowns: Callable[[Vector], Vector] | None = None
-    limit: Callable[[Vector], float] | None = None
 
     def derivative(self, state: Vector) -> Matrix:
         """Differentiate the rates at a state (size,), (size, size)."""
@@ -57,8 +55,6 @@ class Flow(NamedTuple):
         :math:`|1 + h \lambda| \le 1`. Those at zero, of dependent rows, are left out. It is 0 where
         an eigenvalue has no negative real part.
         """
-        if self.limit is not None:
-            return self.limit(state)
         eigenvalues = np.linalg.eigvals(self.derivative(state))
         squares = np.abs(eigenvalues) ** 2
         moving = squares > 1e-14 * squares.max(initial=1e-300)
@@ -140,17 +136,12 @@ class Network:
         check_size("state", state, self.state_size(qp))
         return self.flow(qp).read(qp, state, point)
 
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
-        """Bound the stable steps of explicit Euler [rho]; 0 where none is known to be stable.
+    def stable_step(self, qp: QP, state: Vector) -> float:
+        """Bound the stable steps of explicit Euler around a state (state_size,), in units of rho.
 
-        By default the bound is that of the derivative, `Flow.linear_limit`.
-
-        Args:
-            qp: The program.
-            state: A state, (state_size,), around which the bound has to hold. None: everywhere, if
-                the network knows such a bound, else around the initial state.
+        It is 0 where none is known to be stable. By default it is `Flow.linear_limit`.
         """
-        return self.flow(qp).linear_limit(self.initial_state(qp) if state is None else state)
+        return self.flow(qp).linear_limit(state)
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count the floating-point operations of one program's set-up and of one evaluation.

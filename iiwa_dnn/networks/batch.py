@@ -10,7 +10,7 @@ from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.solver import DNNSolver
 from iiwa_dnn.qp.layout import Matrix
 from iiwa_dnn.qp.program import FIELDS, QP, real_array
-from iiwa_dnn.qp.solution import Solution, Status
+from iiwa_dnn.qp.solution import Solution
 
 _AXES = dict(zip(FIELDS, (2, 1, 2, 1, 2, 1, 1, 1), strict=True))
 """Axes of each field of one program."""
@@ -25,8 +25,8 @@ class BatchSolution(NamedTuple):
         z: Multipliers of the inequalities, (k, m).
         z_box: Multipliers of the bounds, (k, n).
         found: True where every residual is at most the tolerance, (k,).
-        residuals: Primal residual, dual residual and duality gap, (k, 3); inf where the cost is not
-            convex.
+        residuals: Primal residual, dual residual and duality gap, (k, 3); NaN where a value is
+            wrong.
         iterations: Linear systems solved, (k,).
     """
 
@@ -88,10 +88,9 @@ def solve_batch(
 
 
 def _solve(qp: QP, tol: float) -> Solution:
-    """Solve a program; without a solution where a value is wrong."""
+    """Solve a program; one with a wrong value becomes NaN, and is not found."""
     try:
         qp.check_values()
     except InvalidInputError:
-        nothing = np.full(qp.sizes[0] + sum(qp.sizes), np.nan)
-        return Solution(nothing, qp.sizes, Status.NOT_FINITE, 0, 0.0, np.inf, np.inf, np.inf)
+        qp = QP.from_data(np.nan * qp.data, qp.sizes)
     return DNNSolver(tol=tol).solve(qp)

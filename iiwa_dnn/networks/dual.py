@@ -36,7 +36,7 @@ import numpy as np
 from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.primal_dual import Clipped
-from iiwa_dnn.qp.layout import Sizes, Vector
+from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 
 
@@ -68,6 +68,7 @@ class DualNetwork(Network):
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up; dependent equalities are solved in the least-squares sense."""
         n, m, p = qp.sizes
+        rows, lower, upper = two_sided(qp)
         try:
             inverse = np.linalg.inv(np.linalg.cholesky(qp.P))
         except np.linalg.LinAlgError:
@@ -75,9 +76,6 @@ class DualNetwork(Network):
             raise InvalidInputError("P", problem) from None
         M = inverse.T @ inverse
         offset = -M @ qp.q
-        rows = np.vstack([qp.A, qp.G, np.eye(n)])
-        lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
-        upper = np.concatenate([qp.b, qp.h, qp.ub])
         equalities = np.empty((n, 0))
         if self.simplified:
             scaled = qp.A @ inverse.T
@@ -108,3 +106,11 @@ class SimplifiedDualNetwork(DualNetwork):
     """The simplified dual network, with m + n states: 7 for seven joints and seven task rows."""
 
     simplified: ClassVar[bool] = True
+
+
+def two_sided(qp: QP) -> tuple[Matrix, Vector, Vector]:
+    """Return the rows [A; G; I] (k, n) and their lower and upper limits, (k,)."""
+    n, m, _ = qp.sizes
+    rows = np.vstack([qp.A, qp.G, np.eye(n)])
+    lower = np.concatenate([qp.b, np.full(m, -np.inf), qp.lb])
+    return rows, lower, np.concatenate([qp.b, qp.h, qp.ub])

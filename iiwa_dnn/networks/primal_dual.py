@@ -44,10 +44,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.networks.base import Flow, Network, kkt_product
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
+
+SHARE = 0.5
+"""Alpha times the norm of H in the one-layer network."""
 
 
 class Clipped(NamedTuple):
@@ -108,18 +110,10 @@ class OneLayerNetwork(PrimalDualNetwork):
     """The one-layer network, with n + p + m states.
 
     Attributes:
-        share: Share of alpha ||H||, above 0 and below 1.
         corrected: True for the convergent form, two products with H for each evaluation.
     """
 
-    share: float = 0.5
     corrected: bool = True
-
-    def __post_init__(self) -> None:
-        """Check the parameters."""
-        super().__post_init__()
-        if not 0.0 < self.share < 1.0:
-            raise InvalidInputError("share", f"must be in (0, 1), not {self.share}")
 
     def work(self, sizes: Sizes) -> tuple[float, float]:
         """Count no set-up and a product with H, two with the correction; sizes are (n, m, p)."""
@@ -129,7 +123,7 @@ class OneLayerNetwork(PrimalDualNetwork):
     def flow(self, qp: QP, rate: QP | None = None) -> Flow:
         """Set a program up."""
         H, c, lower, upper = variational(qp)
-        alpha = self.share / float(np.linalg.norm(H, 2))
+        alpha = SHARE / float(np.linalg.norm(H, 2))
         eye = np.eye(c.size)
         matrix = eye - alpha * H
         outer = matrix if self.corrected else eye

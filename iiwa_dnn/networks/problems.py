@@ -8,7 +8,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.backend import provide
+from iiwa_dnn.qp import backend
 from iiwa_dnn.qp.program import QP
 
 if TYPE_CHECKING:
@@ -53,28 +53,19 @@ def solve_problem(
     else:
         checks.instance("solver", solver, DNNSolver).reset()
     n = qp.sizes[0]
-    largest = float(np.abs(qp.data[: n * n + n]).max())
-    slight = 0.0 < largest < _SLIGHT
-    solved = _at_unit_cost(qp, largest) if slight else qp
-    solution = solver.solve(solved)
-    if sharpen:
-        solution = solver.sharpen(solved, solution)
-    if slight:
-        solution.point[n:] *= largest
-        dual = solution.dual * largest
-        solution = solution._replace(dual=dual, gap=solution.gap * largest)
-    return solution.to_qpsolvers(problem)
-
-
-def _at_unit_cost(qp: QP, largest: float) -> QP:
-    """Divide a slight cost by its largest entry.
-
-    Any x at all would be within an absolute tolerance on the residuals.
-    """
-    n = qp.sizes[0]
     data = qp.data.copy()
-    data[: n * n + n] /= largest
-    return QP.from_data(data, qp.sizes)
+    cost = data[: n * n + n]
+    largest = float(np.abs(cost).max())
+    # Of a slight cost, any x at all would be within an absolute tolerance on the residuals.
+    scale = largest if 0.0 < largest < _SLIGHT else 1.0
+    cost /= scale
+    scaled = QP.from_data(data, qp.sizes)
+    solution = solver.solve(scaled)
+    if sharpen:
+        solution = solver.sharpen(scaled, solution)
+    solution.point[n:] *= scale
+    dual = solution.dual * scale
+    return solution._replace(dual=dual, gap=solution.gap * scale).to_qpsolvers(problem)
 
 
-provide(solve_problem)
+backend.SOLVE.append(solve_problem)

@@ -193,7 +193,7 @@ class ProjectionNetwork(Network):
 
         return Flow(rates, jacobian)
 
-    def stable_step(self, qp: QP, state: Vector | None = None) -> float:
+    def stable_step(self, qp: QP, state: Vector) -> float:
         r"""Bound the stable steps of explicit Euler, in units of rho.
 
         On a fixed active set the network is linear. For an eigenvalue with eigenvector (v, w),
@@ -205,22 +205,15 @@ class ProjectionNetwork(Network):
 
         Args:
             qp: The program.
-            state: A state, (state_size,), whose active rows are counted; None counts every
-                inequality row, and the bound holds on every active set.
+            state: A state, (state_size,), whose active rows are counted.
 
         Returns:
             The bound; zero where P is singular, since then no step is known to be stable.
         """
-        n, m, p = qp.sizes
-        if state is None:
-            # Both bounds of one variable are active together only if they coincide.
-            bounded = (qp.ub < np.inf) | (qp.lb > -np.inf)
-            active = np.concatenate([np.ones(p + m), bounded, qp.lb == qp.ub])
-        else:
-            active = np.where((state + self.rates(qp, state))[n:] > 0.0, 1.0, 0.0)
-            active[:p] = 1.0
-        views = QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub)
-        return stable_step(views, active)
+        n, _, p = qp.sizes
+        active = np.where((state + self.rates(qp, state))[n:] > 0.0, 1.0, 0.0)
+        active[:p] = 1.0
+        return stable_step(QPViews(qp.P, qp.q, qp.G, qp.h, qp.A, qp.b, qp.lb, qp.ub), active)
 
 
 def is_projection(network: Network) -> TypeGuard[ProjectionNetwork]:

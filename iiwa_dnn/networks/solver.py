@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -32,7 +31,7 @@ class DNNSolver:
 
     The network's state is carried from one program to the next as long as their shapes agree, as a
     control loop wants it. A call takes the state away while it works on it, so that threads may
-    share a solver; a copy has a warm start of its own.
+    share a solver.
 
     Attributes:
         network: The ODE.
@@ -52,10 +51,6 @@ class DNNSolver:
         checks.positive("tol", self.tol)
         checks.instance("network", self.network, Network)
         checks.instance("settler", self.settler, ImplicitEuler)
-
-    def __getstate__(self) -> dict[str, Any]:
-        warm = {sizes: state.copy() for sizes, state in self._warm.items()}
-        return {**self.__dict__, "_warm": warm}
 
     @property
     def state(self) -> Vector:

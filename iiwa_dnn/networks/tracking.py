@@ -21,7 +21,7 @@ import numpy as np
 
 from iiwa_dnn import checks
 from iiwa_dnn.networks.solver import DNNSolver
-from iiwa_dnn.qp.layout import Sizes, Vector, check_size
+from iiwa_dnn.qp.layout import Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
@@ -61,8 +61,7 @@ class TrackingSolver(DNNSolver):
     """A network that is advanced by a formula, and gets its program's rate of change.
 
     `advance` answers a program with the state that was computed from the programs before it. The
-    rate comes from backward differences of the last programs, or is given. `solve` is that of
-    `DNNSolver`.
+    rate comes from backward differences of the last programs. `solve` is that of `DNNSolver`.
 
     Attributes:
         formula: The formula.
@@ -81,16 +80,14 @@ class TrackingSolver(DNNSolver):
     def reset(self) -> None:
         """Forget states and programs: the next call starts from the network's initial state."""
         super().reset()
-        self._past.update(states=[], programs=[], rate=[])
+        self._past.update(states=[], programs=[])
 
-    def advance(self, qp: QP, duration: float, rate: Vector | None = None) -> Solution:
+    def advance(self, qp: QP, duration: float) -> Solution:
         """Move on by `duration` from the last program to this one, and answer it.
 
         Args:
             qp: The program at the end of the time.
             duration: Time since the last program [s], the same in all calls.
-            rate: Rate of change of `QP.data` at this program [1/s], (size,), for the next call;
-                None takes backward differences.
 
         Returns:
             The point that the state stands for, with status ``ADVANCED`` and its residuals.
@@ -104,28 +101,14 @@ class TrackingSolver(DNNSolver):
             self._step(state, qp.sizes, duration / steps, i)
         programs.insert(0, qp.data.copy())
         del programs[self.formula.order :]
-        self.predict(self._difference(duration) if rate is None else rate)
         return self._advanced(qp, state, steps, duration / self.network.rho)
-
-    def predict(self, rate: Vector) -> None:
-        """Set the rate of change of the last program's `QP.data` [1/s], (size,), for the next call.
-
-        It may be set after the call, where it depends on the answer.
-        """
-        size = self._past["programs"][0].size
-        self._past["rate"] = [check_size("rate", rate, size)]
-
-    def _difference(self, duration: float) -> Vector:
-        """Estimate the rate of change of the program [1/s] at the newest one."""
-        known = np.array(self._past["programs"])
-        weights = np.array(_BACKWARD[len(known) - 1])
-        rate: Vector = weights @ np.where(np.isfinite(known), known, 0.0) / duration
-        return rate
 
     def _step(self, state: Vector, sizes: Sizes, step: float, i: int) -> None:
         """Advance the state in place by the formula's step number i [s] from the last program."""
-        rate = self._past["rate"][0]
-        now = QP.from_data(self._past["programs"][0] + i * step * rate, sizes)
+        programs = np.array(self._past["programs"])
+        weights = np.array(_BACKWARD[len(programs) - 1])
+        rate = weights @ np.where(np.isfinite(programs), programs, 0.0) / (self.substeps * step)
+        now = QP.from_data(programs[0] + i * step * rate, sizes)
         moving = QP.from_data(self.network.rho * rate, sizes)
         change = step / self.network.rho * self.network.flow(now, moving).rates(state)
         past = [state.copy(), *self._past["states"]]

@@ -229,8 +229,7 @@ class ZeroingNetwork(Network):
             return result
 
         # Exact at rest; elsewhere it makes of a long implicit step Newton's.
-        jacobian = (lambda state: -np.eye(size)) if linear else None
-        return Flow(rates, jacobian)
+        return Flow(rates, (lambda state: -np.eye(size)) if linear else None)
 
     def removal(self, error: Vector, state: Vector) -> Vector:
         """Return the rate (size,) at which a residual (size,) is removed at a state."""
@@ -258,13 +257,7 @@ class GradientNetwork(ZeroingNetwork):
             result: Vector = -matrix.T @ self.activation(error)
             return result
 
-        def jacobian(state: Vector) -> Matrix:
-            matrix = evaluate(qp, self.form, state).matrix
-            return -matrix.T @ matrix
-
-        # W is constant on an active set of the projected form.
-        exact = self.form == "projected" and isinstance(self.activation, Linear)
-        return Flow(rates, jacobian if exact else None)
+        return Flow(rates)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -275,28 +268,22 @@ class NoiseSuppressingNetwork(ZeroingNetwork):
         form: Form of the complementarity; ``"smooth"`` is the source's.
         integral: gamma, in units of 1 / rho.
         proportional: eta, in units of 1 / rho.
-        bound: Bound of the activations; the source's is 1.
-        noise: Constant noise in the rate of the residual [1/rho].
     """
 
     form: Form = "smooth"
     integral: float = 1.0
     proportional: float = 1.0
-    bound: float = 1.0
-    noise: float = 0.0
 
     def __post_init__(self) -> None:
         """Check the parameters."""
         super().__post_init__()
-        for name in ("integral", "proportional", "bound"):
-            checks.positive(name, getattr(self, name))
-        checks.finite("noise", self.noise)
+        checks.positive("integral", self.integral)
+        checks.positive("proportional", self.proportional)
 
     def removal(self, error: Vector, state: Vector) -> Vector:
-        """Return the rate (size,) at which a residual (size,) is removed, less the noise."""
-        size = error.size
-        bound = self.bound
-        first = self.proportional * np.clip(error, -bound, bound)
-        summed = self.proportional * np.clip(state[size : 2 * size], -bound, bound)
-        second: Vector = self.integral * np.clip(error + summed, -bound, bound)
-        return first + second - self.noise
+        """Return the rate (size,) at which a residual (size,) is removed."""
+        summed = state[error.size : 2 * error.size]
+        aim = error + self.proportional * np.clip(summed, -1.0, 1.0)
+        first = self.proportional * np.clip(error, -1.0, 1.0)
+        second: Vector = self.integral * np.clip(aim, -1.0, 1.0)
+        return first + second

@@ -12,12 +12,8 @@ if TYPE_CHECKING:
     import qpsolvers
 
 NAME = "iiwa_dnn"
-_solve: list[Callable[..., Any]] = []
-
-
-def provide(solve: Callable[..., Any]) -> None:
-    """Set the function that `register` enters: `iiwa_dnn.networks` does, a later room."""
-    _solve[:] = [solve]
+SOLVE: list[Callable[..., Any]] = []
+"""The function that `register` enters, put here by `iiwa_dnn.networks`, a later room."""
 
 
 def register() -> None:
@@ -48,7 +44,7 @@ def _solve_problem(
     from qpsolvers import ProblemError
 
     try:
-        solution: qpsolvers.Solution = _solve[0](problem, tol=eps_abs, sharpen=True)
+        solution: qpsolvers.Solution = SOLVE[0](problem, tol=eps_abs, sharpen=True)
         return solution
     except InvalidInputError as error:
         raise ProblemError(str(error)) from error

@@ -57,8 +57,8 @@ from iiwa_dnn import (
 )
 from iiwa_dnn.files import one_line
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.activations import FixedTime, PowerSigmoid, PredefinedTime, SignBiPower
-from iiwa_dnn.networks.admm import AdmmSolver
+from iiwa_dnn.networks.activations import SIGN_BI_POWER, FixedTime, PowerSigmoid, PredefinedTime
+from iiwa_dnn.networks.admm import AdmmIteration
 from iiwa_dnn.networks.base import kkt_product
 from iiwa_dnn.networks.tracking import EULER, FIFD, TAYLOR3, TAYLOR4, TAYLOR5, Formula
 from iiwa_dnn.qp import Matrix, Vector
@@ -236,6 +236,15 @@ def settled(network: Network) -> Entry:
     )
 
 
+def iterated(network: Network) -> Entry:
+    """Return the entry of a method whose iteration is an explicit step of one rho."""
+
+    def make(count: int, share: float, dt: float) -> DNNSolver:
+        return DNNSolver(replace(network, rho=dt / count), follower=ExplicitEuler(substeps=count))
+
+    return Entry(network, make, network.work, paced=False)
+
+
 def zeroing(formula: Formula = EULER, **options: Any) -> Entry:
     """Return the entry of a zeroing network, its gain a share of the formula's limit."""
     return follows(ZeroingNetwork(**options), formula)
@@ -257,12 +266,6 @@ def _condensed(sizes: Sizes) -> tuple[float, float]:
     return 0.0, 2.0 * n**2 * (m + p) + n**3 / 3.0 + 2.0 * n**2 + 2.0 * kkt_product(sizes)
 
 
-def _factorised(sizes: Sizes) -> tuple[float, float]:
-    """Count the operations of ADMM: one factorisation a program, one substitution an iteration."""
-    size = sizes[0] + sum(sizes)
-    return size**3 / 3.0, 2.0 * size**2
-
-
 def _activated(network: Network, activation: Any) -> Entry:
     return still(ActivatedNetwork(network=network, activation=activation))
 
@@ -276,7 +279,7 @@ NETWORKS: dict[str, Entry] = {
     "simplified dual": still(SimplifiedDualNetwork()),
     "primal-dual": still(PrimalDualNetwork()),
     "gradient": still(GradientNetwork()),
-    "dual, finite time": _activated(DualNetwork(), SignBiPower()),
+    "dual, finite time": _activated(DualNetwork(), SIGN_BI_POWER),
     "dual, fixed time": _activated(DualNetwork(), FixedTime()),
     "primal-dual, fixed time": _activated(PrimalDualNetwork(), FixedTime()),
     "simplified dual, predefined time": _activated(SimplifiedDualNetwork(), PredefinedTime()),
@@ -286,7 +289,7 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, Taylor 4": zeroing(TAYLOR4),
     "zeroing, Taylor 5": zeroing(TAYLOR5),
     "zeroing, power-sigmoid": zeroing(activation=PowerSigmoid()),
-    "zeroing, sign-bi-power": zeroing(activation=SignBiPower()),
+    "zeroing, sign-bi-power": zeroing(activation=SIGN_BI_POWER),
     "zeroing, fixed time": zeroing(activation=FixedTime()),
     "zeroing, predefined time": zeroing(activation=PredefinedTime()),
     "zeroing, noise-tolerant": zeroing(integral=0.25),
@@ -294,9 +297,7 @@ NETWORKS: dict[str, Entry] = {
     "zeroing, smooth": zeroing(form="smooth"),
     "noise-suppressing": follows(NoiseSuppressingNetwork(form="projected")),
     "projection, implicit Euler": settled(ProjectionNetwork(primal_projection=False)),
-    "ADMM (OSQP)": Entry(
-        AdmmSolver, lambda count, share, dt: AdmmSolver(substeps=count), _factorised, paced=False
-    ),
+    "ADMM (OSQP)": iterated(AdmmIteration()),
 }
 """Networks of the atlas by name, and the yardstick."""
 

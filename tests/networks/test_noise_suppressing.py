@@ -5,9 +5,9 @@ import pytest
 
 from iiwa_dnn import QP
 from iiwa_dnn.networks import NoiseSuppressingNetwork
-from iiwa_dnn.networks.zeroing import EPSILON
+from iiwa_dnn.networks.zeroing import EPSILON, evaluate
 
-GAMMA, ETA, NOISE = 30.0, 20.0, 5.0
+GAMMA, ETA = 30.0, 20.0
 
 
 def clipped(values: np.ndarray) -> np.ndarray:
@@ -39,13 +39,13 @@ def programs_rates(qp: QP, rate: QP, state: np.ndarray) -> np.ndarray:
     ])  # fmt: skip
     moved = N @ state[: n + p + k] + np.concatenate([rate.q, -rate.b, none(k)])
     wanted = -moved - ETA * clipped(error)
-    wanted += -GAMMA * clipped(error + ETA * clipped(summed)) + NOISE
+    wanted += -GAMMA * clipped(error + ETA * clipped(summed))
     return np.concatenate([np.linalg.solve(M, wanted), error])
 
 
 def test_rates_are_those_of_the_authors_equations() -> None:
     rng = np.random.default_rng(0)
-    network = NoiseSuppressingNetwork(rho=1.0, integral=GAMMA, proportional=ETA, noise=NOISE)
+    network = NoiseSuppressingNetwork(rho=1.0, integral=GAMMA, proportional=ETA)
     for _ in range(20):
         qp = QP(
             np.diag(rng.uniform(0.5, 2.0, 4)), rng.standard_normal(4),
@@ -67,13 +67,14 @@ def test_rates_are_those_of_the_authors_equations() -> None:
 def test_a_constant_noise_is_taken_out_below_gamma(noise: float, rejected: bool) -> None:
     """The integral goes to n / (gamma eta); at gamma + eta and beyond nothing holds it."""
     qp = QP(np.eye(2), [0.3, -0.2], A=[[1.0, 2.0]], b=[0.4], lb=[-1.0, -1.0], ub=[1.0, 1.0])
-    network = NoiseSuppressingNetwork(
-        rho=1.0, form="projected", integral=GAMMA, proportional=ETA, noise=noise
-    )
+    network = NoiseSuppressingNetwork(rho=1.0, form="projected", integral=GAMMA, proportional=ETA)
+    residual = evaluate(qp, "projected", np.zeros(3)).matrix
     rates = network.flow(qp).rates
     state = network.initial_state(qp)
     for _ in range(4000):
-        state = state + 2e-3 * rates(state)
+        change = rates(state)
+        change[:3] += np.linalg.solve(residual, np.full(3, noise))
+        state = state + 2e-3 * change
     error = rates(state)[3:]
     assert bool(np.abs(error).max() < 1e-9) is rejected
     if rejected:

@@ -1,7 +1,5 @@
 """The network as a solver: against known solutions, two other solvers, and its own promises."""
 
-import copy
-import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -146,21 +144,6 @@ def test_a_problem_of_qpsolvers_is_for_another_function(
 ) -> None:
     with pytest.raises(InvalidInputError, match=r"qp: must be an iiwa_dnn\.QP"):
         call(DNNSolver(), qpsolvers.Problem(np.eye(2), np.zeros(2)))
-
-
-@pytest.mark.parametrize(
-    "duplicate", [copy.copy, copy.deepcopy, lambda s: pickle.loads(pickle.dumps(s))]
-)
-def test_a_copy_has_a_warm_start_of_its_own(duplicate: Callable[[DNNSolver], DNNSolver]) -> None:
-    qp, _ = known_qp(np.random.default_rng(12), 7, 3, 2, inequalities=2)
-    solver = DNNSolver()
-    solver.solve(qp)
-    before = solver.state
-    other = duplicate(solver)
-    np.testing.assert_array_equal(other.state, before)
-    other.disturb(np.ones(7))
-    np.testing.assert_array_equal(solver.state, before)
-    assert other.solve(qp).found
 
 
 def test_nobody_else_has_the_state_while_a_call_works_on_it() -> None:

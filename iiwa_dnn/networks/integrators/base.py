@@ -1,6 +1,6 @@
 """Integrator of a network: it advances a state by a time, or until the network has settled."""
 
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from iiwa_dnn.compiling.library import entry, released
 from iiwa_dnn.networks.base import Network, settings_of
@@ -77,13 +77,7 @@ def answer_program(
 
 
 class Integrator(Protocol):
-    """One way to integrate a network; one that derives from this is a dataclass.
-
-    Attributes:
-        order: Order of the method in its step length.
-    """
-
-    order: ClassVar[int]
+    """One way to integrate a network; one that derives from this is a dataclass."""
 
     def advance(self, network: Network, qp: QP, state: Vector, duration: float) -> int:
         """Advance `state` (size,) in place by `duration` [rho]; returns the iterations taken."""

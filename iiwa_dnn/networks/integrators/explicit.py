@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -32,7 +31,6 @@ class ExplicitEuler(Integrator):
         substeps: Sub-steps per `advance`; None computes how many are needed for stability.
     """
 
-    order: ClassVar[int] = 1
     substeps: int | None = None
 
     def __post_init__(self) -> None:

@@ -10,8 +10,8 @@ of x out, with which a step would no longer be a convex problem
 (`iiwa_dnn.networks.integrators.implicit_steps`): at the equilibrium the multipliers alone keep the
 bounds, so the answer is the same, and the one that is handed out is put inside its bounds.
 
-**Other networks**, and the projection in `advance`, go through a Newton iteration on the whole
-state (`iiwa_dnn.networks.integrators.pseudo_transient`).
+**Other networks**, and the projection in `advance`, take linearly implicit steps on the whole state
+(`iiwa_dnn.networks.integrators.pseudo_transient`).
 
 Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
 SIAM J. Numer. Anal. 35 (1998).
@@ -19,7 +19,6 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
@@ -62,14 +61,15 @@ MAX_NEWTON = 50
 
 @dataclass(frozen=True)
 class ImplicitEuler(Integrator):
-    """Backward Euler, of order 1; without the primal projection any step has one solution.
+    """Implicit Euler, of order 1; without the primal projection any step has one solution.
+
+    Other networks, and the projection in `advance`, take linearly implicit steps.
 
     Attributes:
         step: Longest step of `advance`, in units of rho.
         max_steps: Budget of `settle` in linear systems.
     """
 
-    order: ClassVar[int] = 1
     step: float = 1.0
     max_steps: int = 1000
 
@@ -96,9 +96,9 @@ class ImplicitEuler(Integrator):
                 raise NoSolutionError("an implicit step cannot be solved to working precision")
             return sum(taken)
         flow = network.flow(qp)
-        return sum(
-            pseudo_transient.backward_euler(flow, state, length, 1e-12) for _ in range(count)
-        )
+        for _ in range(count):
+            state += pseudo_transient.linear_change(flow, state, length, flow.rates(state))
+        return count
 
     def settle(self, network: Network, qp: QP, state: Vector, point: Vector, tol: float) -> Settled:
         """Advance a state (size,) in place until the KKT residuals of its point are at most `tol`.

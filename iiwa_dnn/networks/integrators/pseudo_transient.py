@@ -1,8 +1,7 @@
-"""Implicit steps of any network, by Newton iterations on its whole state.
+"""Linearly implicit steps of any network: one Newton iteration of backward Euler, on all states.
 
-`settle` takes one linearly implicit step after another, longer ones as the rates fall
-(switched evolution relaxation). The projection network has compiled loops
-(`iiwa_dnn.networks.integrators.implicit`).
+`settle` takes longer ones as the rates fall (switched evolution relaxation). The projection network
+has compiled loops (`iiwa_dnn.networks.integrators.implicit`).
 
 Source: C. T. Kelley and D. E. Keyes, "Convergence analysis of pseudo-transient continuation",
 SIAM J. Numer. Anal. 35 (1998).
@@ -10,7 +9,6 @@ SIAM J. Numer. Anal. 35 (1998).
 
 import numpy as np
 
-from iiwa_dnn.errors import NoSolutionError
 from iiwa_dnn.networks.base import Flow, Network
 from iiwa_dnn.networks.integrators.base import Settled
 from iiwa_dnn.qp.layout import Vector
@@ -21,8 +19,6 @@ LONGEST = 1e8
 """Longest step of `settle` [rho]."""
 SHORTEST = 1e-6
 """Step [rho] below which the field is not followed any more."""
-MAX_NEWTON = 15
-"""Newton iterations of one backward Euler step; four short ones follow if they do not converge."""
 
 
 def settle(
@@ -30,7 +26,6 @@ def settle(
 ) -> Settled:
     """Advance `state` (size,) with growing implicit steps; arguments as `Integrator.settle`'s."""
     flow = network.flow(qp)
-    eye = np.eye(state.size)
     step = 1.0
     systems = 0
     time = 0.0
@@ -42,7 +37,7 @@ def settle(
             if within(*residuals, tol) or rate != rate:
                 return systems, time, *residuals
         systems += 1
-        new = state + _solved(eye / step - flow.derivative(state), rates)
+        new = state + linear_change(flow, state, step, rates)
         new_rates = flow.rates(new)
         new_rate = float(np.abs(new_rates).max())
         # The fields are small in some places that are far from any equilibrium.
@@ -59,38 +54,13 @@ def settle(
     return systems, time, *flow.read(qp, state, point)
 
 
-def backward_euler(flow: Flow, state: Vector, step: float, tol: float) -> int:
-    """Take one backward Euler step, ``new = state + step F(new)``, in place.
+def linear_change(flow: Flow, state: Vector, step: float, rates: Vector) -> Vector:
+    """Compute the change of a state (size,) with these rates by a linearly implicit step [rho].
 
-    Args:
-        flow: The network's right-hand side for the program.
-        state: The state, (size,).
-        step: Length, in units of rho.
-        tol: Largest defect ``|new - state - step F(new)|`` that is accepted beside its rounding,
-            in the state's unit.
-
-    Returns:
-        Linear systems solved.
-
-    Raises:
-        NoSolutionError: Very short steps do not converge either.
+    It is NaN if the step's matrix is singular.
     """
-    new = state.copy()
-    eye = np.eye(state.size)
-    for systems in range(MAX_NEWTON + 1):
-        defect = new - state - step * flow.rates(new)
-        if np.abs(defect).max() <= tol + 1e-14 * step:
-            state[:] = new
-            return systems
-        new = new - _solved(eye - step * flow.derivative(new), defect)
-    if step < SHORTEST:
-        raise NoSolutionError("an implicit step cannot be solved to working precision")
-    return MAX_NEWTON + sum(backward_euler(flow, state, 0.25 * step, tol) for _ in range(4))
-
-
-def _solved(matrix: Vector, values: Vector) -> Vector:
-    """Solve a linear system, (size,); NaN if it is singular."""
+    matrix = np.eye(state.size) / step - flow.derivative(state)
     try:
-        return np.asarray(np.linalg.solve(matrix, values), dtype=np.float64)
+        return np.asarray(np.linalg.solve(matrix, rates), dtype=np.float64)
     except np.linalg.LinAlgError:
-        return np.full_like(values, np.nan)
+        return np.full_like(rates, np.nan)
