@@ -52,17 +52,17 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
         where no proof was found.
     """
     n, m, p = qp.sizes
-    multipliers = _clean_multipliers(qp, point[n : n + p + m])
-    pair = (multipliers, _polished_multipliers(qp, multipliers))
-    multipliers = max(pair, key=lambda vector: infeasibility_radius(qp, vector))
+    multipliers = _polished_multipliers(qp, point[n : n + p + m])
     radius = infeasibility_radius(qp, multipliers)
     if radius >= RADIUS:
         status = Status.NONE_FEASIBLE_NEAR if radius < np.inf else Status.PRIMAL_INFEASIBLE
         carried, w = _carried(qp, multipliers)
         return status, np.concatenate([multipliers, np.where(carried, -w, 0.0)])
     direction = _clean_direction(qp, point[:n])
-    pair = (direction, _polished_direction(qp, direction))
-    direction = max(pair, key=lambda vector: unboundedness_radius(qp, vector))
+    direction = max(
+        (direction, _polished_direction(qp, direction)),
+        key=lambda vector: unboundedness_radius(qp, vector),
+    )
     radius = unboundedness_radius(qp, direction)
     if radius >= RADIUS:
         return Status.NONE_OPTIMAL_NEAR if radius < np.inf else Status.UNBOUNDED, direction
@@ -83,9 +83,8 @@ def infeasibility_radius(qp: QP, multipliers: Vector) -> float:
     p = qp.b.size
     limits = np.concatenate([qp.b, qp.h])
     used = multipliers != 0.0
-    if not np.isfinite(multipliers).all() or (multipliers[p:] < 0.0).any():
-        return 0.0
-    if not np.isfinite(limits[used]).all():
+    finite = np.isfinite(multipliers).all() and np.isfinite(limits[used]).all()
+    if not finite or (multipliers[p:] < 0.0).any():
         return 0.0
     carried, w = _carried(qp, multipliers)
     rows = np.vstack([qp.A, qp.G])
@@ -143,16 +142,7 @@ def _carried(qp: QP, multipliers: Vector) -> tuple[NDArray[np.bool_], Vector]:
 
 def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
     """Mark the entries of `vector` (n,) that point from the inside to a finite bound, (n,)."""
-    marked: NDArray[np.bool_] = (vector > 0.0) & (qp.ub < np.inf)
-    return marked | ((vector < 0.0) & (qp.lb > -np.inf))
-
-
-def _clean_multipliers(qp: QP, multipliers: Vector) -> Vector:
-    """Divide multipliers (p + m,) by the largest; remove those of rows without a limit."""
-    limited = np.isfinite(np.concatenate([qp.b, qp.h]))
-    return np.where(limited, multipliers, 0.0) / max(
-        float(np.abs(multipliers).max(initial=0.0)), _EPS
-    )
+    return np.where(vector > 0.0, qp.ub < np.inf, (vector < 0.0) & (qp.lb > -np.inf))
 
 
 def _clean_direction(qp: QP, direction: Vector) -> Vector:
@@ -162,9 +152,13 @@ def _clean_direction(qp: QP, direction: Vector) -> Vector:
 
 
 def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
-    """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
-    used = np.abs(multipliers) > _SLIGHT
-    polished = np.where(used, multipliers, 0.0)
+    """Divide multipliers (p + m,) by the largest, and make their residual zero to rounding.
+
+    They stay on the rows that have a limit and take part.
+    """
+    scaled = multipliers / max(float(np.abs(multipliers).max(initial=0.0)), _EPS)
+    used = np.isfinite(np.concatenate([qp.b, qp.h])) & (np.abs(scaled) > _SLIGHT)
+    polished = np.where(used, scaled, 0.0)
     carried, w = _carried(qp, polished)
     # A bound that takes part carries whatever the rows leave over; the others carry nothing.
     left = ~(carried & (np.abs(w) > _SLIGHT))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import Future
 
-from iiwa_dnn.qp.crosscheck import Agreement, CrossCheck
+from iiwa_dnn.qp.crosscheck import PROOF, Agreement, CrossCheck
 from iiwa_dnn.qp.layout import Matrix, Sizes
 
 _WORTH_A_PROCESS = 10_000
@@ -37,7 +37,8 @@ class CheckPool:
         import loky  # with its processes' machinery, which not every run needs
 
         if workers is None:
-            worth = check.asks_solvers and programs >= _WORTH_A_PROCESS
+            slow = set(check.solvers) - {PROOF}
+            worth = slow and programs >= _WORTH_A_PROCESS
             workers = loky.cpu_count() - 1 if worth else 0
         self.check = check
         self.workers = workers

@@ -10,17 +10,15 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout, suppress
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from io import StringIO
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from iiwa_dnn import checks
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.layout import Matrix, Sizes, Vector
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.proof import point_of, prove_point
@@ -114,19 +112,11 @@ class CrossCheck:
 
     def __post_init__(self) -> None:
         """Check the names and the tolerances; raises InvalidInputError naming the argument."""
-        names: Any = self.solvers
-        if not isinstance(names, tuple | list):
-            raise InvalidInputError("solvers", f"must be a tuple of names, not {names!r}", names)
-        for name in names:
+        for name in self.solvers:
             if name not in ("proxqp", "osqp", PROOF):
                 checks.one_of("solvers", name, (*_installed(), PROOF))
         checks.positive("tolerance", self.tolerance)
         checks.positive("reference_tolerance", self.reference_tolerance)
-
-    @property
-    def asks_solvers(self) -> bool:
-        """True if a solver is among the references, so that a check takes long."""
-        return any(name != PROOF for name in self.solvers)
 
     def settings(self) -> dict[str, Any]:
         """Return references and tolerances, as values that JSON can hold."""
@@ -165,7 +155,8 @@ class CrossCheck:
         shape = (len(qps), len(self.solvers))
         gaps = np.full((3, *shape), np.nan)
         judge = np.full(shape, -1, dtype=np.int8)
-        with _silence():  # OSQP prints, and warns of dense matrices
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # OSQP's, of dense matrices
             for i, (qp, point) in enumerate(zip(qps, points, strict=True)):
                 for k, name in enumerate(self.solvers):
                     compare = _proven if name == PROOF else self._compared
@@ -222,14 +213,6 @@ def _answer(name: str, qp: QP) -> tuple[Vector, float]:
             if not np.isnan(point[0]):
                 return point, Residuals(*residuals_of(qp.data, *qp.sizes, point)).largest
     return np.empty(0), np.inf
-
-
-@contextmanager
-def _silence() -> Iterator[None]:
-    """Keep the references' warnings and prints back."""
-    with warnings.catch_warnings(), redirect_stdout(StringIO()):
-        warnings.simplefilter("ignore", UserWarning)
-        yield
 
 
 def ask(name: str, qp: QP) -> Vector:

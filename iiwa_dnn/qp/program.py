@@ -171,9 +171,7 @@ class QP:
         import qpsolvers  # with scipy.sparse, 0.2 s that not every run needs
 
         _, m, p = self.sizes
-        lb = self.lb
-        ub = self.ub
-        bounded = lb.max() > -np.inf or ub.min() < np.inf
+        bounded = self.lb.max() > -np.inf or self.ub.min() < np.inf
         return qpsolvers.Problem(
             self.P,
             self.q,
@@ -181,8 +179,8 @@ class QP:
             self.h if m else None,
             self.A if p else None,
             self.b if p else None,
-            lb if bounded else None,
-            ub if bounded else None,
+            self.lb if bounded else None,
+            self.ub if bounded else None,
         )
 
     def residuals(
@@ -222,14 +220,12 @@ class QP:
         if crossed.size:
             i = int(crossed[0])
             raise InvalidInputError("lb", f"exceeds ub at {i}: {self.lb[i]:g} > {self.ub[i]:g}")
-        scale = max(float(np.abs(self.P).max()), np.finfo(float).tiny)
-        if np.abs(self.P - self.P.T).max() > ROUNDING * scale:
+        if np.abs(self.P - self.P.T).max() > ROUNDING * np.abs(self.P).max():
             raise InvalidInputError("P", "is not symmetric")
         smallest = float(np.linalg.eigvalsh(self.P)[0])
-        if smallest < -ROUNDING * scale:
-            raise InvalidInputError(
-                "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
-            )
+        raise InvalidInputError(
+            "P", f"is not positive semidefinite: eigenvalue {smallest:.3g}, problem not convex"
+        )
 
 
 @compiled
@@ -255,7 +251,6 @@ def _check_shapes(given: Sequence[object], arrays: Sequence[NDArray[np.float64]]
     n = arrays[1].size
     if n == 0:
         raise InvalidInputError("q", "is empty", given[1])
-    require_pairs(given)
     if arrays[0].size != n * n:
         # Either may be the wrong one.
         problem = f"has shape {arrays[0].shape}, which does not go with q of {n}"
@@ -279,14 +274,6 @@ def real_array(name: str, value: Any) -> NDArray[np.float64]:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InvalidInputError(name, f"is not an array of numbers ({error})", value) from None
-
-
-def require_pairs(arrays: Sequence[object]) -> None:
-    """Raise InvalidInputError where G (m, n) or A (p, n) lacks its h or b, or the reverse."""
-    for left in (2, 4):
-        if (arrays[left] is None) is not (arrays[left + 1] is None):
-            missing, other = FIELDS[left : left + 2][:: -1 if arrays[left + 1] is None else 1]
-            raise InvalidInputError(missing, f"is missing though {other} is given")
 
 
 def _rows(name: str, rows: NDArray[np.float64], columns: int) -> int:

@@ -38,23 +38,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from iiwa_dnn.errors import InvalidInputError
 from iiwa_dnn.qp.certificates import infeasibility_radius
-from iiwa_dnn.qp.layout import Matrix, Vector
+from iiwa_dnn.qp.layout import IntVector, Matrix, Vector, check_size
 from iiwa_dnn.qp.program import QP
 from iiwa_dnn.qp.solution import Solution
 
 if TYPE_CHECKING:
     import qpsolvers
 
-IntVector = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 ROUNDS = 5
 """Active sets that are tried, each out of the signs of the one before."""
-
-CONTRACTION = 0.5
-"""Largest row sum of abs(I - R K) with which an enclosure is taken."""
 
 _ROUNDING = 2.0**-53
 _TINY = 1e-290
@@ -67,14 +62,10 @@ FLAT = "a multiplier may be zero, and no curvature of the cost is shown along th
 DEPENDENT = "the active rows are linearly dependent, or nearly so"
 UNDECIDED = "the sign of an inactive row's slack is not decided"
 NOT_CONVEX = "the cost is not shown to be convex"
-CROSSED = "a lower bound exceeds its upper bound, or is no number"
 FAR = "the answer is not finite"
 INFEASIBLE = "proven: no point satisfies the constraints"
-NO_ANSWER = (
-    "the solver found no answer, and handed over no certificate that there is none; "
-    "iiwa_dnn.solve_problem looks for one, which is proven in place of an answer"
-)
-"""Reason of another solver's solution that is marked as not found, where its x is not proven."""
+NO_ANSWER = "no certificate either; iiwa_dnn.solve_problem looks for one"
+"""Status of another solver's solution that was not found."""
 
 
 class Proof(NamedTuple):
@@ -116,18 +107,15 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
         qp = QP.from_qpsolvers(qp)
     n, m, p = qp.sizes
     nothing = np.zeros(n + m, dtype=np.int64)
-    extras: Any = getattr(solution, "extras", None) or {}
+    extras: Any = getattr(solution, "extras", {})
     certificate: Any = getattr(solution, "certificate", extras.get("certificate"))
     is_farkas = certificate is not None and np.size(certificate) == n + m + p
     if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: p + m]) == np.inf:
         return Proof(np.inf, nothing, INFEASIBLE)
-    if "last_x" in extras:
-        return Proof(np.inf, nothing, f"there is no answer: {extras['status']}")
-    if solution.x is None:
-        return Proof(np.inf, nothing, NO_ANSWER)
-    proof = prove_point(qp, point_of(solution, qp))
-    unsolved = not (isinstance(solution, Solution) or getattr(solution, "found", True))
-    return proof._replace(reason=NO_ANSWER) if unsolved and proof.bound == np.inf else proof
+    if solution.x is None or not getattr(solution, "found", True):
+        status = extras.get("status", NO_ANSWER)
+        return Proof(np.inf, nothing, f"there is no answer: {status}")
+    return prove_point(qp, point_of(solution, qp))
 
 
 def point_of(solution: Any, qp: QP) -> Vector:
@@ -140,12 +128,8 @@ def point_of(solution: Any, qp: QP) -> Vector:
     parts = []
     for name, size in (("x", n), ("y", p), ("z", m), ("z_box", n)):
         part: Any = getattr(solution, name, None)
-        if part is None or not np.size(part):
-            part = np.zeros(size)
-        if np.size(part) != size:
-            problem = f"has {np.size(part)} entries in {name}, not {size}"
-            raise InvalidInputError("solution", problem, solution)
-        parts.append(part)
+        given = part is not None and np.size(part)
+        parts.append(check_size(name, np.asarray(part) if given else np.zeros(size), size))
     return np.concatenate(parts)
 
 
@@ -176,18 +160,11 @@ class _Rows:
         self.S = np.where(0.5 * both + 0.5 * both == both, 0.5 * both, np.nan)
 
 
+@np.errstate(all="ignore")
 def prove_point(qp: QP, point: Vector) -> Proof:
     """Bound the distance of a point ``[x | y | z | z_box]``, (2 n + m + p,), from the solution."""
-    n, m, _ = qp.sizes
-    if not (qp.lb <= qp.ub).all():
-        return Proof(np.inf, np.zeros(n + m, dtype=np.int64), CROSSED)
-    with np.errstate(all="ignore"):
-        return _proved(qp, _Rows(qp), point)
-
-
-def _proved(qp: QP, rows: _Rows, point: Vector) -> Proof:
-    """Try one active set after another, from that of a point (2 n + m + p,)."""
     n, m, p = qp.sizes
+    rows = _Rows(qp)
     x = point[:n]
     multipliers = np.concatenate([point[n:], -point[n + p + m :]])
     active = rows.equal | (rows.usable & (multipliers > rows.limits - rows.rows @ x))
@@ -216,14 +193,12 @@ def _proved(qp: QP, rows: _Rows, point: Vector) -> Proof:
     return Proof(bound, np.concatenate([upper - lower, active[p : p + m]]), reason)
 
 
-def _independent(rows: _Rows, active: Mask) -> IntVector:
+def _independent(rows: _Rows, active: Mask) -> NDArray[np.intp]:
     """List the active rows, without those that say 0 = 0 or repeat another one to the last bit."""
-    used = np.flatnonzero(active)
-    lines = np.column_stack([rows.rows[used], rows.limits[used]])
-    _, first = np.unique(lines, axis=0, return_index=True)
-    kept = np.sort(first)
-    independent: IntVector = used[kept[np.any(lines[kept] != 0.0, axis=1)]]
-    return independent
+    lines = np.column_stack([rows.rows, rows.limits])
+    used = np.flatnonzero(active & np.any(lines != 0.0, axis=1))
+    _, first = np.unique(lines[used], axis=0, return_index=True)
+    return np.asarray(used[np.sort(first)])
 
 
 def _is_clear(rows: _Rows, x: Vector, error: Vector) -> Mask:
@@ -262,7 +237,7 @@ def _enclose(
     defect = np.abs(np.eye(r.size) - R @ K).sum(axis=1)
     alpha = (1.0 + unit) * (defect + unit * (1.0 + size @ np.abs(K).sum(axis=1)) + _TINY)
     largest = float(alpha.max())
-    if not largest < CONTRACTION:
+    if not largest < 0.5:
         return None
     rho = np.abs(r - K @ u) + unit * (np.abs(K) @ np.abs(u) + np.abs(r)) + _TINY
     beta = (1.0 + unit) * (size @ ((1.0 + unit) * rho) + _TINY)
@@ -276,16 +251,14 @@ def _bound(qp: QP, rows: _Rows, distance: float, missing: float, weak: bool) -> 
     Where a multiplier is `weak`, `missing` bounds the change of the cost vector that makes it none.
     """
     unit = rows.unit
-    if not weak:
-        if _curvature(rows.S, qp.A, unit, 0.0) < 0.0:
-            return np.inf, NOT_CONVEX
-        return (distance, "") if distance < np.inf else (np.inf, FAR)
-    curvature = _curvature(rows.S, qp.A, unit, _SHARE)
+    curvature = _curvature(rows.S, qp.A, unit, _SHARE if weak else 0.0)
     if not curvature > 0.0:
-        convex = _curvature(rows.S, qp.A, unit, 0.0) >= 0.0
-        return np.inf, FLAT if convex else NOT_CONVEX
-    bound = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
-    return (bound, WEAK) if bound < np.inf else (np.inf, FAR)
+        return np.inf, FLAT if weak else NOT_CONVEX
+    if weak:
+        distance = (1.0 + 2.0 * unit) * (distance + (1.0 + unit) * missing / curvature)
+    if not distance < np.inf:
+        return np.inf, FAR
+    return distance, WEAK if weak else ""
 
 
 def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
@@ -304,10 +277,9 @@ def _curvature(S: Matrix, A: Matrix, unit: float, share: float) -> float:
     trace = float(np.trace(S))
     squares = float((A * A).sum())
     for weight in (0.0, trace / squares) if squares > 0.0 else (0.0,):
-        M = S + weight * (A.T @ A)
-        filling = np.where(np.any(S != 0.0, axis=1), 0.0, trace + (trace == 0.0))
-        if share == 0.0:
-            M = M + np.diag(filling)
+        empty = (share == 0.0) & ~np.any(S != 0.0, axis=1)
+        filling = np.where(empty, trace + (trace == 0.0), 0.0)
+        M = S + weight * (A.T @ A) + np.diag(filling)
         size = np.abs(S).sum() + weight * (np.abs(A).sum(axis=1) ** 2).sum() + filling.sum()
         loss = 2.0 * unit * float(size) + _TINY
         shift = 2.0 * loss
