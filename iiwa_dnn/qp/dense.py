@@ -129,10 +129,8 @@ def is_convex(P: Matrix, K: Matrix) -> bool:
             K[i, k] = P[i, k]
             largest = larger(largest, abs(P[i, k]))
             asymmetry = larger(asymmetry, abs(P[i, k] - P[k, i]))
-    if largest == 0.0:
-        return True
     for i in range(P.shape[0]):
-        K[i, i] += ROUNDING * largest
+        K[i, i] += ROUNDING * largest + 1e-300
     return asymmetry <= ROUNDING * largest and cholesky_factor(K)
 
 

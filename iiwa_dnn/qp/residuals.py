@@ -6,12 +6,6 @@ from iiwa_dnn.compiling.library import compiled
 from iiwa_dnn.qp.dense import add_row, row_dot
 from iiwa_dnn.qp.layout import QPViews, Triple, Vector, larger, qp_views
 
-LONG = 64
-"""Variables from which on the rounding of the gap's sum is added to it: in another order, as
-qpsolvers sums, it would be another number."""
-
-_EPS = float(np.finfo(float).eps)
-
 
 @compiled
 def point_residuals(qp: QPViews, point: Vector) -> Triple:
@@ -23,7 +17,6 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
     primal = 0.0
     dual = 0.0
     gap = 0.0
-    terms = 0.0
     gradient = np.empty(n)
     for i in range(n):
         x = point[i]
@@ -32,7 +25,6 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
         primal = larger(primal, qp.lb[i] - x)
         value = qp.q[i] + row_dot(qp.P, i, point)
         gap += x * value
-        terms += abs(x * value)
         gradient[i] = value + multiplier
         if multiplier > 0.0 and qp.ub[i] < np.inf:
             gap += qp.ub[i] * multiplier
@@ -42,19 +34,15 @@ def point_residuals(qp: QPViews, point: Vector) -> Triple:
         y = point[n + j]
         primal = larger(primal, abs(row_dot(qp.A, j, point) - qp.b[j]))
         gap += qp.b[j] * y
-        terms += abs(qp.b[j] * y)
         add_row(gradient, y, qp.A, j)
     for j in range(qp.h.size):
         z = point[at_z + j]
         primal = larger(primal, row_dot(qp.G, j, point) - qp.h[j])
         if z != 0.0:
             gap += qp.h[j] * z
-            terms += abs(qp.h[j] * z)
             add_row(gradient, z, qp.G, j)
     for i in range(n):
         dual = larger(dual, abs(gradient[i]))
-    if n >= LONG:
-        gap = abs(gap) + _EPS * terms
     return primal, dual, abs(gap)
 
 
