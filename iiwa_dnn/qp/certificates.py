@@ -52,13 +52,19 @@ def find_certificate(qp: QP, point: Vector) -> tuple[Status, Vector | None]:
         where no proof was found.
     """
     n, m, p = qp.sizes
-    multipliers = _polished_multipliers(qp, point[n : n + p + m])
+    limited = np.isfinite(np.concatenate([qp.b, qp.h]))
+    multipliers = _scaled(np.where(limited, point[n : n + p + m], 0.0))
+    multipliers = max(
+        (multipliers, _polished_multipliers(qp, multipliers)),
+        key=lambda vector: infeasibility_radius(qp, vector),
+    )
     radius = infeasibility_radius(qp, multipliers)
     if radius >= RADIUS:
         status = Status.NONE_FEASIBLE_NEAR if radius < np.inf else Status.PRIMAL_INFEASIBLE
         carried, w = _carried(qp, multipliers)
         return status, np.concatenate([multipliers, np.where(carried, -w, 0.0)])
-    direction = _clean_direction(qp, point[:n])
+    direction = _scaled(point[:n])
+    direction = np.where(_towards_bound(qp, direction), 0.0, direction)
     direction = max(
         (direction, _polished_direction(qp, direction)),
         key=lambda vector: unboundedness_radius(qp, vector),
@@ -145,20 +151,15 @@ def _towards_bound(qp: QP, vector: Vector) -> NDArray[np.bool_]:
     return np.where(vector > 0.0, qp.ub < np.inf, (vector < 0.0) & (qp.lb > -np.inf))
 
 
-def _clean_direction(qp: QP, direction: Vector) -> Vector:
-    """Divide a direction (n,) by its largest entry; remove what is towards a bound."""
-    direction = direction / max(float(np.abs(direction).max(initial=0.0)), _EPS)
-    return np.where(_towards_bound(qp, direction), 0.0, direction)
+def _scaled(vector: Vector) -> Vector:
+    """Divide a vector by its largest entry."""
+    return vector / max(float(np.abs(vector).max(initial=0.0)), _EPS)
 
 
 def _polished_multipliers(qp: QP, multipliers: Vector) -> Vector:
-    """Divide multipliers (p + m,) by the largest, and make their residual zero to rounding.
-
-    They stay on the rows that have a limit and take part.
-    """
-    scaled = multipliers / max(float(np.abs(multipliers).max(initial=0.0)), _EPS)
-    used = np.isfinite(np.concatenate([qp.b, qp.h])) & (np.abs(scaled) > _SLIGHT)
-    polished = np.where(used, scaled, 0.0)
+    """Find the nearest multipliers on the same rows whose residual is zero to rounding."""
+    used = np.abs(multipliers) > _SLIGHT
+    polished = np.where(used, multipliers, 0.0)
     carried, w = _carried(qp, polished)
     # A bound that takes part carries whatever the rows leave over; the others carry nothing.
     left = ~(carried & (np.abs(w) > _SLIGHT))

@@ -112,7 +112,7 @@ def prove(qp: QP | qpsolvers.Problem, solution: Solution | qpsolvers.Solution) -
     is_farkas = certificate is not None and np.size(certificate) == n + m + p
     if is_farkas and infeasibility_radius(qp, np.asarray(certificate)[: p + m]) == np.inf:
         return Proof(np.inf, nothing, INFEASIBLE)
-    if solution.x is None or not getattr(solution, "found", True):
+    if not (isinstance(solution, Solution) or getattr(solution, "found", True)):
         status = extras.get("status", NO_ANSWER)
         return Proof(np.inf, nothing, f"there is no answer: {status}")
     return prove_point(qp, point_of(solution, qp))
